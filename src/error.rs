@@ -149,7 +149,7 @@ pub enum Error {
 }
 
 /// Upper bound of the bytes that small work (an exact solution, a block of work, a thread) needs at any time.
-const SPARE: usize = 8 << 20;
+const SPARE_BYTES: usize = 8 << 20;
 
 /// Returns an error if the memory does not suffice for small work, whose failed allocation would abort the process.
 pub(crate) fn spare() -> Result<(), Error> {
@@ -158,7 +158,7 @@ pub(crate) fn spare() -> Result<(), Error> {
 
 /// Returns an error if the memory does not suffice for this many bytes together with small work.
 pub(crate) fn spare_for(bytes: usize) -> Result<(), Error> {
-    let bytes = bytes.saturating_add(SPARE);
+    let bytes = bytes.saturating_add(SPARE_BYTES);
     let mut all = Vec::<u8>::new();
     let found = all.try_reserve_exact(bytes).map_err(|_| Error::Memory { bytes });
     // Without a use of the vector the compiler would omit the allocation.
@@ -171,7 +171,7 @@ pub(crate) fn room<T>(count: usize) -> Result<Vec<T>, Error> {
     let bytes = count.saturating_mul(size_of::<T>());
     let mut things = Vec::new();
     things.try_reserve_exact(count).map_err(|_| Error::Memory { bytes })?;
-    if bytes > SPARE / 64 {
+    if bytes > SPARE_BYTES / 64 {
         spare()?;
     }
     Ok(things)

@@ -15,7 +15,7 @@ import pytest
 
 import spincyl as sc
 from spincyl import cli
-from spincyl._input.units import joined
+from spincyl._input.units import join_units
 
 ROLL = ["roll", "--ell", "2.5", "--theta", "1.3", "--kick", "0.05"]
 PVC = ["--outer", "15.875mm", "--inner", "12.7mm", "--length", "95.25mm"]
@@ -136,7 +136,7 @@ def test_powers_of_ten_are_whole_numbers_and_may_be_negative(capsys):
     for points in ("1.5", "1e", "many", "1e400", "20s"):
         assert points in refused(capsys, *ROLL, "--t", "20", "--points", points)
     assert (
-        joined(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"])
+        join_units(["--rate", "1", "2", "s", "-o", "-", "--kick", "-1e-3", "-1"])
         == "--rate 1 2s -o - --kick=-1e-3 -1".split()
     )
 

@@ -12,7 +12,7 @@ import pytest
 from test_cli import ROLL, said, shell
 
 import spincyl as sc
-from spincyl._input.units import joined
+from spincyl._input.units import join_units
 from spincyl.cli import _commands, _output
 from spincyl.cli._options import parser
 
@@ -115,7 +115,7 @@ def test_every_help_has_examples_and_they_run(capsys, tmp_path, monkeypatch, com
     for line in examples:
         words = shlex.split(line)[1:]
         if command == "figures":
-            parser().parse_args(joined(words))
+            parser().parse_args(join_units(words))
         elif not {"|", ">", "--help"} & set(words):  # like a separate process, but without its imports
             said(capsys, *words)
         else:

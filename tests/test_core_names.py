@@ -84,7 +84,7 @@ def test_single_motions_and_sweeps_take_their_options_from_there():
         "_stones.py",
     ]
     for name, arguments in found:
-        # the options of a sweep come from `swept`, which makes them by `crossing`
+        # the options of a sweep come from `swept`, which makes them by `options_for_core`
         asks = any(x.startswith("crossing(") for x in arguments) or arguments[2] == "asked"
         assert asks or arguments[3] == "asked | given", name  # the first motion that a sweep refused
     swept = (PACKAGE / "sweep" / "_swept.py").read_text("utf-8")

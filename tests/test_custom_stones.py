@@ -43,7 +43,9 @@ def test_a_sweep_of_stones_and_a_c_function_give_the_motions_of_a_python_functio
     pointed = sc.custom.Friction(kind(falling))
     spins = np.array([3.0, 4.0, 5.0])
     starts = EGG.with_centre_velocity(EGG.spinning(spins, pitch=0.4), 0.6, -0.3)
-    found = [sc.sweep.roll(EGG, starts, 4.0, contact=of, tol=1e-10, want="final") for of in (FALLING, pointed)]
+    found = [
+        sc.sweep.roll(EGG, starts, 4.0, contact=of, tol=1e-10, want="final") for of in (FALLING, pointed)
+    ]
     for k, spin in enumerate(spins):
         start = EGG.with_centre_velocity(EGG.spinning(spin, pitch=0.4), 0.6, -0.3)
         alone = [sc.roll(EGG, start, 4.0, contact=of, tol=1e-10).w[-1] for of in (FALLING, pointed)]

@@ -113,7 +113,7 @@ def test_the_quick_reader_gives_what_the_careful_one_does_or_nothing(rows, comma
         if not lines:
             continue
         careful = [_cells.numbers_in(line, delimiter, comma) for line in lines]
-        quick = _tracker._plain(lines, delimiter, comma, 4)
+        quick = _tracker._table_by_numpy(lines, delimiter, comma, 4)
         if quick is not None:
             assert np.array_equal(quick, [x + [np.nan] * (4 - len(x)) for x in careful], equal_nan=True)
         elif delimiter == "\t":

@@ -300,7 +300,7 @@ def test_normal_times_seldom_have_an_outlier():
         times = rng.normal(7.0, rng.choice([0.02, 0.2, 0.7]), rng.integers(5, 20))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            _stop._timed(np.round(times, 1 + k % 2), 0.1)
+            _stop._mean_of_times(np.round(times, 1 + k % 2), 0.1)
         warned += len(said)
     assert warned <= 3
 

@@ -436,6 +436,6 @@ def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
 
 
 def test_a_large_film_is_warned_of(tmp_path, monkeypatch):
-    monkeypatch.setattr("spincyl.studio.film._LARGE", 1e3)
+    monkeypatch.setattr("spincyl.studio.film._LARGE_FILE", 1e3)
     with pytest.warns(UserWarning, match=r"film.gif: 0 MB; reduce size=, fps= or seconds=; an .mp4"):
         page_of("nutating").save(tmp_path / "film.gif", fps=5, size=(64, 64), seconds=1)

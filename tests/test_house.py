@@ -212,7 +212,7 @@ NAMESAKES = {
     "methods": {"step": "of each method"},
     "numbers": {
         "sin_cos": "of a number and of a sum",
-        **dict.fromkeys(("best", "registers"), "one for each kind of processor"),
+        **dict.fromkeys(("best", "avx2"), "one for each kind of processor"),
     },
 }
 

@@ -98,7 +98,7 @@ def test_a_sweep_is_the_dataset_that_the_public_constructor_of_xarray_makes(shap
 
 def test_an_impact_and_a_phase_become_objects_when_they_are_asked_for(monkeypatch):
     made = []
-    monkeypatch.setattr("spincyl._phases.unchecked", lambda *of: made.append(of))
+    monkeypatch.setattr("spincyl._phases.state_without_checks", lambda *of: made.append(of))
     how = {"contact": sc.Coulomb(0.25), "restitution": 0.9, "tol": 1e-8}
     m = sc.roll(BALL, HOPS, 100.0, **how)
     assert not made

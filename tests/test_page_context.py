@@ -7,7 +7,7 @@ from pages import near, picture
 from playing import LAPTOP, PHONE, ask, settled, state
 
 import spincyl as sc
-from spincyl.studio.pages.joined import _tight
+from spincyl.studio.pages.joined import _without_spaces
 from spincyl.studio.shape import BLUE, ORANGE
 
 NO_WEBGL = """{ const plain = HTMLCanvasElement.prototype.getContext;
@@ -179,4 +179,4 @@ def test_every_control_is_whole_on_a_phone_a_laptop_and_a_wall(shown, make, touc
 
 def test_a_script_without_its_spaces_says_the_same():
     code = 'const a = b + +c - -d, t = ` ${ f ? ` = ${ "}" } ` : "" } = `, s = " , ";\n'
-    assert _tight(code) == 'const a=b+ +c- -d,t=` ${ f ? ` = ${ "}" } ` : "" } = `,s=" , ";\n'
+    assert _without_spaces(code) == 'const a=b+ +c- -d,t=` ${ f ? ` = ${ "}" } ` : "" } = `,s=" , ";\n'

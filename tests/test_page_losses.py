@@ -178,9 +178,9 @@ def test_a_motion_is_heard_whatever_its_end(motion, tmp_path):
 
 
 def test_what_comes_round_faster_than_samples_show_is_heard_as_its_mean():
-    from spincyl.studio.sound import _beat
+    from spincyl.studio.sound import _loudness
 
-    slow, fast = (_beat(step * np.arange(1000.0)) for step in (0.01, 50.0))
+    slow, fast = (_loudness(step * np.arange(1000.0)) for step in (0.01, 50.0))
     assert slow.max() == pytest.approx(1.0) and slow.min() == pytest.approx(np.exp(-4.0), rel=1e-3)
     angle = 2 * np.pi * (np.arange(64) + 0.5) / 64
     assert fast == pytest.approx(np.exp(2 * (np.cos(angle) - 1)).mean(), rel=1e-9)

@@ -15,7 +15,7 @@ from playing import ask, settled, state
 import spincyl as sc
 from spincyl.cli import main
 from spincyl.studio.pages.joined import script, style
-from spincyl.studio.pages.play import _LEAN, _SCRIPTS, CORES
+from spincyl.studio.pages.play import _SCRIPTS, _SCRIPTS_WITHOUT_FRICTION, CORES
 from spincyl.studio.pages.words import body_of, losses_of, restitution_of, scenes, state_of, table_of
 from spincyl.studio.shape import IVORY
 
@@ -39,7 +39,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     page, (look, shown, text, core) = play.html, unpacked(play)
     assert (look, text) == (
         style(["play.css"]),
-        script(_SCRIPTS if friction else _LEAN),
+        script(_SCRIPTS if friction else _SCRIPTS_WITHOUT_FRICTION),
     ) and '<canvas id="map"' in shown
     assert core == gzip.decompress(
         files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes()

@@ -57,7 +57,7 @@ def told(*given, after=3.0, monkeypatch, **how):
     clock = iter([0.0])
     with monkeypatch.context() as patch:
         patch.setattr(progress, "time", SimpleNamespace(monotonic=lambda: next(clock, after)))
-        with progress.telling(*given, "work", **how) as tells:
+        with progress.reporting_progress(*given, "work", **how) as tells:
             if tells:
                 tells(0.5)
             said = sys.stderr.getvalue()
@@ -86,7 +86,7 @@ def test_short_work_pipes_other_threads_and_the_silenced_see_no_bar(monkeypatch)
     assert told(None, monkeypatch=monkeypatch) == ""
     assert "50%" in told(True, after=0.1, monkeypatch=monkeypatch), "asked for, at once"
     monkeypatch.setattr(sys, "stderr", None)
-    with progress.telling(None, "work") as tells:
+    with progress.reporting_progress(None, "work") as tells:
         assert tells is None
 
 
@@ -94,27 +94,27 @@ def test_a_notebook_is_told_without_a_terminal(monkeypatch):
     err(monkeypatch, terminal=False)
     for shell, seen in ((SimpleNamespace(kernel=object()), True), (SimpleNamespace(), False), (None, False)):
         monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda shell=shell: shell))
-        with progress.telling(None, "work") as tells:
+        with progress.reporting_progress(None, "work") as tells:
             assert (tells is not None) is seen
 
 
 def test_work_within_work_has_no_bar_of_its_own(monkeypatch):
     err(monkeypatch)
-    with progress.telling(None, "outer") as outer:
-        with progress.telling(None, "inner") as inner:
+    with progress.reporting_progress(None, "outer") as outer:
+        with progress.reporting_progress(None, "inner") as inner:
             assert outer is not None and inner is None
-        with _output.Working("roll"), progress.telling(None, "inner") as inner:
+        with _output.Working("roll"), progress.reporting_progress(None, "inner") as inner:
             assert inner is None
-    with _output.Working("roll"), progress.telling(None, "inner") as inner:
+    with _output.Working("roll"), progress.reporting_progress(None, "inner") as inner:
         assert inner is None
-    with progress.telling(None, "again") as again:
+    with progress.reporting_progress(None, "again") as again:
         assert again is not None
 
 
 def test_without_tqdm_there_is_no_bar(monkeypatch):
     err(monkeypatch)
     monkeypatch.setitem(sys.modules, "tqdm", None)
-    with progress.telling(None, "work") as tells:
+    with progress.reporting_progress(None, "work") as tells:
         assert tells is None
 
 
@@ -172,7 +172,7 @@ def test_a_warning_in_long_work_is_still_one(monkeypatch):
     err(monkeypatch)
 
     def work():
-        with progress.telling(True, "work") as tells:
+        with progress.reporting_progress(True, "work") as tells:
             tells(0.5)
             warnings.warn("still heard", UserWarning, stacklevel=1)
 

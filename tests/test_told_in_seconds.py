@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import spincyl as sc
-from spincyl._measured import speaking
+from spincyl._measured import errors_in_seconds
 from spincyl.cli import main
 
 TUBE = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3, mass=20e-3)
@@ -24,7 +24,7 @@ TEXTS = [
 
 
 def spoken(said, scale=TUBE.scale):
-    with pytest.raises(ValueError) as caught, speaking(scale):
+    with pytest.raises(ValueError) as caught, errors_in_seconds(scale):
         raise ValueError(said)
     return str(caught.value)
 

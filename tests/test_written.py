@@ -16,7 +16,7 @@ import pytest
 from saving import JOBS, filmed, scene, shown
 
 import spincyl as sc
-from spincyl._input.files import replaced
+from spincyl._input.files import writing_whole
 
 HERE = Path(__file__).parent
 PARTS = ".spincyl-*"
@@ -163,7 +163,7 @@ def test_while_it_is_made_nobody_reads_what_replaces_a_secret(tmp_path):
     path = tmp_path / "secret.csv"
     path.write_text("secret")
     path.chmod(0o600)
-    with replaced(path) as part:
+    with writing_whole(path) as part:
         assert stat.S_IMODE(part.stat().st_mode) == 0o600 and part.parent == tmp_path
 
 

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, ErrorWarning, Event, RestsOn
-from spincyl._input.hints import instead as _instead
+from spincyl._input.hints import proposal as _instead
 from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion

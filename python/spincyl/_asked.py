@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._contact import AnyContact, code, table
+from spincyl._contact import AnyContact, code_of, table_for_core
 from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals, whole
-from spincyl._phases import check_contact, rubs
+from spincyl._phases import check_contact, has_friction
 from spincyl._state import State
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ Method: TypeAlias = Literal["exact", "rk4"]
 #: Optional outputs of `roll`.
 Want: TypeAlias = Literal["pose", "force"]
 WANTS: tuple[Want, ...] = ("pose", "force")
-NOTHING: frozenset[Want] = frozenset()
+NO_OUTPUTS: frozenset[Want] = frozenset()
 _DOUBLE = np.dtype(np.float64)
 
 
@@ -33,7 +33,7 @@ class Asked(NamedTuple):
     contact: AnyContact = "rolling"
     mu: float = math.inf
     beyond: bool = False
-    want: frozenset[Want] = NOTHING
+    want: frozenset[Want] = NO_OUTPUTS
     restitution: float | None = None
     losses: "Loss | None" = None
     stop_at: Literal["rolling"] | None = None
@@ -42,7 +42,7 @@ class Asked(NamedTuple):
     errors: bool = True  # whether the errors of many motions that are integrated are estimated
 
 
-def crossing(
+def options_for_core(
     asked: Asked, slip: Sequence[float] | None = None, aloft: Sequence[float] | None = None
 ) -> dict[str, Any]:
     """The options of one motion or of many as keyword arguments of the core.
@@ -52,7 +52,7 @@ def crossing(
     options: dict[str, Any] = {"t0": asked.t0} if asked.t0 else {}
     contact, mu = asked.contact, asked.mu
     if contact != "rolling" or mu != math.inf:
-        options["table"], options["coefficients"] = table(contact, mu, own=True)
+        options["table"], options["coefficients"] = table_for_core(contact, mu, own=True)
         if not isinstance(contact, str) and contact._function is not None:
             options["friction"] = contact._function
     if asked.step is not None or asked.tol is not None:
@@ -99,12 +99,12 @@ def times_of(t: Reals) -> Floats:
     return found
 
 
-def evaluations(most: int | None) -> int | None:
+def checked_max_nfev(most: int | None) -> int | None:
     """The argument `max_nfev`, checked."""
     return most if most is None else whole("max_nfev", most, 1, 2**63 - 1)
 
 
-def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
+def outputs_wanted(want: Want | Iterable[Want]) -> frozenset[Want]:
     try:
         given = [want] if isinstance(want, str) else list(want)
     except TypeError:
@@ -114,9 +114,9 @@ def choices(want: Want | Iterable[Want]) -> frozenset[Want]:
     return frozenset(given)
 
 
-def chosen(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
+def union_of_wants(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
     """The union of several arguments `want`, each as `roll` takes it."""
-    return frozenset().union(*map(choices, wants))
+    return frozenset().union(*map(outputs_wanted, wants))
 
 
 def ask(
@@ -149,8 +149,8 @@ def ask(
     beyond = beyond if beyond is False else flag("beyond", beyond)
     word = isinstance(contact, str)
     if word:
-        code(contact, rubs=True)
-    elif not rubs(contact):
+        code_of(contact, rubs=True)
+    elif not has_friction(contact):
         raise TypeError(
             "contact: expected 'rolling', 'smooth', sc.Coulomb(mu) or sc.Viscous(c),"
             f" not {type(contact).__name__}"
@@ -179,10 +179,10 @@ def ask(
             from spincyl import _lossy
 
             _lossy.check_losses(losses, times, t0, given)
-            _lossy.narrow(losses, contact)
+            _lossy.warn_of_long_arm(losses, contact)
         check_contact(state, contact, restitution, given)
-    # the default `want` is an empty tuple: `choices` would take longer than this test
-    want = NOTHING if type(want) is tuple and not want else choices(want)
+    # the default `want` is an empty tuple: `outputs_wanted` would take longer than this test
+    want = NO_OUTPUTS if type(want) is tuple and not want else outputs_wanted(want)
     # by position, since names would take as long as all checks; a test compares the order
     asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
-    return asked if max_nfev is None else asked._replace(max_nfev=evaluations(max_nfev))
+    return asked if max_nfev is None else asked._replace(max_nfev=checked_max_nfev(max_nfev))

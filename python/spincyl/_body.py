@@ -7,32 +7,32 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._circular import circular as _circular
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
+    common_shape,
     elementwise,
-    fitting,
+    in_range,
     is_scalar,
-    kept,
     keywords,
-    lengths,
+    lengths_in_metres,
     metres,
     number,
+    numbered,
     radians,
+    read_only_copy,
     reals,
-    several,
     turns_per_second,
-    within,
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
-from spincyl._repr import FIELDS, body
+from spincyl._repr import FIELDS, repr_of_body
 from spincyl._scale import Scale
 from spincyl._sized import Sized
-from spincyl._state import State, unchecked
-from spincyl._upward import above
+from spincyl._state import State, state_without_checks
+from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Body(Laws, Sized, Hinting):
     """A rigid body of revolution that touches the table with its lower rim.
@@ -105,7 +105,7 @@ class Body(Laws, Sized, Hinting):
             moments: tuple[Reals, Reals] = _core.check_body(given)
             object.__setattr__(self, "_single", True)
         else:
-            fitting(dict(zip(FIELDS, given, strict=True)))
+            common_shape(dict(zip(FIELDS, given, strict=True)))
             given = [x if is_scalar(x) else x + 0.0 for x in given]
             moments = _core.body_i1(*given), _core.body_i3(*given)
         for name, value, own in zip(("i1", "i3"), given[1:3], moments, strict=True):
@@ -114,7 +114,7 @@ class Body(Laws, Sized, Hinting):
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
                 raise ValueError(f"{name} = {value!r}: expected {own!r} for a tube of this bore")
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
-            object.__setattr__(self, name, kept(value))
+            object.__setattr__(self, name, read_only_copy(value))
 
     @classmethod
     def solid(cls, ell: Reals, fillet: Reals = 0.0) -> Self:
@@ -193,7 +193,7 @@ class Body(Laws, Sized, Hinting):
         measures = {"outer_diameter": outer_diameter, "inner_diameter": inner_diameter, "length": length}
         if not (type(fillet) is float and fillet == 0):
             measures["fillet"] = fillet
-        measures = metres(lengths("", measures)[0])
+        measures = metres(lengths_in_metres("", measures)[0])
         try:
             body = cls.tube(*_core.from_metres(**{"fillet": 0.0, **measures}))
         except ValueError as e:
@@ -241,7 +241,7 @@ class Body(Laws, Sized, Hinting):
 
     def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
         """Compute the motion of this body from an initial state; see `spincyl.roll`."""
-        found: Motion = above("Body.roll")(self, state, t, **how)
+        found: Motion = function_of_method("Body.roll")(self, state, t, **how)
         return found
 
     # Steady states with the centre at rest.
@@ -313,7 +313,7 @@ class Body(Laws, Sized, Hinting):
             ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, which is 8 ulp at a fold, where kappa_c
             vanishes. Where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root.
         """
-        return _core.inclination(*several(self._most, self._reduced(of, rate, hertz), *self._numbers))
+        return _core.inclination(*numbered(self._most, self._reduced(of, rate, hertz), *self._numbers))
 
     @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
@@ -322,7 +322,7 @@ class Body(Laws, Sized, Hinting):
         They are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect,
         where the rate determines the state better than theta does.
         """
-        inputs = several(self._most, self._reduced(of, rate, hertz), *self._numbers)
+        inputs = numbered(self._most, self._reduced(of, rate, hertz), *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
@@ -344,7 +344,7 @@ class Body(Laws, Sized, Hinting):
         numbers, plain = self._numbers, type(theta) is float and self._single and abs(theta) <= np.pi
         theta = theta if plain else radians("theta", theta, self._leans)
         if plain or is_scalar(theta, *numbers):
-            return unchecked(_core.steady_state(float(theta), numbers))
+            return state_without_checks(_core.steady_state(float(theta), numbers))
         return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
     @elementwise
@@ -375,10 +375,10 @@ class Body(Laws, Sized, Hinting):
         return _circular(self, theta, precession, radius, w3)
 
     def __repr__(self) -> str:
-        return body(self)
+        return repr_of_body(self)
 
     def _repr_html_(self) -> str:
-        return str(above("card")(self))
+        return str(function_of_method("card")(self))
 
     def _radius(self) -> float:
         if self.scale is not None:
@@ -393,7 +393,7 @@ class Body(Laws, Sized, Hinting):
             if mass is not None:
                 raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
             return self
-        across = within("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
+        across = in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
         return self.in_metres(mass, radius=across / 2)
 
     def _bulk(self) -> tuple[str, tuple[float, float], float]:

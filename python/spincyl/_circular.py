@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.numbers import Reals, is_scalar, radians, reals, several
-from spincyl._state import State, unchecked
+from spincyl._input.numbers import Reals, is_scalar, numbered, radians, reals
+from spincyl._state import State, state_without_checks
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -26,7 +26,7 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     if name == "radius":
         number = _core.precession_of_radius(theta, number, *numbers)
     elif name == "w3":
-        theta, number, *numbers, root = several(2, theta, number, *numbers)
+        theta, number, *numbers, root = numbered(2, theta, number, *numbers)
         number, single = _core.precession_of_spin(theta, number, *numbers, root), False
         theta = theta + 0.0 * number
     if single:
@@ -37,6 +37,6 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
             raise ValueError(f"theta = {theta!r}: {lands}")
         if np.isnan(number):
             raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has this value")
-        return unchecked(_core.circular_state(float(theta), float(number), numbers))
+        return state_without_checks(_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

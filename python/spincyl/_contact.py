@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.equality import compared
-from spincyl._input.numbers import Reals, is_scalar, kept, reals, refuse, si
-from spincyl._input.reprs import call, is_lazy
-from spincyl._scale import Scale, other, scale_of
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import Reals, is_scalar, read_only_copy, reals, refuse_bad_value, si
+from spincyl._input.reprs import is_lazy, repr_of_call
+from spincyl._scale import Scale, refuse_other_scale, scale_of
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -45,7 +45,7 @@ class _Law:
         raise NotImplementedError
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Coulomb(_Law):
     """Dry friction at the contact point, a law of friction for `contact=`.
@@ -96,12 +96,12 @@ class Coulomb(_Law):
 
     def __post_init__(self) -> None:
         mu = _coefficient("mu", self.mu)
-        refuse("mu", mu, np.isinf, "expected a finite number")
+        refuse_bad_value("mu", mu, np.isinf, "expected a finite number")
         static = mu if self.static is None else _coefficient("static", self.static)
         if static is not mu and not is_lazy(mu):
-            refuse("static", static, lambda x: x < np.asarray(mu), f"expected at least mu = {mu!r}")
+            refuse_bad_value("static", static, lambda x: x < np.asarray(mu), f"expected at least mu = {mu!r}")
         patch = _coefficient("patch", self.patch)
-        refuse("patch", patch, lambda x: ~(x < 1), "expected 0 <= patch < 1, in R")
+        refuse_bad_value("patch", patch, lambda x: ~(x < 1), "expected 0 <= patch < 1, in R")
         object.__setattr__(self, "mu", mu)
         object.__setattr__(self, "static", static)
         object.__setattr__(self, "patch", patch)
@@ -115,10 +115,10 @@ class Coulomb(_Law):
         same = self.static is self.mu or (not lazy and np.array_equal(self.static, self.mu))
         more = {} if same else {"static": self.static}
         point = is_scalar(self.patch) and self.patch == 0
-        return call("Coulomb", self.mu, **more | ({} if point else {"patch": self.patch}))
+        return repr_of_call("Coulomb", self.mu, **more | ({} if point else {"patch": self.patch}))
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Viscous(_Law):
     """Viscous friction, c N u, proportional to the slip u: a wet table, or the peg of a tippe top.
@@ -157,7 +157,7 @@ class Viscous(_Law):
 
     def __post_init__(self) -> None:
         c = _coefficient("c", self.c)
-        refuse("c", c, np.isinf, "expected a finite number")
+        refuse_bad_value("c", c, np.isinf, "expected a finite number")
         object.__setattr__(self, "c", c)
 
     @property
@@ -165,13 +165,13 @@ class Viscous(_Law):
         return self.c, 0.0, 0.0
 
     def __repr__(self) -> str:
-        return call("Viscous", self.c)
+        return repr_of_call("Viscous", self.c)
 
 
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
 #: Where a law works that a user wrote.
-OWN = "a law of your own works only in sc.roll and sc.sweep.roll"
+WHERE_OWN_LAWS_WORK = "a law of your own works only in sc.roll and sc.sweep.roll"
 #: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
 
@@ -181,11 +181,11 @@ def _coefficient(name: str, value: Reals) -> Reals:
     found = reals(name, value)
     if is_scalar(found):
         found = float(found) + 0.0  # turns -0.0 into 0.0
-    refuse(name, found, lambda x: ~(x >= 0), f"expected 0 <= {name}")
-    return kept(found)
+    refuse_bad_value(name, found, lambda x: ~(x >= 0), f"expected 0 <= {name}")
+    return read_only_copy(found)
 
 
-def code(contact: object, rubs: bool = False) -> int:
+def code_of(contact: object, rubs: bool = False) -> int:
     """Code of the contact "rolling" or "smooth"; with `rubs` the error also proposes laws of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
         last, instead = " or 'smooth'", ""
@@ -199,12 +199,14 @@ def code(contact: object, rubs: bool = False) -> int:
     return TABLES[contact]
 
 
-def rolls(contact: object) -> bool:
+def is_rolling(contact: object) -> bool:
     """Whether the contact is "rolling" and not "smooth"; ValueError for any other."""
-    return code(contact) == TABLES["rolling"]
+    return code_of(contact) == TABLES["rolling"]
 
 
-def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple[float, float, float]]:
+def table_for_core(
+    contact: AnyContact, mu: float, own: bool = False
+) -> tuple[int, tuple[float, float, float]]:
     """Code and coefficients of a contact for the core; ValueError if the coefficients are arrays.
 
     A law that the user wrote raises TypeError, unless `own`.
@@ -212,20 +214,20 @@ def table(contact: AnyContact, mu: float, own: bool = False) -> tuple[int, tuple
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
     if not own:
-        built_in(contact)
+        refuse_own_law(contact)
     if not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single coefficients, not arrays")
     first, second, patch = map(float, contact._numbers)
-    return law(contact), (first, second, patch)
+    return code_of_friction(contact), (first, second, patch)
 
 
-def built_in(contact: AnyContact) -> None:
+def refuse_own_law(contact: AnyContact) -> None:
     """Raise TypeError for a law that the user wrote."""
     if getattr(contact, "_function", None) is not None:
-        raise TypeError(f"contact = {contact!r}: {OWN}")
+        raise TypeError(f"contact = {contact!r}: {WHERE_OWN_LAWS_WORK}")
 
 
-def kind(contact: AnyContact) -> AnyContact:
+def without_coefficient(contact: AnyContact) -> AnyContact:
     """The same contact with coefficient 0, for many motions, whose coefficients are in columns.
 
     A law that the user wrote stays the same.
@@ -233,10 +235,10 @@ def kind(contact: AnyContact) -> AnyContact:
     return contact if isinstance(contact, str) or contact._function is not None else type(contact)(0.0)
 
 
-def fitting(contact: AnyContact, scale: Scale | None) -> None:
+def check_contact_scale(contact: AnyContact, scale: Scale | None) -> None:
     """Raise an error for a measured body if `c` or `patch` was not given in SI for the body's scale."""
     if not isinstance(contact, _Law):
-        code(contact, rubs=True)
+        code_of(contact, rubs=True)
     if scale is not None and isinstance(contact, Viscous) and not contact._sized:
         why = "expected SI for a measured body: use sc.Viscous.from_si(..., scale=body)"
         raise ValueError(f"contact = {contact!r}: {why}, or pass body.natural")
@@ -244,7 +246,7 @@ def fitting(contact: AnyContact, scale: Scale | None) -> None:
         why = 'expected SI for a measured body: use sc.Coulomb.from_si(mu, patch="0.3mm", scale=body)'
         raise ValueError(f"contact = {contact!r}: {why}, or pass body.natural")
     if isinstance(contact, Viscous) or has_patch(contact):
-        other(f"contact = {contact!r}", contact._sized, scale)  # type: ignore[union-attr]
+        refuse_other_scale(f"contact = {contact!r}", contact._sized, scale)  # type: ignore[union-attr]
 
 
 def has_patch(contact: object) -> bool:
@@ -255,11 +257,11 @@ def has_patch(contact: object) -> bool:
     return is_lazy(patch) or (patch != 0 if isinstance(patch, float) else bool(np.any(patch)))
 
 
-def law(contact: Friction) -> int:
+def code_of_friction(contact: Friction) -> int:
     """The code of a law of friction."""
     return TABLES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
 
 
-def named(contact: AnyContact) -> str:
+def contact_in_words(contact: AnyContact) -> str:
     """The word for a contact, or the repr of a law of friction with its numbers."""
     return contact if isinstance(contact, str) else repr(contact)

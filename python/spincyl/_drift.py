@@ -10,26 +10,26 @@ import numpy as np
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._contact import CODES
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
-    fitting,
+    common_shape,
     floats,
     in_columns,
+    instance_of,
     is_scalar,
-    made,
-    of_its_shape,
     one_of,
     radians,
     reals,
     si,
+    with_common_shape,
 )
 from spincyl._input.threads import thread_count
-from spincyl._loss import LAWS, made_law
-from spincyl._state import State, gripping
-from spincyl._upward import above
+from spincyl._loss import LAWS, checked_law
+from spincyl._state import State, numbers_without_slip
+from spincyl._upward import function_of_method
 from spincyl.loss import film_fills
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 _CENTRES = ("rest", "rolling")
 _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
-_NOBODY = "no drift"
+_NO_DRIFT = "no drift"
 
 
 _NO_COUPLE = "the law of dry contour friction is not valid below theta = eps, and this drift "
@@ -47,7 +47,7 @@ class DriftWarning(UserWarning):
     """A drift leaves the range in which its loss law is valid."""
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Drift:
     """Slow drift of one body or of many, which starts at the time 0; the result of `drift`.
@@ -144,7 +144,7 @@ class Drift:
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw inclination and precession against time; see `spincyl.plot.drift`."""
-        drawn: Axes = above("Drift.plot")(self, ax)
+        drawn: Axes = function_of_method("Drift.plot")(self, ax)
         return drawn
 
     def __repr__(self) -> str:
@@ -165,7 +165,7 @@ class Drift:
             )
         x = reals(name, x)
         single = is_scalar(x) and self._shape == ()
-        wide = fitting({name: x, "drift": np.broadcast_to(0.0, self._shape)})
+        wide = common_shape({name: x, "drift": np.broadcast_to(0.0, self._shape)})
         which = np.arange(int(np.prod(self._shape)), dtype=np.uint64).reshape(self._shape)
         of = np.ascontiguousarray(np.broadcast_to(which, wide)).reshape(-1)
         asked = np.ascontiguousarray(np.broadcast_to(floats(x), wide)).reshape(-1)
@@ -255,9 +255,9 @@ def drift(
     >>> sc.drift(coin, 0.3, sc.loss.ViscousContour(1e-3), centre="rolling").stops_at > whirr.stops_at
     True
     """
-    made("body", body, Body)
+    instance_of("body", body, Body)
     one_of("centre", centre, _CENTRES)
-    laws = made_law(losses, body)._coefficients
+    laws = checked_law(losses, body)._coefficients
     given = isinstance(theta, State)
     state = theta if isinstance(theta, State) else None
     if state is None:
@@ -268,22 +268,28 @@ def drift(
         else:
             nothing = np.nan
             state = State(inclination, nothing, nothing, nothing)
-    four = gripping(state, _ROLLS)
+    four = numbers_without_slip(state, _ROLLS)
     values = [*body._numbers, *four, *laws]
-    shape = fitting({"body": of_its_shape(body), "theta": of_its_shape(state), "losses": of_its_shape(*laws)})
+    shape = common_shape(
+        {
+            "body": with_common_shape(body),
+            "theta": with_common_shape(state),
+            "losses": with_common_shape(*laws),
+        }
+    )
     columns = dict(zip(_COLUMNS, in_columns(values, shape), strict=True))
     if shape == ():
         numbers = [float(x[0]) for x in columns.values()]
         _core.drift_check(numbers[:6], numbers[6:10], numbers[10:], centre)
     if given and centre == "rest":
-        columns = _resting(body, state, columns, shape)
+        columns = _nan_unless_at_rest(body, state, columns, shape)
     count = int(np.prod(shape))
     stops, ends, codes = np.empty(count), np.empty(count), np.empty(count, np.uint8)
     out: dict[str, Any] = {"stops_at": stops, "ends_at_theta": ends, "ended": codes}
     _core.drift_stops(columns, centre, out, thread_count(threads))
     if body.scale is not None:
         stops = body.scale.seconds(stops)
-    names = np.array([*CODES["Drift"], _NOBODY])
+    names = np.array([*CODES["Drift"], _NO_DRIFT])
     known = names[np.minimum(codes, len(names) - 1)].reshape(shape)
     if not given and centre == "rest" and shape != ():
         state = body.steady(inclination)
@@ -311,7 +317,7 @@ _COLUMNS: tuple[str, ...] = (
 )
 
 
-def _resting(
+def _nan_unless_at_rest(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
     """`columns` with theta = NaN, so no drift, where the state's centre does not rest to six digits."""

@@ -9,23 +9,23 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from spincyl import _core
-from spincyl._contact import AnyContact, Coulomb, Viscous, code
-from spincyl._ellipsoid_rows import SIX, blockwise, checked, made_by, parts, six_of_tensor
-from spincyl._ellipsoid_state import EllipsoidState, Rocking, doubles, vectors
-from spincyl._input.equality import compared
+from spincyl._contact import AnyContact, Coulomb, Viscous, code_of
+from spincyl._ellipsoid_rows import SIX, by_blocks, checked_rows, row_parts, rows_by, six_of_tensor
+from spincyl._ellipsoid_state import EllipsoidState, Rocking, as_doubles, as_vectors
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import (
     Floats,
     Reals,
     Result,
+    common_shape,
     components,
-    fitting,
-    kept,
-    lengths,
-    made,
+    instance_of,
+    lengths_in_metres,
+    numbered,
     radians,
+    read_only_copy,
     reals,
-    refuse,
-    several,
+    refuse_bad_value,
     turns_per_second,
     warn,
 )
@@ -36,7 +36,7 @@ from spincyl._slip import slip_of_stone
 from spincyl._weights import weighted
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Ellipsoid(Sized):
     """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
@@ -106,33 +106,33 @@ class Ellipsoid(Sized):
 
     def __post_init__(self) -> None:
         self._check_scale()
-        axes = vectors("axes", self.axes, 3)
-        inertia = doubles(reals("inertia", self.inertia))
+        axes = as_vectors("axes", self.axes, 3)
+        inertia = as_doubles(reals("inertia", self.inertia))
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
-            inertia = vectors("inertia", inertia, 3)[..., None] * np.eye(3)
-        offset = vectors("offset", self.offset, 3)
-        theta_end = doubles(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
+            inertia = as_vectors("inertia", inertia, 3)[..., None] * np.eye(3)
+        offset = as_vectors("offset", self.offset, 3)
+        theta_end = as_doubles(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
         lead = {"axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
-        fitting(lead | {"theta_end": theta_end})
-        rows = blockwise(checked, "(i),(j,k),(l),()->(m)", 18, axes, inertia, offset, theta_end)
-        *fields, unit, reach = parts(rows)
+        common_shape(lead | {"theta_end": theta_end})
+        rows = by_blocks(checked_rows, "(i),(j,k),(l),()->(m)", 18, axes, inertia, offset, theta_end)
+        *fields, unit, reach = row_parts(rows)
         if not self._doubted and not is_lazy(reach) and np.any(reach > 1 + 1e-9):
             object.__setattr__(self, "_doubted", True)
             most = f"{float(np.nanmax(reach)):.3g} times the largest inertia of a mass inside the ellipsoid"
             warn(f"inertia: {most}; expected inertia per mass, in the unit of the semi-axes squared")
         for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
-            object.__setattr__(self, name, kept(value))
+            object.__setattr__(self, name, read_only_copy(value))
         object.__setattr__(self, "_unit", self._unit * unit)
 
     @classmethod
     def _of(cls, make: Callable[..., Any], **given: Any) -> Self:
         """Make a stone, or a family, with a constructor of the core from single numbers or arrays."""
         there = {name: (x, wide) for name, (x, wide) in given.items() if x is not None}
-        fitting({name: x[..., 0] if wide else x for name, (x, wide) in there.items()})
-        each = partial(made_by, make=make, names=tuple(given), wide={name: x[1] for name, x in there.items()})
+        common_shape({name: x[..., 0] if wide else x for name, (x, wide) in there.items()})
+        each = partial(rows_by, make=make, names=tuple(given), wide={name: x[1] for name, x in there.items()})
         inputs = ",".join(f"({name})" if wide else "()" for name, (_, wide) in there.items())
-        rows = blockwise(each, f"{inputs}->(number)", 17, *(x for x, _ in there.values()))
-        *numbers, unit = parts(rows)
+        rows = by_blocks(each, f"{inputs}->(number)", 17, *(x for x, _ in there.values()))
+        *numbers, unit = row_parts(rows)
         return cls(*numbers, _unit=unit)
 
     @classmethod
@@ -142,8 +142,8 @@ class Ellipsoid(Sized):
         A `mass` in kilograms, or lengths such as "8cm", make a measured stone. Raises the same errors as
         `Ellipsoid`.
         """
-        axes, told = lengths("axes", axes)
-        return cls._of(_core.uniform_stone, axes=(vectors("axes", axes, 3), True))._measured(told, mass)
+        axes, told = lengths_in_metres("axes", axes)
+        return cls._of(_core.uniform_stone, axes=(as_vectors("axes", axes, 3), True))._measured(told, mass)
 
     @classmethod
     def rattleback(
@@ -188,16 +188,16 @@ class Ellipsoid(Sized):
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
         15.4 per second
         """
-        axes, told = lengths("axes", axes)
+        axes, told = lengths_in_metres("axes", axes)
         wide = [
-            None if x is None else vectors(name, x, 3)
+            None if x is None else as_vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
         ]
         if wide[0] is not None:
-            refuse("moments", wide[0], lambda x: ~np.isfinite(x), "expected finite numbers")
+            refuse_bad_value("moments", wide[0], lambda x: ~np.isfinite(x), "expected finite numbers")
         found = cls._of(
             _core.rattleback,
-            axes=(vectors("axes", axes, 3), True),
+            axes=(as_vectors("axes", axes, 3), True),
             moments=(wide[0], wide[0] is not None),
             twist=(_tilt("twist", twist), False),
             offset=(wide[1], wide[1] is not None),
@@ -215,8 +215,8 @@ class Ellipsoid(Sized):
         Raises the same errors as `Ellipsoid`.
         """
         given = {"radius": radius, "half_length": half_length, "offset": offset}
-        given, told = lengths("", given)
-        found = cls._of(_core.egg, **{name: (doubles(reals(name, x)), False) for name, x in given.items()})
+        given, told = lengths_in_metres("", given)
+        found = cls._of(_core.egg, **{name: (as_doubles(reals(name, x)), False) for name, x in given.items()})
         return found._measured(told, mass)
 
     def with_weights(self, weights: Iterable[Any]) -> Self:
@@ -269,9 +269,9 @@ class Ellipsoid(Sized):
         """
         spin = self._spin(spin, hertz)
         pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
-        fitting({"spin": spin, "pitch": pitch, "roll": roll})
+        common_shape({"spin": spin, "pitch": pitch, "roll": roll})
         with np.errstate(invalid="ignore"):  # angles and spins that are not finite give NaN without a warning
-            n = _core.stone_tilted(*several(3, pitch, roll))
+            n = _core.stone_tilted(*numbered(3, pitch, roll))
             return EllipsoidState(n, n * spin[..., None])
 
     def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
@@ -296,11 +296,11 @@ class Ellipsoid(Sized):
         >>> state.slip.round(3).tolist()
         [0.0, -0.276]
         """
-        made("state", state, EllipsoidState)
-        x, y = (doubles(reals(name, value)) for name, value in (("x", x), ("y", y)))
+        instance_of("state", state, EllipsoidState)
+        x, y = (as_doubles(reals(name, value)) for name, value in (("x", x), ("y", y)))
         n, w = state.vertical, state.w
         states = np.broadcast_to(0.0, np.broadcast_shapes(n.shape[:-1], w.shape[:-1]))
-        fitting({"body": np.broadcast_to(0.0, self.shape), "state": states, "x": x, "y": y})
+        common_shape({"body": np.broadcast_to(0.0, self.shape), "state": states, "x": x, "y": y})
         with np.errstate(all="ignore"):
             slip = slip_of_stone(self, n, w, x, y)
         return replace(state, slip=slip)
@@ -308,7 +308,7 @@ class Ellipsoid(Sized):
     def hertz(self, state: EllipsoidState) -> Result:
         """Turns per second about the vertical, one number for each state; needs a measured stone."""
         scale = self._sized("hertz")
-        return scale.turns(made("state", state, EllipsoidState).spin)
+        return scale.turns(instance_of("state", state, EllipsoidState).spin)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """Rocking modes of the stone as it spins upright with its contact point at rest.
@@ -374,10 +374,10 @@ class Ellipsoid(Sized):
         if (spin is None) == (hertz is None):
             raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
         if hertz is None:
-            return doubles(reals("spin", spin))
+            return as_doubles(reals("spin", spin))
         if self.scale is None:
             raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")
-        return doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
+        return as_doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
 
     def spin_limits(self) -> Floats:
         """Spins, in sqrt(g/a), at which a single stone that spins upright becomes stable or unstable."""
@@ -385,8 +385,8 @@ class Ellipsoid(Sized):
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
         """Kinetic plus potential energy of a single stone in each state, in M g a, above the table."""
-        made("state", state, EllipsoidState)
-        smooth = not isinstance(contact, Coulomb | Viscous) and code(contact) == code("smooth")
+        instance_of("state", state, EllipsoidState)
+        smooth = not isinstance(contact, Coulomb | Viscous) and code_of(contact) == code_of("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
         shape = np.broadcast_shapes(n.shape[:-1], w.shape[:-1], u.shape[:-1])
         rows = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in (n, w, u)], axis=-1)
@@ -431,7 +431,7 @@ class Ellipsoid(Sized):
         """Apply a function of the core to each stone of a family; NaN, or the error of a single stone."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
-        fitting({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})
+        common_shape({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})
         columns = np.broadcast_arrays(*map(np.asarray, self._columns()), *map(np.asarray, given))
         shape = columns[0].shape
         found = np.full((*shape, width), np.nan)
@@ -447,4 +447,4 @@ class Ellipsoid(Sized):
 
 def _tilt(name: str, value: Reals) -> Reals:
     """An angle in radians; warns above pi/2, where degrees were probably meant."""
-    return doubles(radians(name, value, likely=math.pi / 2))
+    return as_doubles(radians(name, value, likely=math.pi / 2))

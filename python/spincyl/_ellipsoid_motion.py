@@ -5,15 +5,15 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, crossing
+from spincyl._asked import Asked, options_for_core
 from spincyl._contact import AnyContact
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
-from spincyl._input.numbers import Floats, components, made
+from spincyl._input.numbers import Floats, components, instance_of
 from spincyl._motion import ENDINGS, Motion, fixed_step
 from spincyl._outputs import FRICTION, Number
-from spincyl._phases import rubs
+from spincyl._phases import has_friction
 
 
 class EllipsoidMotion(Motion):
@@ -116,27 +116,27 @@ class EllipsoidMotion(Motion):
         raise AttributeError(f"{name}: only for bodies of revolution; for a stone use orientation")
 
 
-def unstruck(restitution: object) -> None:
+def refuse_impacts(restitution: object) -> None:
     """Raise ValueError for impacts of a stone."""
     if restitution is not None:
         raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
 
 
-def start_of(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
+def start_of_stone(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
     """The state from which a stone starts, without a slip where no law of friction acts.
 
     An error names an argument that only bodies of revolution have.
     """
-    made("state", state, EllipsoidState)
-    if not rubs(contact) and state._slips:
+    instance_of("state", state, EllipsoidState)
+    if not has_friction(contact) and state._slips:
         why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
         raise ValueError(f"state: the stone slips, slip = {state.slip!r}; {why}")
     if step is not None or method is not None:
         raise ValueError(
             "step, method: only for bodies of revolution; for a stone leave them out, or give tol="
         )
-    unstruck(restitution)
-    return state if rubs(contact) else EllipsoidState(state.vertical, state.w)
+    refuse_impacts(restitution)
+    return state if has_friction(contact) else EllipsoidState(state.vertical, state.w)
 
 
 def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
@@ -145,7 +145,7 @@ def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> Ellips
     if not n.ndim == w.ndim == slip.ndim == 1:
         raise ValueError("state: expected a single state; use spincyl.sweep.roll for a family")
     start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
-    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, crossing(asked, own))
+    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, options_for_core(asked, own))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.numbers import Floats, Reals, extra
+from spincyl._input.numbers import Floats, Reals, optional_library
 from spincyl._input.reprs import is_lazy
 
 SIX = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
@@ -18,20 +18,20 @@ def six_of_tensor(inertia: Floats) -> list[float]:
     return [float(inertia[i, j]) for i, j in SIX]
 
 
-def whole(numbers: Floats) -> Floats:
+def with_whole_tensor(numbers: Floats) -> Floats:
     """Rows with all nine components of a symmetric tensor in place of its six, the numbers 3 to 8."""
     return numbers[
         ..., [0, 1, 2, *(3 + i for i in (0, 5, 4, 5, 1, 3, 4, 3, 2)), *range(9, numbers.shape[-1])]
     ]
 
 
-def parts(rows: Reals) -> tuple[Reals, ...]:
-    """Axes, tensor, offset and theta_end of rows from `whole`, then each further number."""
+def row_parts(rows: Reals) -> tuple[Reals, ...]:
+    """Axes, tensor, offset and theta_end of rows from `with_whole_tensor`, then each further number."""
     tensor = rows[..., 3:12].reshape(*rows.shape[:-1], 3, 3)
     return rows[..., :3], tensor, rows[..., 12:15], *(rows[..., i][()] for i in range(15, rows.shape[-1]))
 
 
-def blockwise(law: Callable[..., Floats], signature: str, size: int, *arrays: Reals) -> Reals:
+def by_blocks(law: Callable[..., Floats], signature: str, size: int, *arrays: Reals) -> Reals:
     """Apply `law`, whose last axis has length `size`, to arrays: by blocks, lazily, if one of them is lazy.
 
     `signature` is that of a generalised ufunc of NumPy.
@@ -39,23 +39,23 @@ def blockwise(law: Callable[..., Floats], signature: str, size: int, *arrays: Re
     if not any(map(is_lazy, arrays)):
         return law(*arrays)
     last = signature.removesuffix(")").rpartition("(")[2]
-    return extra("dask.array", "sweep").apply_gufunc(
+    return optional_library("dask.array", "sweep").apply_gufunc(
         law, signature, *arrays, output_dtypes=np.float64, output_sizes={last: size}, allow_rechunk=True
     )
 
 
-def checked(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
+def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
     """Rows of checked stones, with largest semi-axis and reach of each (`Ellipsoid::reach`); (..., 18)."""
     each = axes, inertia.reshape(*inertia.shape[:-2], 9), offset, theta_end[..., None]
     shape = np.broadcast_shapes(*(x.shape[:-1] for x in each))
     given = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in each], axis=-1)
     if shape == ():
         one, size, out = _core.check_stone(given.tolist())
-        return whole(np.array([*one, size, out]))
-    return whole(_core.check_stones(given.reshape(math.prod(shape), 16)).reshape(*shape, 15))
+        return with_whole_tensor(np.array([*one, size, out]))
+    return with_whole_tensor(_core.check_stones(given.reshape(math.prod(shape), 16)).reshape(*shape, 15))
 
 
-def made_by(
+def rows_by(
     *arrays: Floats, make: Callable[..., Any], names: tuple[str, ...], wide: dict[str, bool]
 ) -> Floats:
     """Rows of stones from a constructor of the core, with the largest semi-axis of each; (..., 17).
@@ -76,4 +76,4 @@ def made_by(
                 raise
         else:
             found[i] = *numbers, unit
-    return whole(found)
+    return with_whole_tensor(found)

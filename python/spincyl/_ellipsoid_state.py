@@ -7,13 +7,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, Result, components, floats, reals, several, vector_in
-from spincyl._input.reprs import call, is_lazy
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    Result,
+    components,
+    floats,
+    numbered,
+    reals,
+    vector_in,
+)
+from spincyl._input.reprs import is_lazy, repr_of_call
 from spincyl._scale import scale_of
 
 
-def doubles(value: Reals) -> Reals:
+def as_doubles(value: Reals) -> Reals:
     """Real numbers as an array of doubles without named axes; a lazy array stays lazy."""
     if not is_lazy(value):
         return floats(value)
@@ -21,9 +30,9 @@ def doubles(value: Reals) -> Reals:
     return lazy.astype(np.float64)
 
 
-def vectors(name: str, value: Reals, *last: int) -> Reals:
+def as_vectors(name: str, value: Reals, *last: int) -> Reals:
     """A read-only array whose last axes have the lengths `last`; errors name the argument."""
-    array = doubles(reals(name, value))
+    array = as_doubles(reals(name, value))
     array = array if is_lazy(array) else np.array(array)
     if array.shape[array.ndim - len(last) :] != last or array.ndim < len(last):
         raise ValueError(
@@ -52,7 +61,7 @@ class Rocking(NamedTuple):
     eigenvalues: NDArray[np.complex128]
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class EllipsoidState:
     """State of a stone, in natural units: vertical and angular velocity along the axes of the ellipsoid.
@@ -114,7 +123,7 @@ class EllipsoidState:
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):
             if name != "slip" or self.slip is not None:
-                object.__setattr__(self, name, vectors(name, getattr(self, name), width))
+                object.__setattr__(self, name, as_vectors(name, getattr(self, name), width))
         shapes = [np.shape(x)[:-1] for x in (self.vertical, self.w, self._pair)]
         try:
             np.broadcast_shapes(*shapes)
@@ -135,12 +144,12 @@ class EllipsoidState:
     @property
     def inclinations(self) -> Floats:
         """Angles from the vertical to the three axes of the ellipsoid, (..., 3), in radians."""
-        found: Floats = _core.stone_inclinations(*several(3, *components(self.vertical)))
+        found: Floats = _core.stone_inclinations(*numbered(3, *components(self.vertical)))
         return found
 
     def __repr__(self) -> str:
         more = {} if self.slip is None else {"slip": self.slip}
-        return call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
+        return repr_of_call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
 
     @property
     def _pair(self) -> Reals:

@@ -89,7 +89,7 @@ MESSAGES = {
 
 
 #: An estimated error beyond this is warned of.
-DOUBTFUL = 0.1
+LARGE_ERROR = 0.1
 
 
 class ErrorWarning(UserWarning):

@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from spincyl._contact import named
-from spincyl._input.numbers import extra
+from spincyl._contact import contact_in_words
+from spincyl._input.numbers import optional_library
 from spincyl._phases import KINDS, phases_in_words
-from spincyl._scale import unit
+from spincyl._scale import unit_of_output
 
 if TYPE_CHECKING:
     import pandas
@@ -31,7 +31,7 @@ def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
     """The values and units of all outputs of a motion but its times."""
     found: dict[str, tuple[Any, str]] = {}
     for name in ("theta", "w", "energy", *m._extra):
-        factor, said = unit(name, m.scale)
+        factor, said = unit_of_output(name, m.scale)
         values = getattr(m.natural, name)
         found[name] = values if factor is None else values * factor, said
     return found
@@ -49,21 +49,23 @@ def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
 
 def frame(m: "Motion") -> "pandas.DataFrame":
     """A table of all outputs of a motion by time, with units."""
-    lib: Any = extra("pandas", "sweep")
+    lib: Any = optional_library("pandas", "sweep")
     told_ = columns(m)
     found: pandas.DataFrame = lib.DataFrame(
         {name: x for name, (x, _) in told_.items()}, index=lib.Index(m.t, name="t")
     )
-    found.attrs["units"] = {"t": unit("t", m.scale)[1]} | {name: said for name, (_, said) in told_.items()}
+    found.attrs["units"] = {"t": unit_of_output("t", m.scale)[1]} | {
+        name: said for name, (_, said) in told_.items()
+    }
     return found
 
 
 def labelled(m: "Motion") -> "xarray.Dataset":
     """A dataset of all outputs of a motion, with units."""
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     data: dict[str, Any] = {}
     axes = m._axes
-    coords: dict[str, Any] = {"t": ("t", m.t, {"units": unit("t", m.scale)[1]})}
+    coords: dict[str, Any] = {"t": ("t", m.t, {"units": unit_of_output("t", m.scale)[1]})}
     for name, (values, said) in wanted(m).items():
         dims = ("t", axes[name][0]) if name in axes else ("t",)
         data[name] = dims, values, {"units": said}
@@ -72,7 +74,7 @@ def labelled(m: "Motion") -> "xarray.Dataset":
     attrs: dict[str, Any] = {
         "status": m.status.name.lower(),
         "message": m.message,
-        "contact": named(m.contact),
+        "contact": contact_in_words(m.contact),
         "method": m.method,
         "error": m.error,
     }

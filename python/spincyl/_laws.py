@@ -8,11 +8,19 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, rolls
-from spincyl._input.numbers import Reals, Result, elementwise, keywords, radians, reals, several
+from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, is_rolling
+from spincyl._input.numbers import (
+    Reals,
+    Result,
+    elementwise,
+    keywords,
+    numbered,
+    radians,
+    reals,
+)
 from spincyl._input.reprs import is_lazy
 from spincyl._slip import slip_of, velocity_of
-from spincyl._state import State, gripping, numbers
+from spincyl._state import State, numbers, numbers_without_slip
 
 _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
 
@@ -47,7 +55,7 @@ class Region(IntEnum):
     STABLE = 7
 
 
-def _say_why(body: "Laws", state: State, kappa: Result) -> None:
+def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     """Warn of states that are not steady because the body stands on more than one point; skip lazy arrays."""
     theta = state.theta
     if any(is_lazy(x) or hasattr(x, "dims") for x in (kappa, theta, *body._numbers)):
@@ -135,10 +143,10 @@ class Laws:
             ``cond = cos/|n| + (a cos + ell sin)/|m|``, a = 1 - fillet, and n and m as for `rate`. For a
             `State` with theta above 1e-100 it is at most 64 * 2^-53 of the largest term.
         """
-        rolling = rolls(contact)
+        rolling = is_rolling(contact)
         if isinstance(at, State):
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*gripping(at, _ROLLS), *self._numbers, **keywords(law, ufunc, "stability"))
+            return law(*numbers_without_slip(at, _ROLLS), *self._numbers, **keywords(law, ufunc, "stability"))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
         return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc, "stability"))
 
@@ -157,7 +165,7 @@ class Laws:
         """
         kappa = self.stability(at, contact)
         if isinstance(at, State):
-            _say_why(self, at, kappa)
+            _warn_if_not_steady(self, at, kappa)
         return kappa > 0
 
     @elementwise
@@ -176,7 +184,7 @@ class Laws:
         The result is 0 for a ball that is stable at rest, and NaN for other bodies. Its relative error is at
         most 4 * 2^-53.
         """
-        law = _core.standing_rolling if rolls(contact) else _core.standing_smooth
+        law = _core.standing_rolling if is_rolling(contact) else _core.standing_smooth
         return law(*self._numbers)
 
     @elementwise
@@ -192,8 +200,8 @@ class Laws:
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""
-        law = _core.boundary_rolling if rolls(contact) else _core.boundary_smooth
-        return law(*several(self._most, *self._numbers))
+        law = _core.boundary_rolling if is_rolling(contact) else _core.boundary_smooth
+        return law(*numbered(self._most, *self._numbers))
 
     def folds(self) -> Result:
         """Inclinations at which the steady rate is an extremum, so that two states of equal rate merge.
@@ -202,11 +210,11 @@ class Laws:
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
         16 * 2^-53 times the condition number. The same holds for `ridge` and `boundaries`.
         """
-        return _core.fold(*several(self._most, *self._numbers))
+        return _core.fold(*numbered(self._most, *self._numbers))
 
     def ridge(self) -> Result:
         """Inclinations at which the energy of the steady state is an extremum; details as for `folds`."""
-        return _core.ridge(*several(self._most, *self._numbers))
+        return _core.ridge(*numbered(self._most, *self._numbers))
 
     # Quantities of a state.
 
@@ -217,9 +225,9 @@ class Laws:
         The velocity of the centre follows from rolling and the slip of the state. With `contact="smooth"` the
         centre moves only up and down; a state with a slip then raises ValueError.
         """
-        if not isinstance(contact, Coulomb | Viscous) and not rolls(contact):
+        if not isinstance(contact, Coulomb | Viscous) and not is_rolling(contact):
             why = "on a smooth table the centre moves only up and down; contact=sc.Coulomb(0.0) lets it slide"
-            return _core.energy_smooth(*gripping(state, why), *self._numbers)
+            return _core.energy_smooth(*numbers_without_slip(state, why), *self._numbers)
         four = numbers(state)
         if state.slip is None:
             energy = _core.energy(*four, *self._numbers)
@@ -267,8 +275,8 @@ class Laws:
     @elementwise
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
         """Angular acceleration theta'' of a state, in g/R; 0 if the state is steady."""
-        law = _core.acceleration if rolls(contact) else _core.acceleration_smooth
-        return law(*gripping(state, _ROLLS), *self._numbers)
+        law = _core.acceleration if is_rolling(contact) else _core.acceleration_smooth
+        return law(*numbers_without_slip(state, _ROLLS), *self._numbers)
 
     @elementwise
     def angular_momentum(self, state: State) -> Result:
@@ -287,7 +295,7 @@ class Laws:
         O is the mirror image of the contact point in the centre of mass; for a tube with sharp rims, the
         uppermost point of the upper rim. Its speed is 0 if the centre is at rest.
         """
-        return _core.speed_o(*gripping(state, _ROLLS), *self._numbers)
+        return _core.speed_o(*numbers_without_slip(state, _ROLLS), *self._numbers)
 
     @elementwise
     def speed_x(self, state: State) -> Result:
@@ -296,9 +304,9 @@ class Laws:
         X is the highest point of the circle of the body along which it touches the table. With a sharp rim
         and the centre at rest its speed is 2 ell w1.
         """
-        return _core.speed_x(*gripping(state, _ROLLS), *self._numbers)
+        return _core.speed_x(*numbers_without_slip(state, _ROLLS), *self._numbers)
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
         """Radius of the circle on which the centre moves, in R; 0 at rest, infinite for a straight line."""
-        return _core.centre_radius(*gripping(state, _ROLLS), *self._numbers)
+        return _core.centre_radius(*numbers_without_slip(state, _ROLLS), *self._numbers)

@@ -9,21 +9,21 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._input.equality import key
+from spincyl._input.equality import equality_key
 from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
+    instance_of,
     is_scalar,
-    kept,
-    made,
+    numbered,
+    read_only_copy,
     reals,
-    refuse,
-    several,
+    refuse_bad_value,
     si,
 )
-from spincyl._input.reprs import call
-from spincyl._scale import Scale, other, scale_of
+from spincyl._input.reprs import repr_of_call
+from spincyl._scale import Scale, refuse_other_scale, scale_of
 from spincyl._state import State, numbers
 
 
@@ -107,19 +107,19 @@ class Loss:
         3 (xarray: dimension "axis"). If a rotation has stopped, dry friction sets only the largest couple
         that can hold it; the couple returned is then 0.
         """
-        return _core.loss_couple(*several(3, *self._given(body, state, normal), name="axis"))
+        return _core.loss_couple(*numbered(3, *self._given(body, state, normal), name="axis"))
 
     def _given(self, body: Body, state: State, normal: Reals) -> tuple[Reals, ...]:
-        made("body", body, Body)
+        instance_of("body", body, Body)
         return *self._coefficients, reals("normal", normal), *numbers(state), *body._numbers
 
     def __add__(self, other: "Loss") -> "Loss":
         if not isinstance(other, Loss) or other._function is not None:
             return NotImplemented  # `custom.Couple` adds itself
-        return _added((*self.laws, *other.laws))
+        return _sum_of((*self.laws, *other.laws))
 
     def __str__(self) -> str:
-        return titled(self) if is_scalar(*self._coefficients) else repr(self)
+        return losses_in_words(self) if is_scalar(*self._coefficients) else repr(self)
 
     def __radd__(self, other: int) -> "Loss":
         return self if type(other) is int and other == 0 else NotImplemented  # sum() starts with 0
@@ -127,10 +127,10 @@ class Loss:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Loss) or other._function is not None:  # `custom.Couple` compares functions
             return NotImplemented
-        return key(self._coefficients) == key(other._coefficients)
+        return equality_key(self._coefficients) == equality_key(other._coefficients)
 
     def __hash__(self) -> int:
-        return hash(key(self._coefficients))
+        return hash(equality_key(self._coefficients))
 
 
 class Law(Loss):
@@ -155,9 +155,9 @@ class Law(Loss):
             raise TypeError(
                 f"{name}: expected real numbers, not {value!r}; for a number with a unit use {unit}"
             )
-        found = positive(name, value)
-        refuse(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
-        object.__setattr__(self, name, kept(found))
+        found = positive_coefficient(name, value)
+        refuse_bad_value(name, found, lambda x: x > _MOST, f"expected at most {_MOST:g}")
+        object.__setattr__(self, name, read_only_copy(found))
 
     @property
     def _parameter(self) -> str:
@@ -201,7 +201,7 @@ class Law(Loss):
         return (self,)
 
     def __repr__(self) -> str:
-        return call(type(self).__name__, self.coefficient)
+        return repr_of_call(type(self).__name__, self.coefficient)
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -241,10 +241,10 @@ class Sum(Loss):
                 # two laws of one kind have one coefficient, the sum
                 if before is not None:
                     if isinstance(before._sized, Scale):
-                        other(f"laws: {law!r}", law._sized, before._sized)
+                        refuse_other_scale(f"laws: {law!r}", law._sized, before._sized)
                     both = before._sized and law._sized
                     law = kind(before.coefficient + law.coefficient)
-                    law = sized(law, before._sized) if both else law
+                    law = marked_as_si(law, before._sized) if both else law
                 found[kind] = law
         if not found:
             raise ValueError("laws: expected at least one loss, such as sc.loss.DryContour(1e-3)")
@@ -259,13 +259,13 @@ class Sum(Loss):
         return " + ".join(map(repr, self.laws))
 
 
-def _added(laws: tuple[Law, ...]) -> Loss:
+def _sum_of(laws: tuple[Law, ...]) -> Loss:
     """A sum of laws, or the law itself if there is only one kind."""
     found = Sum(laws)
     return found if len(found.laws) > 1 else found.laws[0]
 
 
-def titled(losses: Loss, scale: Scale | None = None) -> str:
+def losses_in_words(losses: Loss, scale: Scale | None = None) -> str:
     """Laws with their coefficients to four digits; with a scale, in the units that `from_si` reads."""
     if losses._function is not None:
         return repr(losses)
@@ -273,42 +273,42 @@ def titled(losses: Loss, scale: Scale | None = None) -> str:
     return " + ".join(f"{type(law).__name__}({float(law.coefficient) * k:.4g}{of})" for law, k, of in scaled)
 
 
-def positive(name: str, value: Reals, unit: str = "") -> Reals:
+def positive_coefficient(name: str, value: Reals, unit: str = "") -> Reals:
     """Return a positive finite coefficient, converted to `unit` of SI; an error names the coefficient."""
     found = reals(name, si(name, value, unit))
     if is_scalar(found):
         found = float(found)
-    refuse(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
+    refuse_bad_value(name, found, lambda x: ~((x > 0) & np.isfinite(x)), _EXPECTED)
     return found
 
 
-def typed(kind: type[Law]) -> str:
+def command_line_name(kind: type[Law]) -> str:
     """The name of a law on the command line and in the address of a page: "dry-contour" for DryContour."""
     return re.sub(r"\B(?=[A-Z])", "-", kind.__name__).lower()
 
 
-def over(value: Reals, unit: float) -> Reals:
+def divided_by_unit(value: Reals, unit: float) -> Reals:
     """A coefficient in natural units. Overflow gives inf without a warning: the law refuses it."""
     with np.errstate(over="ignore"):
         return value / unit
 
 
-def arm(name: str, value: Reals, scale: "Scale | Body") -> Reals:
+def arm_in_radii(name: str, value: Reals, scale: "Scale | Body") -> Reals:
     """Convert an arm from metres to R; warn if it exceeds R/2, since millimetres were probably meant."""
-    found = over(positive(name, value, "metre"), units(scale)[0])
+    found = divided_by_unit(positive_coefficient(name, value, "metre"), natural_units_in_si(scale)[0])
     if np.any(np.asarray(found) > 0.5):
         told = f"{name}: more than half the radius of the body; give metres, or a text such as '0.1mm'"
         warnings.warn(told, UserWarning, stacklevel=3)
     return found
 
 
-def sized(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
+def marked_as_si(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
     """Mark the law as given in SI for this scale; a measured body accepts no other scale."""
     object.__setattr__(law, "_sized", of if isinstance(of, bool) else scale_of(of))
     return law
 
 
-def made_law(losses: object, body: Body | None = None) -> Loss:
+def checked_law(losses: object, body: Body | None = None) -> Loss:
     """Return a loss law, or raise TypeError; ValueError if the body is measured and the law is not in SI."""
     if not isinstance(losses, Loss):
         like = "such as sc.loss.DryContour(1e-3), or a sum of them"
@@ -320,11 +320,11 @@ def made_law(losses: object, body: Body | None = None) -> Loss:
         why = f"expected a coefficient in SI for a measured body: use {made}, or pass body.natural"
         raise ValueError(f"losses = {losses!r}: {why}")
     for law in laws:
-        other(f"losses = {law!r}", law._sized, None if body is None else body.scale)
+        refuse_other_scale(f"losses = {law!r}", law._sized, None if body is None else body.scale)
     return losses
 
 
-def units(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
+def natural_units_in_si(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
     """Metres, seconds and joules of the natural units; with `weighed`, an error if the mass is unknown."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and isinstance(scale, Scale):

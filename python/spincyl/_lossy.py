@@ -8,7 +8,7 @@ from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb
 from spincyl._input.numbers import Floats, is_scalar, warn
 from spincyl._input.reprs import is_lazy
-from spincyl._loss import Loss, made_law
+from spincyl._loss import Loss, checked_law
 
 _WHY = {
     "step": "give tol=, the tolerance of the steps of eighth order",
@@ -18,7 +18,7 @@ _WHY = {
 
 def check_losses(losses: object, times: Floats, t0: float, settings: dict[str, Any]) -> None:
     """Raise ValueError for arguments that exclude losses; `settings` are the settings given, by name."""
-    laws = made_law(losses)._built_in
+    laws = checked_law(losses)._built_in
     if laws is not None and not is_scalar(*laws._coefficients):
         raise ValueError(
             f"losses = {losses!r}: expected single coefficients, not arrays; sc.drift accepts arrays"
@@ -34,9 +34,9 @@ def check_losses(losses: object, times: Floats, t0: float, settings: dict[str, A
         )
 
 
-def of_stone(losses: object, body: Any) -> Loss:
+def losses_of_stone(losses: object, body: Any) -> Loss:
     """Return a loss law that acts on stones, or an error that names the law."""
-    found = made_law(losses, body)
+    found = checked_law(losses, body)
     if found._function is not None:
         why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution"
         raise TypeError(f"losses = {losses!r}: {why}, and a stone has no axis")
@@ -47,7 +47,7 @@ def of_stone(losses: object, body: Any) -> Loss:
     return found
 
 
-def narrow(losses: Loss, contact: AnyContact) -> None:
+def warn_of_long_arm(losses: Loss, contact: AnyContact) -> None:
     """Warn if the arm of rolling resistance ends outside the patch of contact, where no pressure acts."""
     laws = losses._built_in
     if not isinstance(contact, Coulomb) or laws is None:

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.hints import helpful
-from spincyl._input.numbers import Floats, Reals, is_scalar, metres, reals, refuse, si, within
-from spincyl._phases import IMPULSE, LOST
-from spincyl._scale import Scale, scale_of, unit
+from spincyl._input.hints import with_hints
+from spincyl._input.numbers import Floats, Reals, in_range, is_scalar, metres, reals, refuse_bad_value, si
+from spincyl._phases import IMPULSE_COLUMNS, LOST_COLUMN
+from spincyl._scale import Scale, scale_of, unit_of_output
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 
-@helpful
+@with_hints
 def measured(
     *,
     outer_diameter: float,
@@ -91,17 +91,19 @@ def measured(
     given |= metres({"length": length, "fillet": fillet})
     if wall is not None:
         outer = given["outer_diameter"]
-        refuse("outer_diameter", outer, lambda x: ~(x > 0) | np.isinf(x), "expected outer_diameter > 0")
-        thick = within("wall", si("wall", wall, "metre"), 0.0, outer / 2, "metres")
+        refuse_bad_value(
+            "outer_diameter", outer, lambda x: ~(x > 0) | np.isinf(x), "expected outer_diameter > 0"
+        )
+        thick = in_range("wall", si("wall", wall, "metre"), 0.0, outer / 2, "metres")
         if given["inner_diameter"]:
             raise TypeError("inner_diameter, wall: give only one of them")
         given["inner_diameter"] = outer - 2 * thick
     body = Body.from_metres(**given)
-    within("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
+    in_range("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
     return body.in_metres(mass, gravity=gravity)
 
 
-def with_size(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
+def sized_body(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
     """A single body and its scale: the given one, its own, or that of the measures it was made from."""
     if not isinstance(body, Body):
         raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
@@ -129,15 +131,15 @@ _OUT_OF_RANGE = re.compile(
 _TIME = re.compile(r"(\bt = |\bt0 = |\bstep = |\ba step of )([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)")
 
 
-def speaking(scale: Scale | None, length: str = "R") -> AbstractContextManager[None]:
+def errors_in_seconds(scale: Scale | None, length: str = "R") -> AbstractContextManager[None]:
     """Context in which errors of the core give times in seconds, for a measured body.
 
     Ranges of valid numbers stay in natural units, and the message says so.
     """
-    return _AS_TOLD if scale is None else _in_seconds(scale, length)
+    return _UNCHANGED if scale is None else _in_seconds(scale, length)
 
 
-_AS_TOLD = nullcontext()
+_UNCHANGED = nullcontext()
 
 
 @contextmanager
@@ -178,7 +180,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
         "w": output_in_si("w", m.w, scale),
         "error": m.error * scale._worst,
         "pose_error": m.pose_error * max(1.0, scale.radius),
-        "force_error": m.force_error * (unit("normal", scale)[0] or 1.0),
+        "force_error": m.force_error * (unit_of_output("normal", scale)[0] or 1.0),
         "rk4": m.rk4 and m.rk4._replace(advice=m.rk4.advice * second),
         "event": event,
         "_asked": asked._replace(times=seconds, t0=asked.t0 * second, step=step),
@@ -199,14 +201,14 @@ def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> 
     found = rows.copy()
     found[:, 0] *= second
     if impacts and scale._is_weighed:
-        found[:, IMPULSE] *= joule * second / metre
-        found[:, LOST] *= joule
+        found[:, IMPULSE_COLUMNS] *= joule * second / metre
+        found[:, LOST_COLUMN] *= joule
     return found
 
 
 def output_in_si(name: str, values: Any, scale: Scale | None) -> Any:
     """Convert an output of a motion to the motion's units; AttributeError if it needs an unknown mass."""
-    factor, said = unit(name, scale)
+    factor, said = unit_of_output(name, scale)
     if factor is None and scale is not None and said in ("M g", "M g R"):
         in_si = {"M g": "N", "M g R": "J"}[said]
         why = f"in {in_si} needs the mass of the body, as in body.in_metres(mass=0.02), in kilograms"

@@ -11,21 +11,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._asked import Asked, Want, chosen, crossing, times_of
+from spincyl._asked import Asked, Want, options_for_core, times_of, union_of_wants
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb
 from spincyl._ending import Ending, Event, FixedStep, RestsOn
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
-from spincyl._measured import in_si, natural_time, output_in_si, speaking
-from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, lacks, output
-from spincyl._phases import LOST, RIMS, Impact, Phase, impacts, lowest, phases, slipping
+from spincyl._measured import errors_in_seconds, in_si, natural_time, output_in_si
+from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, missing_output, output_in_units
+from spincyl._phases import (
+    LOST_COLUMN,
+    RIMS,
+    Impact,
+    Phase,
+    impacts,
+    lowest_point_height,
+    phases,
+    state_of_phase,
+)
 from spincyl._scale import Scale
 from spincyl._state import State
-from spincyl._swing import single, single_aloft, single_slip
+from spincyl._swing import numbers_of_one, single_aloft, single_slip
 from spincyl._told import message
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,7 +50,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 _Four: TypeAlias = tuple[float, float, float, float]
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Motion(Outputs):
     """Motion of a body: times, states, and how the motion ended; the result of `roll`.
@@ -109,7 +118,7 @@ class Motion(Outputs):
     _axes: ClassVar[Components] = AXES
     _nods: ClassVar[bool] = True  # whether first integrals give a nutation, as for a body of revolution
     _turning: ClassVar[str] = "phi"  # the output that tells how the body turns about the vertical
-    _begun: ClassVar[Callable[..., Any]] = staticmethod(slipping)  # makes the state of a phase
+    _begun: ClassVar[Callable[..., Any]] = staticmethod(state_of_phase)  # makes the state of a phase
 
     @property
     def scale(self) -> Scale | None:
@@ -149,8 +158,8 @@ class Motion(Outputs):
     @property
     def height(self) -> Floats:
         """(n,) height of the lowest point of the body above the table, R or m. Needs `restitution=`."""
-        rim = output(self.natural, "height", ALOFT)
-        return self._told("height", lowest(self.body, self.theta, rim))
+        rim = output_in_units(self.natural, "height", ALOFT)
+        return self._told("height", lowest_point_height(self.body, self.theta, rim))
 
     @property
     def rim(self) -> NDArray[np.uint8]:
@@ -203,7 +212,7 @@ class Motion(Outputs):
 
         The remaining angle is in radians, and keeps its digits after any number of turns.
         """
-        return output(self, "phi", POSE), output(self, "psi", POSE)
+        return output_in_units(self, "phi", POSE), output_in_units(self, "psi", POSE)
 
     @cached_property
     def impacts(self) -> tuple[Impact, ...]:
@@ -212,7 +221,7 @@ class Motion(Outputs):
         An infinite sequence of bounces that is summed counts as one impact.
         """
         if self._impacts is None:
-            raise lacks(self, "impacts", ALOFT)
+            raise missing_output(self, "impacts", ALOFT)
         return impacts(self._impacts)
 
     @property
@@ -220,8 +229,8 @@ class Motion(Outputs):
         """(n,) energy lost in impacts and their friction since the start, M g R, J. Needs `restitution=`."""
         of = self.natural._impacts
         if of is None:
-            raise lacks(self, "impacts", ALOFT)
-        lost = np.cumsum([0.0, *of[:, LOST]])
+            raise missing_output(self, "impacts", ALOFT)
+        lost = np.cumsum([0.0, *of[:, LOST_COLUMN]])
         return self._told("energy", lost[np.searchsorted(of[:, 0], self.natural.t)])
 
     @cached_property
@@ -232,7 +241,7 @@ class Motion(Outputs):
         a body on its side stays lying, or lifts off.
         """
         if self._phases is None:
-            raise lacks(self, "phases", FRICTION)
+            raise missing_output(self, "phases", FRICTION)
         return phases(self._phases, self._begun)
 
     @property
@@ -258,11 +267,11 @@ class Motion(Outputs):
         Each argument `want` is "pose", "force", or a list of both, as in `roll`. Outputs that this motion
         already has are kept.
         """
-        more = chosen(want)
+        more = union_of_wants(want)
         if self._natural is not None:
             scale: Any = self.body.scale
             seconds = self._asked.times if t is None else times_of(si("t", t, "second"))
-            with speaking(scale, self.body._length):
+            with errors_in_seconds(scale, self.body._length):
                 of = self._natural.wanting(more, t=None if t is None else natural_time("t", seconds, scale))
             return self if of is self._natural else in_si(of, self.body, seconds, self._asked.step)
         have = self._asked.want
@@ -304,7 +313,7 @@ class Motion(Outputs):
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw inclination, path and contact force; see `spincyl.plot.motion`."""
-        drawn: list[Axes] = above("Motion.plot")(self, axes)
+        drawn: list[Axes] = function_of_method("Motion.plot")(self, axes)
         return drawn
 
     def sound(
@@ -342,7 +351,7 @@ class Motion(Outputs):
         OSError
             If the file cannot be written. An existing file stays until the new one is complete.
         """
-        written: Path = above("Motion.sound")(self, path, seconds, scale, rate)
+        written: Path = function_of_method("Motion.sound")(self, path, seconds, scale, rate)
         return written
 
     def _told(self, name: str, values: Floats) -> Floats:
@@ -351,7 +360,7 @@ class Motion(Outputs):
         return found
 
     def _angle(self, name: str) -> Floats:
-        turns, rest = output(self, name, POSE).T
+        turns, rest = output_in_units(self, name, POSE).T
         angle: Floats = 2 * np.pi * turns + rest
         return angle
 
@@ -376,7 +385,7 @@ class Motion(Outputs):
         return {name: getattr(self.body, name) for name in ("ell", "i1", "i3")}
 
     def _repr_html_(self) -> str:
-        return str(above("card")(self))
+        return str(function_of_method("card")(self))
 
     def __repr__(self) -> str:
         wanted = "".join(f", {name}" for name in self._extra)
@@ -385,14 +394,14 @@ class Motion(Outputs):
 
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """Compute a motion without warnings; `numbers` are those of body and state, if known."""
-    of, start = numbers or single(body, state)
+    of, start = numbers or numbers_of_one(body, state)
     slip = None if state.slip is None else single_slip(state)
-    found = _core.roll(of, start, asked.times, crossing(asked, slip, single_aloft(state)))
+    found = _core.roll(of, start, asked.times, options_for_core(asked, slip, single_aloft(state)))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
         time, four, slipped, rim = found["event"]
-        event = Event(status, time, slipping(four, slipped), RIMS[rim])
+        event = Event(status, time, state_of_phase(four, slipped), RIMS[rim])
     # the core's names are those of the fields: setting frozen fields one by one takes longer than a motion
     found |= {
         "body": body,

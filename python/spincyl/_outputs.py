@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from spincyl._body import Body
-from spincyl._contact import Coulomb, named
+from spincyl._contact import Coulomb, contact_in_words
 from spincyl._input.numbers import Floats
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
-# what an output that was not computed needs; `lacks` says how to get it
+# what an output that was not computed needs; `missing_output` says how to get it
 POSE, FORCE, BOTH = '"pose"', '"force"', '("pose", "force")'
 FRICTION, PATCH, COUPLE, ALOFT, LOSSES = "friction", "patch", "couple", "restitution", "losses"
 #: Settings of `roll` that another argument excludes.
@@ -28,7 +28,7 @@ class Number(property):
     """An output at each time, in the units of the motion; AttributeError if it was not computed."""
 
     def __init__(self, needs: str, said: str) -> None:
-        super().__init__(lambda m: output(m, self._name, needs))
+        super().__init__(lambda m: output_in_units(m, self._name, needs))
         self.__doc__ = said
 
     def __set_name__(self, _: type, name: str) -> None:
@@ -39,14 +39,14 @@ class Number(property):
         def __get__(self, m: Any, kind: type | None = None) -> NDArray[Any]: ...  # type: ignore[override]
 
 
-def output(m: "Motion", name: str, needs: str) -> Floats:
+def output_in_units(m: "Motion", name: str, needs: str) -> Floats:
     """Return an output of a motion in its units, or raise AttributeError that says how to compute it."""
     if name not in m._extra:
-        raise lacks(m, name, needs)
+        raise missing_output(m, name, needs)
     return m._told(name, m._extra[name])
 
 
-def lacks(m: "Motion", name: str, needs: str) -> AttributeError:
+def missing_output(m: "Motion", name: str, needs: str) -> AttributeError:
     """The error that says why an output is missing, and which arguments compute it, if there are any."""
     return AttributeError(f"{name}: {_how_to_get(m, needs)}")
 
@@ -68,10 +68,16 @@ def _how_to_get(m: "Motion", needs: str) -> str:
         made = "custom.Couple(function)" if own else f"loss.{made}"
         why, how = "losses=", f"losses=sc.{made}"
     elif needs == FRICTION:
-        why, how = f"a law of friction, not contact = {named(m.contact)!r}", "contact=sc.Coulomb(mu)"
+        why, how = (
+            f"a law of friction, not contact = {contact_in_words(m.contact)!r}",
+            "contact=sc.Coulomb(mu)",
+        )
     else:
         patch = '.from_si(mu, patch="0.3mm", scale=body)' if measured else "(mu, patch=eps)"
-        why, how = f"a patch of contact, not contact = {named(m.contact)!r}", f"contact=sc.Coulomb{patch}"
+        why, how = (
+            f"a patch of contact, not contact = {contact_in_words(m.contact)!r}",
+            f"contact=sc.Coulomb{patch}",
+        )
         more = ', want="force"' if needs == COUPLE else ""
     off = [f"{x}=" for x in _EXCLUDES[PATCH if needs == COUPLE else needs] if _given(m, x)]
     without = f", without {' and '.join(off)}" if off else ""

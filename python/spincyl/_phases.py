@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, is_scalar, number
-from spincyl._state import State, gripping, landed, unchecked
+from spincyl._state import State, numbers_without_slip, refuse_state_in_air, state_without_checks
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -91,25 +91,27 @@ class Impact(NamedTuple):
 
 
 #: Columns of the lost energy and of the impulse in the rows of impacts.
-LOST, IMPULSE = 4, slice(5, 8)
+LOST_COLUMN, IMPULSE_COLUMNS = 4, slice(5, 8)
 
 
 def impacts(rows: Floats) -> tuple[Impact, ...]:
     """Make impacts from the rows of the core, each with the numbers of one impact."""
     found = []
     for time, other, hit, stays, lost, along, across, up, *numbers in rows.tolist():
-        before, after = (unchecked(at[:4], (at[4], at[5]), 0.0, at[6]) for at in (numbers[:7], numbers[7:]))
+        before, after = (
+            state_without_checks(at[:4], (at[4], at[5]), 0.0, at[6]) for at in (numbers[:7], numbers[7:])
+        )
         rim, kind, push = RIMS[int(other)], HITS[int(hit)], (along, across, up)
         found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays)))
     return tuple(found)
 
 
-def rubs(contact: object) -> bool:
+def has_friction(contact: object) -> bool:
     """Whether a contact has a law of friction."""
     return isinstance(contact, Coulomb | Viscous)
 
 
-def struck(restitution: object, contact: AnyContact) -> None:
+def refuse_impacts_on_patch(restitution: object, contact: AnyContact) -> None:
     """Raise ValueError for impacts on a patch of contact, unless there are several patches."""
     patch = isinstance(contact, Coulomb) and is_scalar(contact.patch) and contact.patch
     if restitution is not None and patch:
@@ -123,13 +125,15 @@ def check_contact(state: State, contact: AnyContact, restitution: object, settin
     `settings` are the settings of rolling that were given, by name.
     """
     if restitution is None:
-        landed(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
+        refuse_state_in_air(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     else:
         number("restitution", restitution)  # its range is known to the core
-    struck(restitution, contact)
+    refuse_impacts_on_patch(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         if state.slip is not None and (restitution is None or state.height is None):
-            gripping(state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
+            numbers_without_slip(
+                state, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
+            )
         if restitution is None:
             return
         for name in filter(settings.__contains__, ("step", "method", "beyond")):
@@ -149,15 +153,15 @@ _WHY = {
 }
 
 
-def slipping(
+def state_of_phase(
     four: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
 ) -> State:
     """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
     height, lift = aloft or (None, None)
-    return unchecked(four, None if slip is None else (slip[0], slip[1]), height, lift)
+    return state_without_checks(four, None if slip is None else (slip[0], slip[1]), height, lift)
 
 
-def phases(rows: Floats, state: Callable[..., Any] = slipping) -> tuple[Phase, ...]:
+def phases(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Phase, ...]:
     """Make phases from the rows of the core; `state` makes a state from numbers, slip and height."""
     found = []
     for time, code, rim, along, across, height, lift, *numbers in rows.tolist():
@@ -175,7 +179,7 @@ def phases_in_words(phases: Sequence[Phase], unit: str = "") -> str:
     return ", ".join(words)
 
 
-def how_found(phases: Sequence[Phase], within: float) -> str:
+def methods_in_words(phases: Sequence[Phase], within: float) -> str:
     """The methods that computed the phases, in words."""
     how = {
         "slipping": f"slipping by steps within {within:g}",
@@ -186,19 +190,19 @@ def how_found(phases: Sequence[Phase], within: float) -> str:
     return ", ".join(text for kind, text in how.items() if kind in kinds)
 
 
-def duration(phases: Sequence[Phase], end: float) -> float:
+def slipping_time(phases: Sequence[Phase], end: float) -> float:
     """Total time of slipping up to the time `end`."""
     begins = np.array([phase.time for phase in phases] + [end])
     slips = np.array([phase.kind in ("slipping", "lying", "pivoting") for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())
 
 
-def two_rims(body: "Body") -> bool:
+def has_two_rims(body: "Body") -> bool:
     """Whether the body has a rim at either end."""
     return bool(_core.two_rims(*body._numbers) == 1)
 
 
-def lowest(body: "Body", theta: Floats, rim: Floats) -> Floats:
+def lowest_point_height(body: "Body", theta: Floats, rim: Floats) -> Floats:
     """(n,) height of the lowest point of a body, from that of one rim; in the air the other may be lower."""
     found: Floats = np.maximum(rim + _core.lower_rim(theta, *body._numbers), 0.0)
     return found

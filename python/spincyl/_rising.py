@@ -3,10 +3,10 @@
 import numpy as np
 
 from spincyl import _core
-from spincyl._contact import Coulomb, Viscous, fitting, table
+from spincyl._contact import Coulomb, Viscous, check_contact_scale, table_for_core
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._input.numbers import Result, made, number
-from spincyl._measured import speaking
+from spincyl._input.numbers import Result, instance_of, number
+from spincyl._measured import errors_in_seconds
 from spincyl._turning import within_time
 
 
@@ -73,12 +73,12 @@ def rising_spin(
     >>> round(float(sc.rising_spin(egg, sc.Coulomb(0.3, patch=0.2 / 30.8))), 1)
     4.8
     """
-    made("egg", egg, Ellipsoid)
+    instance_of("egg", egg, Ellipsoid)
     if contact is None:
         return np.float64(_core.rising_spin(None, (0.0, 0.0, 0.0), 0.1, None, egg._numbers))
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
-    fitting(contact, egg.scale)
+    check_contact_scale(contact, egg.scale)
     time, leans = within_time(t, egg.scale), float(number("lean", lean))
-    with speaking(egg.scale, "a"):
-        return np.float64(_core.rising_spin(*table(contact, 0.0), leans, time, egg._numbers))
+    with errors_in_seconds(egg.scale, "a"):
+        return np.float64(_core.rising_spin(*table_for_core(contact, 0.0), leans, time, egg._numbers))

@@ -7,14 +7,14 @@ import numpy as np
 
 from spincyl._asked import Method, Want, ask, times_of
 from spincyl._body import Body
-from spincyl._contact import AnyContact, fitting
-from spincyl._ending import DOUBTFUL, Ending, ErrorWarning
-from spincyl._input.hints import helpful
+from spincyl._contact import AnyContact, check_contact_scale
+from spincyl._ending import LARGE_ERROR, Ending, ErrorWarning
+from spincyl._input.hints import with_hints
 from spincyl._input.numbers import Reals, number, si, warn
-from spincyl._measured import in_si, natural_time, speaking
+from spincyl._measured import errors_in_seconds, in_si, natural_time
 from spincyl._motion import Motion, rolled
 from spincyl._state import State
-from spincyl._swing import single
+from spincyl._swing import numbers_of_one
 from spincyl._told import given_up
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def roll(
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
 ) -> Motion: ...
-@helpful
+@with_hints
 def roll(
     body: "Body | Ellipsoid",
     state: "State | EllipsoidState",
@@ -216,27 +216,27 @@ def roll(
     if stone:
         from spincyl import _ellipsoid_motion as stones
 
-        start = stones.start_of(given, contact, step, method, restitution)
+        start = stones.start_of_stone(given, contact, step, method, restitution)
         if losses is not None:
-            from spincyl._lossy import of_stone
+            from spincyl._lossy import losses_of_stone
 
-            of_stone(losses, body)
+            losses_of_stone(losses, body)
     else:
-        numbers, start = single(one, given), given
+        numbers, start = numbers_of_one(one, given), given
     scale, seconds, given_step = body.scale, t, step
     if scale is not None:
         if losses is not None:
-            from spincyl._loss import made_law
+            from spincyl._loss import checked_law
 
-            losses = made_law(losses, one)._natural(scale)
-        fitting(contact, scale)
+            losses = checked_law(losses, one)._natural(scale)
+        check_contact_scale(contact, scale)
         contact = contact if isinstance(contact, str) else contact._natural(scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         t0, step = (
             x if x is None else natural_time(name, x, scale) for name, x in (("t0", t0), ("step", step))
         )
-    with speaking(scale, body._length):
+    with errors_in_seconds(scale, body._length):
         asked = ask(
             start,
             t,
@@ -254,7 +254,7 @@ def roll(
         )
         of = one if scale is None else one.natural
         m: Motion = stones.rolled_stone(of, given, asked) if stone else rolled(of, start, asked, numbers)
-    if not stone and step is None and restitution is None and not m.error <= DOUBTFUL:
+    if not stone and step is None and restitution is None and not m.error <= LARGE_ERROR:
         warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Reals, Result, elementwise, number, reals, si
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
     from spincyl._body import Body
@@ -26,10 +26,10 @@ _OUTPUTS = {
 }
 #: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
 UNITS = {name: unit for unit, names in _OUTPUTS.items() for name in names.split()}
-_WEIGHED = ("J", "N")
+_UNITS_WITH_MASS = ("J", "N")
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True)
 class Scale:
     """Size, mass and gravity of a body in SI; methods convert results from natural units to SI.
@@ -103,7 +103,7 @@ class Scale:
         return reals("angular_velocity", angular_velocity) * self._units[3]
 
     def _repr_html_(self) -> str:
-        return str(above("card")(self))
+        return str(function_of_method("card")(self))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scale, (self.radius, self.mass, self.gravity)
@@ -140,12 +140,12 @@ class Scale:
         return self._units[2]
 
 
-def unit(name: str, scale: Scale | None) -> tuple[float | None, str]:
+def unit_of_output(name: str, scale: Scale | None) -> tuple[float | None, str]:
     """The factor that converts an output of a motion to SI, None without a conversion, and its unit."""
-    return si_of(UNITS.get(name, "1"), scale)
+    return si_factor(UNITS.get(name, "1"), scale)
 
 
-def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
+def si_factor(natural: str, scale: Scale | None) -> tuple[float | None, str]:
     """The factor that converts from a natural unit to SI, None without a conversion, and the unit of SI.
 
     Without a mass, forces and energies stay in natural units.
@@ -163,10 +163,10 @@ def si_of(natural: str, scale: Scale | None) -> tuple[float | None, str]:
         "M g R": (joule, "J"),
     }
     factor, said = known.get(natural.replace("a", "R") if natural != "rad" else natural, (None, natural))
-    return (None, natural) if said in _WEIGHED and not scale._is_weighed else (factor, said)
+    return (None, natural) if said in _UNITS_WITH_MASS and not scale._is_weighed else (factor, said)
 
 
-def other(told: str, of: Scale | bool, scale: Scale | None) -> None:
+def refuse_other_scale(told: str, of: Scale | bool, scale: Scale | None) -> None:
     """Raise ValueError for a coefficient given in SI for a body of another radius or another gravity."""
     if not isinstance(of, Scale) or scale is None:
         return

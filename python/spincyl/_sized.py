@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 from spincyl._input.numbers import number, si, warn
-from spincyl._input.units import dubious
+from spincyl._input.units import suspicion_of_units
 from spincyl._scale import Scale
 
 
@@ -105,4 +105,4 @@ class Sized:
         """Why millimetres or grams are suspected in a size; empty if they are not."""
         what, (length, width), volume = self._bulk()
         r = scale.radius
-        return dubious(what, (length * r, width * r), volume * r**3, scale.mass)
+        return suspicion_of_units(what, (length * r, width * r), volume * r**3, scale.mass)

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.numbers import Floats, Reals, Result, components, several
+from spincyl._input.numbers import Floats, Reals, Result, components, numbered
 from spincyl._state import State, numbers
 
 if TYPE_CHECKING:
@@ -13,31 +13,31 @@ if TYPE_CHECKING:
     from spincyl._laws import Laws
 
 
-def _rim(body: "Laws") -> tuple[Reals, ...]:
+def _numbers_of_rim(body: "Laws") -> tuple[Reals, ...]:
     """Numbers of a body with the same rim: a velocity depends neither on the moments nor on the bore."""
     return body.ell, 1.0, 1.0, np.nan, body.fillet, np.nan
 
 
 def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
     """The slip for a given horizontal velocity of the centre."""
-    given = *numbers(state), 0.0, 0.0, *_rim(body)
+    given = *numbers(state), 0.0, 0.0, *_numbers_of_rim(body)
     return along - _core.centre_along(*given), across - _core.centre_across(*given)
 
 
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
     """The horizontal velocity of the centre, along e_h and e2."""
-    given = *numbers(state), *state._slip, *_rim(body)
+    given = *numbers(state), *state._slip, *_numbers_of_rim(body)
     return _core.centre_along(*given), _core.centre_across(*given)
 
 
-def lever(stone: "Ellipsoid", vertical: Floats) -> Floats:
+def lever_of_stone(stone: "Ellipsoid", vertical: Floats) -> Floats:
     """Vector from the centre of mass of a stone to its lowest point, along the stone's axes; (..., 3)."""
-    found: Floats = _core.stone_lever(*several(3, *stone._columns(), *components(vertical)))
+    found: Floats = _core.stone_lever(*numbered(3, *stone._columns(), *components(vertical)))
     return found
 
 
 def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: Reals) -> Floats:
     """The slip for a given velocity of the centre along x and y of `EllipsoidState.slip`; (..., 2)."""
-    at_rest = _core.stone_slip(*several(2, *stone._columns(), *components(vertical), *components(w)))
+    at_rest = _core.stone_slip(*numbered(2, *stone._columns(), *components(vertical), *components(w)))
     slip: Floats = at_rest + np.stack(np.broadcast_arrays(x, y, at_rest[..., 0])[:2], axis=-1)
     return slip

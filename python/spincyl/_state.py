@@ -7,30 +7,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
+    common_shape,
     elementwise,
-    fitting,
+    instance_of,
     is_scalar,
-    kept,
-    made,
     radians,
     radians_per_second,
+    read_only_copy,
     reals,
     si,
 )
-from spincyl._input.reprs import call, is_lazy, text
+from spincyl._input.reprs import is_lazy, repr_of_call, repr_of_numbers
 from spincyl._scale import Scale, scale_of
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
     from spincyl._body import Body
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class State(Hinting):
     """Inclination and angular velocity of a body, in natural units, also for a measured body.
@@ -69,15 +69,15 @@ class State(Hinting):
     lift: Reals | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "theta", kept(radians("theta", self.theta, "0 < theta <= pi")))
+        object.__setattr__(self, "theta", read_only_copy(radians("theta", self.theta, "0 < theta <= pi")))
         for name in ("w1", "w2", "w3"):
-            object.__setattr__(self, name, kept(reals(name, getattr(self, name))))
+            object.__setattr__(self, name, read_only_copy(reals(name, getattr(self, name))))
         if not is_scalar(*self._numbers):
-            fitting(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
+            common_shape(dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True)))
         if self.height is not None or self.lift is not None:
             for name in ("height", "lift"):
                 value = getattr(self, name)
-                object.__setattr__(self, name, kept(reals(name, 0.0 if value is None else value)))
+                object.__setattr__(self, name, read_only_copy(reals(name, 0.0 if value is None else value)))
         if self.slip is None:
             return
         pair = isinstance(self.slip, tuple | list) or (isinstance(self.slip, np.ndarray) and self.slip.ndim)
@@ -85,10 +85,12 @@ class State(Hinting):
             what = type(self.slip).__name__
             raise TypeError(f"slip: expected a pair (along e_h, along e2), not {what} {self.slip!r}")
         along, across = self.slip
-        object.__setattr__(self, "slip", (kept(reals("slip[0]", along)), kept(reals("slip[1]", across))))
+        object.__setattr__(
+            self, "slip", (read_only_copy(reals("slip[0]", along)), read_only_copy(reals("slip[1]", across)))
+        )
         fields = dict(zip(("theta", "w1", "w2", "w3"), self._numbers, strict=True))
         if not is_scalar(*self._slip):
-            fitting(fields | dict(zip(("slip[0]", "slip[1]"), self._slip, strict=True)))
+            common_shape(fields | dict(zip(("slip[0]", "slip[1]"), self._slip, strict=True)))
 
     @classmethod
     @elementwise
@@ -127,7 +129,7 @@ class State(Hinting):
         if type(w2) is not float:
             return replace(self, w2=w2)
         # the other fields have been checked, and a number fits all of them
-        return unchecked((self.theta, self.w1, w2, self.w3), self.slip, self.height, self.lift)
+        return state_without_checks((self.theta, self.w1, w2, self.w3), self.slip, self.height, self.lift)
 
     @property
     def precession(self) -> Result:
@@ -161,10 +163,10 @@ class State(Hinting):
     def __repr__(self) -> str:
         four = {"theta": self.theta, "w1": self.w1, "w2": self.w2, "w3": self.w3}
         more = {name: getattr(self, name) for name in ("slip", "height", "lift")}
-        return call("State", **four, **{name: x for name, x in more.items() if x is not None})
+        return repr_of_call("State", **four, **{name: x for name, x in more.items() if x is not None})
 
     def _repr_html_(self) -> str:
-        return str(above("card")(self))
+        return str(function_of_method("card")(self))
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals, Reals]:
@@ -180,7 +182,7 @@ class State(Hinting):
         return self.slip is not None and any(is_lazy(x) or bool(np.any(x != 0)) for x in self.slip)
 
 
-def unchecked(
+def state_without_checks(
     four: Iterable[Reals],
     slip: tuple[Reals, Reals] | None = None,
     height: Reals | None = None,
@@ -195,20 +197,20 @@ def unchecked(
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state, without its slip, or TypeError."""
-    return made("state", state, State)._numbers
+    return instance_of("state", state, State)._numbers
 
 
-def landed(state: State, remedy: str) -> None:
+def refuse_state_in_air(state: State, remedy: str) -> None:
     """Raise ValueError with a remedy for a state in the air."""
     if state.height is not None:
-        raise ValueError(f"state: the body is in the air, height = {text(state.height)}: {remedy}")
+        raise ValueError(f"state: the body is in the air, height = {repr_of_numbers(state.height)}: {remedy}")
 
 
-def gripping(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
+def numbers_without_slip(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
     """The four numbers of a state without slip, or ValueError with the remedy `why`."""
     found = numbers(state)
     if isinstance(state, State) and state._slips:
-        raise ValueError(f"state: the body slips, slip = {text(state._slip)}: {why}")
+        raise ValueError(f"state: the body slips, slip = {repr_of_numbers(state._slip)}: {why}")
     if isinstance(state, State):
-        landed(state, "expected a body on the table")
+        refuse_state_in_air(state, "expected a body on the table")
     return found

@@ -6,15 +6,15 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._contact import Contact, code
-from spincyl._input.equality import compared
-from spincyl._input.numbers import is_scalar, made
+from spincyl._contact import Contact, code_of
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import instance_of, is_scalar
 from spincyl._scale import Scale
-from spincyl._state import State, gripping, numbers
-from spincyl._upward import above
+from spincyl._state import State, numbers, numbers_without_slip
+from spincyl._upward import function_of_method
 
 
-@compared
+@compared_by_value
 class Swing(NamedTuple):
     """The nutation of a motion, computed as if no event ended the motion; the result of `swing`.
 
@@ -60,7 +60,7 @@ class Swing(NamedTuple):
         return 2 * np.pi / self.period
 
     def _repr_html_(self) -> str:
-        return str(above("card")(self))
+        return str(function_of_method("card")(self))
 
 
 def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
@@ -89,9 +89,11 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     ValueError
         If the body or the state is out of range, or if rounding errors leave no correct digit.
     """
-    of, start = single(body, state)
-    gripping(state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)")
-    eight: list[float] = _core.swing(of, start, code(contact))
+    of, start = numbers_of_one(body, state)
+    numbers_without_slip(
+        state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"
+    )
+    eight: list[float] = _core.swing(of, start, code_of(contact))
     found = Swing._make([*eight, None])
     if body.scale is None:
         return found
@@ -109,9 +111,9 @@ _Four: TypeAlias = tuple[float, float, float, float]
 _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
-def single(body: Body, state: State) -> tuple[_Six, _Four]:
+def numbers_of_one(body: Body, state: State) -> tuple[_Six, _Four]:
     """The numbers of a single body and a single state."""
-    of, at = made("body", body, Body)._numbers, numbers(state)
+    of, at = instance_of("body", body, Body)._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
     if body._single and type(theta) is type(w1) is type(w2) is type(w3) is float:
         return of, at

@@ -11,12 +11,12 @@ from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
+    instance_of,
     is_scalar,
-    made,
     radians,
     radians_per_second,
     reals,
-    refuse,
+    refuse_bad_value,
     si,
     turns_per_second,
 )
@@ -69,7 +69,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     >>> bool(v + hoop.i3 * state.w3 < 0)
     True
     """
-    scale = _known(body, scale)
+    scale = _scale_of_body(body, scale)
     if scale is not None:
         velocity = si("velocity", velocity, "metre/second")
         backspin = radians_per_second("backspin", backspin)
@@ -140,12 +140,12 @@ def dropped(
     >>> m.phases[0].kind, round(m.impacts[0].time, 12)
     ('flying', 2.0)
     """
-    scale = _known(body, scale)
+    scale = _scale_of_body(body, scale)
     if not isinstance(velocity, tuple | list) or len(velocity) != 3:
         raise TypeError(f"velocity: expected three components (e_h, e2, upward), not {velocity!r}")
     metre, second = (1.0, 1.0) if scale is None else scale._units[:2]
     height = reals("height", height if scale is None else si("height", height, "metre"))
-    refuse("height", height, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= height, finite")
+    refuse_bad_value("height", height, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= height, finite")
     given = (("w1", w1), ("w2", w2), ("w3", w3))
     w = (reals(name, x if scale is None else radians_per_second(name, x)) * second for name, x in given)
     moves = (reals("velocity", x if scale is None else si("velocity", x, "metre/second")) for x in velocity)
@@ -219,7 +219,7 @@ def pressed(
     >>> bool(sc.launch_number(pipe, state) > 1)
     True
     """
-    scale = _known(body, scale)
+    scale = _scale_of_body(body, scale)
     if scale is not None:
         impulse = si("impulse", impulse, "newton*second")
     impulse, angle = reals("impulse", impulse), radians("angle", angle, "0 < angle <= pi/2")
@@ -290,13 +290,13 @@ def flicked(
     >>> m.phases
     ((0, 'slipping'), (0.830076293024, 'rolling'))
     """
-    scale = _known(body, scale)
+    scale = _scale_of_body(body, scale)
     if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
         why = "give exactly one of hertz and w1, and exactly one of launch and spin_hertz"
         raise TypeError(f"hertz, w1, launch, spin_hertz: {why}")
     if scale is None and not (hertz is None and spin_hertz is None):
         raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
-    refuse("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
+    refuse_bad_value("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
 
     def turns(name: str, value: Reals) -> Reals:
         return reals(name, turns_per_second(name, value)) / (scale.turns(1.0) if scale else 1.0)
@@ -331,7 +331,7 @@ def launch_number(body: Body, state: State) -> Result:
     ValueError
         If a single state does not have theta = pi/2 and w2 = 0.
     """
-    made("body", body, Body)
+    instance_of("body", body, Body)
     found = _core.launch_number(*numbers(state), *body._numbers)
     if is_scalar(found) and np.isnan(found) and body.ell != 0:
         raise ValueError(f"state = {state!r}: expected a body on its side, theta = pi/2 with w2 = 0")
@@ -343,9 +343,9 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
     return State(level + np.pi / 2, w1, level, w3, slip=(level, across))
 
 
-def _known(body: object, scale: Scale | None) -> Scale | None:
+def _scale_of_body(body: object, scale: Scale | None) -> Scale | None:
     """The given scale, or that of a measured body."""
-    return scale_of(scale, made("body", body, Body))
+    return scale_of(scale, instance_of("body", body, Body))
 
 
 def six_numbers(body: Body) -> tuple[float, float, float, float, float, float]:

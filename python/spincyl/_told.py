@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spincyl._ending import MESSAGES, Ending
-from spincyl._phases import how_found, phases_in_words, two_rims
+from spincyl._phases import has_two_rims, methods_in_words, phases_in_words
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -16,12 +16,13 @@ def message(m: "Motion") -> str:
     why = MESSAGES[m.status][0]
     if m._limit is not None:
         why += f", since {m._limit[1]}"
-    elif m.status == Ending.SIDE and not two_rims(m.body):
+    elif m.status == Ending.SIDE and not has_two_rims(m.body):
         why = "another part landed"
-    elif m.status == Ending.SIDE and _begins(m) == 0 and m.event and m.event.state.w2 == 0:
+    elif m.status == Ending.SIDE and _number_of_phases(m) == 0 and m.event and m.event.state.w2 == 0:
         why = "the other rim does not rise"
     if m.event:
-        why += f": the body {ends(m)} at t = {m.event.time:.{_digits(m.event.time, m.error)}g}{_second(m)}"
+        time = f"{m.event.time:.{_digits(m.event.time, m.error)}g}{_unit_of_times(m)}"
+        why += f": the body {end_in_words(m)} at t = {time}"
         if m.status == Ending.SIDE and m.event.time == m._asked.t0 and m._asked.restitution is None:
             why += "; with restitution=0.0 it goes on"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
@@ -30,21 +31,21 @@ def message(m: "Motion") -> str:
     if m.t.size < m._asked.times.size > 1:
         errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
-        phases = "" if m._phases is None else phases_in_words(m.phases, _second(m))
-        return "; ".join(filter(None, (why, phases, _how(m), errors, m._doubt)))
-    return f"{why}; found {_how(m)}, {errors}"
+        phases = "" if m._phases is None else phases_in_words(m.phases, _unit_of_times(m))
+        return "; ".join(filter(None, (why, phases, _method_in_words(m), errors, m._doubt)))
+    return f"{why}; found {_method_in_words(m)}, {errors}"
 
 
 def given_up(m: "Motion") -> str:
     """Where and why the computation of a motion stopped, and what it had reached."""
-    at = f"t = {m.event.time:.6g}{_second(m)}" if m.event else "its start"
+    at = f"t = {m.event.time:.6g}{_unit_of_times(m)}" if m.event else "its start"
     name, why = m._limit or ("", "")
     more = "; max_nfev= allows more" if name == "evaluations" else ""
-    phases = f" and {_begins(m)} phases" if _begins(m) else ""
+    phases = f" and {_number_of_phases(m)} phases" if _number_of_phases(m) else ""
     return f"given up at {at} after {m.nfev} evaluations{phases}, since {why}{more}; the motion ends there"
 
 
-def _begins(m: "Motion") -> int | None:
+def _number_of_phases(m: "Motion") -> int | None:
     """The number of phases; None for a motion that is not divided into phases."""
     return None if m._phases is None else len(m._phases)
 
@@ -56,28 +57,28 @@ def _digits(time: float, error: float) -> int:
     return int(np.clip(2 + np.floor(np.log10(abs(time) / error)), 2, 12))
 
 
-def ends(m: "Motion") -> str:
+def end_in_words(m: "Motion") -> str:
     """The behaviour of the body at the end of the motion, as "slips"; a wide body stands on its edge."""
-    if m.status == Ending.SIDE and not two_rims(m.body):
+    if m.status == Ending.SIDE and not has_two_rims(m.body):
         return "lands on another part"
     if m.status == Ending.SIDE and m.body.ell < 1:
         return "stands on its edge"
     return MESSAGES[m.status][1]
 
 
-def _second(m: "Motion") -> str:
+def _unit_of_times(m: "Motion") -> str:
     """The unit of the motion's times, to append to a number."""
     return "" if m.scale is None else " s"
 
 
-def _how(m: "Motion") -> str:
+def _method_in_words(m: "Motion") -> str:
     if m._by_steps:
         return f"found by steps within {m._setting:g}"
     if m._phases is not None:
-        return how_found(m.phases, m._setting)
+        return methods_in_words(m.phases, m._setting)
     how = {
         "exact": "by first integrals",
-        "rk4": f"by RK4, step {m._asked.step!r}{_second(m)}",
+        "rk4": f"by RK4, step {m._asked.step!r}{_unit_of_times(m)}",
         "dop853": f"by steps of eighth order within {m._setting:g}",
     }[m.method]
     free = m._asked.step is None and m._asked.tol is None

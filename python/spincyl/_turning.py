@@ -4,9 +4,9 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._contact import Coulomb, Viscous, fitting, table
+from spincyl._contact import Coulomb, Viscous, check_contact_scale, table_for_core
 from spincyl._input.numbers import Result, elementwise, is_scalar, number
-from spincyl._measured import natural_time, speaking
+from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._scale import Scale
 from spincyl._throw import six_numbers
 
@@ -87,17 +87,17 @@ def turning_spin(
         found: Result = _core.jellett_spin(*top._numbers)
         if np.ndim(found) == 0 and np.isnan(found):
             _core.turning_spin(
-                *table(Viscous(1.0), 0.0), 0.1, None, six_numbers(top)
+                *table_for_core(Viscous(1.0), 0.0), 0.1, None, six_numbers(top)
             )  # says why there is none
         return found
     if not isinstance(contact, Coulomb | Viscous):
         raise TypeError(f"contact: expected Coulomb or Viscous, not {contact!r}")
     if not is_scalar(*top._numbers):
         raise ValueError("top: expected a single body with contact=, not a family")
-    fitting(contact, top.scale)
+    check_contact_scale(contact, top.scale)
     time, leans = within_time(t, top.scale), float(number("lean", lean))
-    with speaking(top.scale):
-        return np.float64(_core.turning_spin(*table(contact, 0.0), leans, time, six_numbers(top)))
+    with errors_in_seconds(top.scale):
+        return np.float64(_core.turning_spin(*table_for_core(contact, 0.0), leans, time, six_numbers(top)))
 
 
 def within_time(t: float | None, scale: Scale | None) -> float | None:

@@ -14,7 +14,7 @@ HOMES: dict[str, tuple[str, str]] = {}
 
 
 @cache
-def above(method: str) -> Callable[..., Any]:
+def function_of_method(method: str) -> Callable[..., Any]:
     """The function behind a method."""
     module, name = HOMES[method]
     found: Callable[..., Any] = getattr(import_module(module), name)

@@ -20,7 +20,7 @@ def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
     if scale is not None and math.isnan(scale.mass):
         raise ValueError("with_weights: the mass of the stone is unknown; give it by in_metres(mass=)")
     size, kilograms = (1.0, 1.0) if scale is None else (scale.radius, scale.mass)
-    found = [_weight(i, each, scale is not None) for i, each in enumerate(_listed(weights))]
+    found = [_mass_and_place(i, each, scale is not None) for i, each in enumerate(_as_list(weights))]
     if not found:
         return stone
     axes, offset = np.asarray(stone.axes), np.asarray(stone.offset)
@@ -32,18 +32,18 @@ def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
         bodies.append((mass / kilograms, place, np.zeros((3, 3))))
     whole = math.fsum(mass for mass, *_ in bodies)
     centre = sum(mass * place for mass, place, _ in bodies) / whole
-    inertia = sum(mass * (own + _about(place - centre)) for mass, place, own in bodies) / whole
+    inertia = sum(mass * (own + _moments_about_centre(place - centre)) for mass, place, own in bodies) / whole
     scale = None if scale is None else replace(scale, mass=whole * kilograms)
     # the constructor's warning about mass outside the ellipsoid is only for moments given by the user
     return replace(stone, inertia=inertia, offset=centre, scale=scale, _doubted=True)
 
 
-def _about(r: Floats) -> Floats:
+def _moments_about_centre(r: Floats) -> Floats:
     """The moments of a unit mass at r."""
     return np.asarray(r @ r * np.eye(3) - np.outer(r, r))
 
 
-def _listed(weights: Iterable[Any]) -> list[Any]:
+def _as_list(weights: Iterable[Any]) -> list[Any]:
     try:
         return list(weights)
     except TypeError:
@@ -51,7 +51,7 @@ def _listed(weights: Iterable[Any]) -> list[Any]:
         raise TypeError(f"weights: expected a list of (mass, (x, y, z)), not {kind}") from None
 
 
-def _weight(i: int, given: Any, measured: bool) -> tuple[float, Floats]:
+def _mass_and_place(i: int, given: Any, measured: bool) -> tuple[float, Floats]:
     """The mass and the place of a weight."""
     name = f"weights[{i}]"
     if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2:

@@ -22,8 +22,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import OWN, Coulomb
-from spincyl._input.equality import key
+from spincyl._contact import WHERE_OWN_LAWS_WORK, Coulomb
+from spincyl._input.equality import equality_key
 from spincyl._input.numbers import Floats, Reals, Result, number
 from spincyl._input.pointers import COUPLE, FRICTION, Pointer, pointer
 from spincyl._loss import Law, Loss
@@ -93,7 +93,7 @@ class Couple(Loss):
     @property
     def laws(self) -> tuple[Law, ...]:
         """Raises TypeError, since a law that is a function has no coefficients to list."""
-        raise TypeError(f"losses = {self!r}: {OWN}, for bodies of revolution")
+        raise TypeError(f"losses = {self!r}: {WHERE_OWN_LAWS_WORK}, for bodies of revolution")
 
     @property
     def _built_in(self) -> Loss | None:
@@ -239,7 +239,7 @@ class Friction(Coulomb):
 
     @property
     def _compares(self) -> Hashable:
-        return self.function, key(self.static)  # type: ignore[attr-defined]
+        return self.function, equality_key(self.static)  # type: ignore[attr-defined]
 
     def __repr__(self) -> str:
         return f"custom.Friction({_named(self.function)})"  # type: ignore[attr-defined]

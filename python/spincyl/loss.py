@@ -33,10 +33,20 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._contact import CODES
-from spincyl._input.numbers import Reals, Result, fitting
-from spincyl._loss import LAWS, Law, Loss, Sum, arm, over, positive, sized, units
+from spincyl._input.numbers import Reals, Result, common_shape
+from spincyl._loss import (
+    LAWS,
+    Law,
+    Loss,
+    Sum,
+    arm_in_radii,
+    divided_by_unit,
+    marked_as_si,
+    natural_units_in_si,
+    positive_coefficient,
+)
 from spincyl._scale import Scale
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 
 __all__ = [
     "AirFilm",
@@ -58,14 +68,14 @@ _Kind = TypeVar("_Kind", bound=Law)
 def __getattr__(name: str) -> Any:
     if name != "typical":
         raise AttributeError(f"module 'spincyl.loss' has no attribute {name!r}")
-    return above("loss.typical")()
+    return function_of_method("loss.typical")()
 
 
 def __dir__() -> list[str]:
     return [*__all__, "typical", *(name for name in globals() if name.startswith("__"))]
 
 
-_AIR, _DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
+_AIR_VISCOSITY, _AIR_DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,7 +99,7 @@ class DryContour(Law):
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
         """Law with `eps` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
-        return sized(cls(arm("eps", eps, scale)), scale)
+        return marked_as_si(cls(arm_in_radii("eps", eps, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,7 +123,14 @@ class ViscousContour(Law):
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
         """Law with `c` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
-        return sized(cls(over(positive("c", c, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
+        return marked_as_si(
+            cls(
+                divided_by_unit(
+                    positive_coefficient("c", c, "newton*metre*second"), _newton_metre_seconds(scale)
+                )
+            ),
+            scale,
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -137,7 +154,7 @@ class RollingResistance(Law):
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
         """Law with `delta` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
-        return sized(cls(arm("delta", delta, scale)), scale)
+        return marked_as_si(cls(arm_in_radii("delta", delta, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -161,7 +178,7 @@ class Drilling(Law):
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
         """Law with `length` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
-        return sized(cls(arm("length", length, scale)), scale)
+        return marked_as_si(cls(arm_in_radii("length", length, scale)), scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -183,7 +200,14 @@ class AirLinear(Law):
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
         """Law with `b` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
-        return sized(cls(over(positive("b", b, "newton*metre*second"), _newton_metre_seconds(scale))), scale)
+        return marked_as_si(
+            cls(
+                divided_by_unit(
+                    positive_coefficient("b", b, "newton*metre*second"), _newton_metre_seconds(scale)
+                )
+            ),
+            scale,
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -206,8 +230,13 @@ class AirQuadratic(Law):
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
         """Law with `b2` in N m s^2. `scale` is a measured body with a known mass, or a `Scale`."""
-        _, seconds, joules = units(scale, weighed=True)
-        return sized(cls(over(positive("b2", b2, "newton*metre*second**2"), joules * seconds**2)), scale)
+        _, seconds, joules = natural_units_in_si(scale, weighed=True)
+        return marked_as_si(
+            cls(
+                divided_by_unit(positive_coefficient("b2", b2, "newton*metre*second**2"), joules * seconds**2)
+            ),
+            scale,
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -232,12 +261,16 @@ class AirFilm(Law):
     _couple_in_si = "pi/4*viscosity*R**3*q*h/s**2"
 
     @classmethod
-    def from_si(cls, viscosity: Reals = _AIR, *, scale: Scale | Body) -> Self:
+    def from_si(cls, viscosity: Reals = _AIR_VISCOSITY, *, scale: Scale | Body) -> Self:
         """Law with `viscosity` in Pa s (default: air). `scale` is a body with a known mass, or a `Scale`."""
         unit = _newton_metre_seconds(scale)
         with np.errstate(over="ignore"):
-            found = positive("viscosity", viscosity, "pascal*second") * units(scale)[0] ** 3 / unit
-        return _told(cls, found, "viscosity", scale)
+            found = (
+                positive_coefficient("viscosity", viscosity, "pascal*second")
+                * natural_units_in_si(scale)[0] ** 3
+                / unit
+            )
+        return _law_of_quantities(cls, found, "viscosity", scale)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -260,25 +293,33 @@ class BoundaryLayer(Law):
 
     @classmethod
     def from_si(
-        cls, C: Reals, *, scale: Scale | Body, density: Reals = _DENSITY, viscosity: Reals = _AIR
+        cls,
+        C: Reals,
+        *,
+        scale: Scale | Body,
+        density: Reals = _AIR_DENSITY,
+        viscosity: Reals = _AIR_VISCOSITY,
     ) -> Self:
         """Law with the number `C`, of order 0.1, and the density (kg/m^3) and viscosity (Pa s) of the air.
 
         `scale` is a measured body with a known mass, or a `Scale`.
         """
-        metres, seconds, joules = units(scale, weighed=True)
-        density = positive("density", density, "kilogram/metre**3")
-        viscosity, C = positive("viscosity", viscosity, "pascal*second"), positive("C", C)
-        fitting({"C": C, "density": density, "viscosity": viscosity})
+        metres, seconds, joules = natural_units_in_si(scale, weighed=True)
+        density = positive_coefficient("density", density, "kilogram/metre**3")
+        viscosity, C = (
+            positive_coefficient("viscosity", viscosity, "pascal*second"),
+            positive_coefficient("C", C),
+        )
+        common_shape({"C": C, "density": density, "viscosity": viscosity})
         with np.errstate(over="ignore"):
             found = C * np.sqrt(density * viscosity) * metres**4 / (joules * seconds**1.5)
-        return _told(cls, found, "C, density, viscosity", scale)
+        return _law_of_quantities(cls, found, "C, density, viscosity", scale)
 
 
-def _told(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
+def _law_of_quantities(kind: type[_Kind], coefficient: Reals, names: str, scale: Scale | Body) -> _Kind:
     """A law with this coefficient; a ValueError names the quantities from which it was computed."""
     try:
-        return sized(kind(coefficient), scale)
+        return marked_as_si(kind(coefficient), scale)
     except ValueError as e:
         raise ValueError(f"{names}: {e}") from None
 
@@ -292,12 +333,12 @@ def film_fills(viscosity: Reals, scale: Scale) -> Result:
 
     The gas has the density of air. NaN if the mass is unknown.
     """
-    metres, seconds, joules = units(scale)
-    kinematic = np.asarray(viscosity) * (seconds * joules / metres**3) / _DENSITY
+    metres, seconds, joules = natural_units_in_si(scale)
+    kinematic = np.asarray(viscosity) * (seconds * joules / metres**3) / _AIR_DENSITY
     return (np.sqrt(kinematic * seconds / 2) / metres) ** (4 / 3)
 
 
 def _newton_metre_seconds(scale: Scale | Body) -> float:
     """The unit of a couple over an angular velocity, M R sqrt(g R)."""
-    _, seconds, joules = units(scale, weighed=True)
+    _, seconds, joules = natural_units_in_si(scale, weighed=True)
     return seconds * joules

@@ -24,8 +24,8 @@ from typing import Any
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._input.numbers import made, number, si
-from spincyl._input.units import dubious
+from spincyl._input.numbers import instance_of, number, si
+from spincyl._input.units import suspicion_of_units
 from spincyl._scale import Scale
 
 __all__ = ["Part", "assembled", "ball", "cap", "cone", "cylinder", "disk", "point", "ring", "shell", "wall"]
@@ -280,7 +280,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
         raise ValueError("parts: expected at least one part, not an empty list")
     lows = [0.0]
     for i, part in enumerate(given):
-        made(f"parts[{i}]", part, Part)
+        instance_of(f"parts[{i}]", part, Part)
         lows[i] = lows[i] if part.at is None else part.at
         lows.append(lows[i] + part.top)
     # heights are relative to the lowest point, so that they keep their digits
@@ -290,9 +290,11 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     for i, part in enumerate(placed[1:], 1):
         solid = part.form != _RING or part.numbers[0] > 0
         if part.at is None and solid and not any(below._carries(part) for below in placed[:i]):
-            _falls(i, part, placed[i - 1])
+            _refuse_unsupported(i, part, placed[i - 1])
     # the core returns pi/2 for two equal rims, and for a body without another part that lands
-    why = dubious("body", (max((part.top for part in placed), default=0.0), 2 * radius), math.nan, math.nan)
+    why = suspicion_of_units(
+        "body", (max((part.top for part in placed), default=0.0), 2 * radius), math.nan, math.nan
+    )
     if why:
         warnings.warn(why, UserWarning, stacklevel=2)
     body = Body(ell, i1, i3, fillet=fillet, theta_end=theta_end, scale=Scale(radius, mass, gravity))
@@ -301,7 +303,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     return body
 
 
-def _falls(i: int, part: Part, below: Part) -> None:
+def _refuse_unsupported(i: int, part: Part, below: Part) -> None:
     (inner, _), (_, outer) = below._across(below.top), part._across(part.numbers[_HEIGHTS[part.form][0]])
     where = "fits into the hole of" if outer < inner else "fits around"
     raise ValueError(

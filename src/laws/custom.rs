@@ -104,15 +104,15 @@ impl<'a> Custom<'a> {
 }
 
 /// Near rest the law is evaluated at this share of a speed.
-const NEARLY: f64 = 1e-9;
+const NEAR_REST_SHARE: f64 = 1e-9;
 /// A change by more than this share is a jump.
-const STEP: f64 = 1e-3;
+const JUMP_SHARE: f64 = 1e-3;
 /// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
-const GIVEN_BY_ROUNDING: f64 = 1e-12;
+const POWER_ROUNDING: f64 = 1e-12;
 
 /// The values that a couple and a coefficient of friction may have.
 const FINITE: &str = "a couple that is finite in every state";
-const LOSES: &str = "a couple that takes energy, m.w <= 0";
+const EXPECTED_TO_LOSE: &str = "a couple that takes energy, m.w <= 0";
 const AT_LEAST_0: &str = "a coefficient of friction of 0 or more at every speed";
 
 /// The error of a couple that is not finite in a state, or supplies energy there.
@@ -121,8 +121,8 @@ pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Err
     let fault = |power: f64, expected| Some(Error::Couple { power, expected, theta: y.theta, w, normal });
     let power = -(m[0] * w[0] + m[1] * w[1] + m[2] * w[2]);
     match () {
-        () if !size(m).is_finite() => fault(f64::NAN, FINITE),
-        () if power < -GIVEN_BY_ROUNDING * size(m) * size(w) => fault(power, LOSES),
+        () if !magnitude(m).is_finite() => fault(f64::NAN, FINITE),
+        () if power < -POWER_ROUNDING * magnitude(m) * magnitude(w) => fault(power, EXPECTED_TO_LOSE),
         () => None,
     }
 }
@@ -133,21 +133,21 @@ pub(crate) fn fault_of_friction(mu: f64, speed: f64) -> Option<Error> {
 }
 
 /// A law is evaluated near rest for states whose index is a multiple of this; all speeds and forces are among them.
-const RESTS: usize = 3;
+const REST_STATE_STRIDE: usize = 3;
 /// States whose index is a multiple of this are joined by lines, along which jumps are searched for.
-const LINES: usize = 12;
+const LINE_STATE_STRIDE: usize = 12;
 /// Number of halvings of such a line.
 const LINE_HALVINGS: u32 = 44;
 
-fn size(m: [f64; 3]) -> f64 {
+fn magnitude(m: [f64; 3]) -> f64 {
     m.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// The jump of a function between 0 and 1. The interval is halved, always towards the half with the larger change, down
 /// to rounding; the change that remains is the jump. There is none, and halving ends, where both halves together change
 /// by no more than `little`.
-fn step(f: impl Fn(f64) -> [f64; 3], little: f64) -> f64 {
-    let apart = |a: [f64; 3], b: [f64; 3]| size(core::array::from_fn(|k| a[k] - b[k]));
+fn jump_between(f: impl Fn(f64) -> [f64; 3], little: f64) -> f64 {
+    let apart = |a: [f64; 3], b: [f64; 3]| magnitude(core::array::from_fn(|k| a[k] - b[k]));
     let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));
     for _ in 0..LINE_HALVINGS {
         let middle = 0.5 * (from.0 + to.0);
@@ -182,17 +182,17 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
         };
         let (m, y) = at(speed);
         let power = -(m[0] * y.w1 + m[1] * y.w2 + m[2] * y.w3);
-        if !size(m).is_finite() {
-            return refuse(size(m), FINITE);
+        if !magnitude(m).is_finite() {
+            return refuse(magnitude(m), FINITE);
         }
-        if power < -GIVEN_BY_ROUNDING * size(m) * speed {
-            return refuse(power, LOSES);
+        if power < -POWER_ROUNDING * magnitude(m) * speed {
+            return refuse(power, EXPECTED_TO_LOSE);
         }
         let mut jump = 0.0;
-        if (i as usize).is_multiple_of(RESTS) {
-            jump = size(at(speed * NEARLY).0) / size(m).max(f64::MIN_POSITIVE);
+        if (i as usize).is_multiple_of(REST_STATE_STRIDE) {
+            jump = magnitude(at(speed * NEAR_REST_SHARE).0) / magnitude(m).max(f64::MIN_POSITIVE);
         }
-        if (i as usize).is_multiple_of(LINES)
+        if (i as usize).is_multiple_of(LINE_STATE_STRIDE)
             && let Some(State { theta, w1, w2, w3 }) = before.replace(y)
         {
             let between = |a: f64, b: f64, x: f64| a + x * (b - a);
@@ -202,10 +202,10 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
                 w2: between(w2, y.w2, x),
                 w3: between(w3, y.w3, x),
             };
-            let found = step(|x| law.couple(body, &along(x), normal), STEP * size(m));
-            jump = f64::max(jump, found / size(m).max(f64::MIN_POSITIVE));
+            let found = jump_between(|x| law.couple(body, &along(x), normal), JUMP_SHARE * magnitude(m));
+            jump = f64::max(jump, found / magnitude(m).max(f64::MIN_POSITIVE));
         }
-        if jump > STEP {
+        if jump > JUMP_SHARE {
             return refuse(jump, "no step, and no couple at rest: use tanh(x/e) for sgn(x)");
         }
     }
@@ -215,13 +215,14 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
 fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let most = law.coefficient(0.0);
     // In doubles 0.1 + 0.2 exceeds 0.3.
-    within("static", fixed, (most * (1.0 - GIVEN_BY_ROUNDING), f64::INFINITY), "static >= mu at rest")?;
+    within("static", fixed, (most * (1.0 - POWER_ROUNDING), f64::INFINITY), "static >= mu at rest")?;
     let mut from = (0.0, most);
     for i in 0..=1000 {
         let speed = 10f64.powf(-6.0 + 9.0 * f64::from(i) / 1000.0);
         let to = (speed, within("mu", law.coefficient(speed), (0.0, f64::MAX), AT_LEAST_0)?);
         let between = |x: f64| [law.coefficient((1.0 - x) * from.0 + x * to.0), 0.0, 0.0];
-        if (to.1 - from.1).abs() > STEP * (1.0 + most) && step(between, STEP) > STEP {
+        if (to.1 - from.1).abs() > JUMP_SHARE * (1.0 + most) && jump_between(between, JUMP_SHARE) > JUMP_SHARE
+        {
             return Err(Error::OutOfRange {
                 name: "mu",
                 value: to.1,

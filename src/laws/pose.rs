@@ -133,7 +133,7 @@ impl Pose {
     }
 
     /// The contact point on a smooth table, where the centre stays above one point of the table.
-    pub(crate) fn below_centre(body: &Body, start: &State, y: &State, phi: f64) -> Point2<f64> {
+    pub(crate) fn contact_point_below_centre(body: &Body, start: &State, y: &State, phi: f64) -> Point2<f64> {
         let rim = body.shape().rim;
         let lever = |y: &State| rim.lever(y.theta.sin_cos());
         let (sin, cos) = phi.sin_cos();

@@ -23,10 +23,10 @@ use crate::error::{Error, within};
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The largest impulse, velocity or coefficient of friction that is accepted.
-const MOST: f64 = 1e100;
+const LARGEST_INPUT: f64 = 1e100;
 /// Largest deviation from theta = pi/2 and from w2 = 0 that counts as a rounding error; beyond it a body has no launch
 /// number.
-const LEVEL: f64 = 1e-9;
+const LEVEL_ROUNDING: f64 = 1e-9;
 
 /// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
 ///
@@ -44,8 +44,8 @@ const LEVEL: f64 = 1e-9;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
-    within("velocity", velocity, (-MOST, MOST), "-1e100 <= velocity <= 1e100")?;
-    within("backspin", backspin, (-MOST, MOST), "-1e100 <= backspin <= 1e100")?;
+    within("velocity", velocity, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= velocity <= 1e100")?;
+    within("backspin", backspin, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= backspin <= 1e100")?;
     landing::equal_rims(body)?;
     within(
         "theta_end",
@@ -80,10 +80,10 @@ pub fn pressed(
     table: f64,
 ) -> Result<(State, [f64; 2]), Error> {
     landing::two_rims(body)?;
-    within("impulse", impulse, (0.0, MOST), "0 <= impulse <= 1e100")?;
+    within("impulse", impulse, (0.0, LARGEST_INPUT), "0 <= impulse <= 1e100")?;
     within("angle", angle, (f64::MIN_POSITIVE, FRAC_PI_2), "0 < angle <= pi/2 (radians)")?;
-    within("finger", finger, (0.0, MOST), "0 <= finger <= 1e100")?;
-    within("table", table, (0.0, MOST), "0 <= table <= 1e100")?;
+    within("finger", finger, (0.0, LARGEST_INPUT), "0 <= finger <= 1e100")?;
+    within("table", table, (0.0, LARGEST_INPUT), "0 <= table <= 1e100")?;
     let (s, c) = angle.sin_cos();
     let (ell, i1, i3) = (body.ell(), body.i1(), body.i3());
     let (push, borne) = (impulse * (finger * c - s), impulse * (c + finger * s));
@@ -116,6 +116,6 @@ pub fn recoil(body: &Body, w1: f64) -> f64 {
 /// NaN for a body that is not on its side (theta = pi/2 and w2 = 0, up to rounding). The number x neglects friction
 /// along the axis; [`landing::launch`] includes it.
 pub fn launch_number(body: &Body, y: &State) -> f64 {
-    let lies = (y.theta - FRAC_PI_2).abs() <= LEVEL && y.w2.abs() <= LEVEL;
+    let lies = (y.theta - FRAC_PI_2).abs() <= LEVEL_ROUNDING && y.w2.abs() <= LEVEL_ROUNDING;
     if lies { body.i3() * y.w1 * y.w3 / body.ell() } else { f64::NAN }
 }

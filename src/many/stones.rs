@@ -96,7 +96,7 @@ pub fn many(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
-    let laws = CustomLaws::Anywhere(&Custom::default);
+    let laws = CustomLaws::AnyThread(&Custom::default);
     many_custom(count, row, times, (ask, turns), (&laws, threads), go_on)
 }
 
@@ -113,7 +113,7 @@ pub(crate) fn many_custom(
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let done = match laws {
-        CustomLaws::Here(custom) => {
+        CustomLaws::ThisThread(custom) => {
             let (mut beat, mut goes_on) = (Beat::new(), true);
             for (k, to) in all.iter_mut().enumerate() {
                 let mut still = || {
@@ -127,7 +127,7 @@ pub(crate) fn many_custom(
             }
             goes_on
         }
-        CustomLaws::Anywhere(of) => {
+        CustomLaws::AnyThread(of) => {
             let failed = OnceLock::new();
             let mut go_on = |share| failed.get().is_none() && go_on(share);
             let blocks = all.chunks_mut(16).enumerate().collect();

@@ -4,13 +4,13 @@
 //! the result of a block must not depend on its thread.
 
 use crate::error::spare_for;
-use crate::methods::beat::{Beat, EVERY};
+use crate::methods::beat::{BEAT_PERIOD, Beat};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// The bytes that a thread may reserve at its first small allocation, including its stack. With less memory no
 /// thread is started, since it could fail in code that cannot return an error.
-const ARENA: usize = 80 << 20;
+const THREAD_BYTES: usize = 80 << 20;
 
 /// The stack of a thread of this module. The stack of the caller may be as small as 80 KiB, which does not
 /// hold the frames of lanes of many motions.
@@ -26,21 +26,21 @@ pub(crate) fn share<B: Send>(
     go_on: &mut dyn FnMut(f64) -> bool,
     work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
 ) -> bool {
-    among(blocks, (threads, true), go_on, work)
+    run_on_threads(blocks, (threads, true), go_on, work)
 }
 
 /// [`share`] for work that needs a large stack: the calling thread only calls `go_on`, unless its stack is large as
 /// well (`roomy`), or no other thread can be started. Starting threads takes longer than a few hundred motions.
-pub(crate) fn share_aside<B: Send>(
+pub(crate) fn share_with_large_stacks<B: Send>(
     blocks: Vec<B>,
     (threads, roomy): (usize, bool),
     go_on: &mut dyn FnMut(f64) -> bool,
     work: impl Fn(B, &mut dyn FnMut() -> bool) + Sync,
 ) -> bool {
-    among(blocks, (threads, roomy), go_on, work)
+    run_on_threads(blocks, (threads, roomy), go_on, work)
 }
 
-fn among<B: Send>(
+fn run_on_threads<B: Send>(
     blocks: Vec<B>,
     (threads, joins): (usize, bool),
     go_on: &mut dyn FnMut(f64) -> bool,
@@ -52,7 +52,7 @@ fn among<B: Send>(
     let (stop, done) = (AtomicBool::new(false), AtomicUsize::new(0));
     let caller = std::thread::current();
     let run = |ask: &mut dyn FnMut() -> bool| {
-        let _alarm = Alarm(&stop, &caller);
+        let _alarm = WakeAtEnd(&stop, &caller);
         loop {
             let next = queue.lock().ok().and_then(|mut blocks| blocks.next());
             let Some(block) = next else { return };
@@ -74,7 +74,7 @@ fn among<B: Send>(
     std::thread::scope(|scope| {
         let spawn =
             || std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || run(&mut || true));
-        let fits = |k: usize| spare_for(k * ARENA).ok();
+        let fits = |k: usize| spare_for(k * THREAD_BYTES).ok();
         let first = usize::from(joins);
         let others: Vec<_> = (first..threads).map_while(|k| fits(k).and_then(|()| spawn().ok())).collect();
         if joins || others.is_empty() {
@@ -85,7 +85,7 @@ fn among<B: Send>(
             if !ask() {
                 stop.store(true, Ordering::Relaxed);
             }
-            std::thread::park_timeout(EVERY);
+            std::thread::park_timeout(BEAT_PERIOD);
         }
         for other in others {
             if let Err(panic) = other.join() {
@@ -98,9 +98,9 @@ fn among<B: Send>(
 
 /// Wakes the calling thread when the thread that holds this ends. If that thread panics, all threads stop, since no
 /// other thread would compute the lost block.
-struct Alarm<'a>(&'a AtomicBool, &'a std::thread::Thread);
+struct WakeAtEnd<'a>(&'a AtomicBool, &'a std::thread::Thread);
 
-impl Drop for Alarm<'_> {
+impl Drop for WakeAtEnd<'_> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             self.0.store(true, Ordering::Relaxed);
@@ -129,18 +129,21 @@ mod tests {
     fn work_that_needs_a_large_stack_is_never_that_of_the_caller() {
         let caller = std::thread::current().id();
         for threads in [1, 3] {
-            let all = share_aside((0..50).collect(), (threads, false), &mut |_| true, |_: usize, _| {
-                assert_ne!(std::thread::current().id(), caller);
-                // Three quarters of the stack can be used.
-                let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
-                assert_eq!(frame[frame.len() - 1], 1);
-            });
+            let all =
+                share_with_large_stacks((0..50).collect(), (threads, false), &mut |_| true, |_: usize, _| {
+                    assert_ne!(std::thread::current().id(), caller);
+                    // Three quarters of the stack can be used.
+                    let frame = std::hint::black_box([1u8; STACK / 4 * 3]);
+                    assert_eq!(frame[frame.len() - 1], 1);
+                });
             assert!(all);
         }
         let here = |(), _: &mut dyn FnMut() -> bool| assert_eq!(std::thread::current().id(), caller);
-        assert!(share_aside(vec![(); 50], (1, true), &mut |_| true, here));
-        assert!(!share_aside(vec![(); 1000], (1, false), &mut |_| false, |(), still| while still() {
-            std::thread::sleep(Duration::from_millis(1));
+        assert!(share_with_large_stacks(vec![(); 50], (1, true), &mut |_| true, here));
+        assert!(!share_with_large_stacks(vec![(); 1000], (1, false), &mut |_| false, |(), still| {
+            while still() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
         }));
     }
 

@@ -13,7 +13,7 @@ const NODES: usize = 24;
 /// A series is complete if its last terms are below this, relative to its scale. The terms of its integral are 48 times
 /// smaller, so that the integral is accurate to 1e-16. With a limit below the rounding errors the halving would never
 /// end.
-const COMPLETE: f64 = 4e-15;
+const COMPLETE_SERIES_TERM: f64 = 4e-15;
 /// Largest number of pieces of an integral; the slowest passage of an unstable steady state needs fewer.
 const PIECES: usize = 1000;
 /// Largest relative noise that relaxes the test of completeness: with more noise, the unresolved series of a noisy
@@ -89,7 +89,7 @@ impl<const M: usize> Antiderivative<M> {
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
         while let Some((left, right)) = waiting.pop() {
             let half = 0.5 * (right - left);
-            let Some((piece, doubt)) = Self::made(&mut f, left, right, &whole) else {
+            let Some((piece, doubt)) = Self::complete_piece(&mut f, left, right, &whole) else {
                 if whole.pieces.len() + waiting.len() > PIECES || half < narrowest {
                     return None;
                 }
@@ -110,7 +110,7 @@ impl<const M: usize> Antiderivative<M> {
 
     /// The piece from `left` to `right`, and the uncertainty of its integrals; None if the series is not
     /// complete.
-    fn made(
+    fn complete_piece(
         f: &mut impl FnMut(f64) -> Sampled<M>,
         left: f64,
         right: f64,
@@ -149,7 +149,7 @@ impl<const M: usize> Antiderivative<M> {
             }
             let last = rate[NODES - 4..].iter().fold(0f64, |a, c| a.max(c.abs()));
             // A value that is not finite passes this comparison and is an error in `new`.
-            if last > scale[i] * COMPLETE + 2.0 * noise[i] {
+            if last > scale[i] * COMPLETE_SERIES_TERM + 2.0 * noise[i] {
                 return None;
             }
             doubt[i] += last / NODES as f64;
@@ -172,7 +172,7 @@ impl<const M: usize> Antiderivative<M> {
     }
 
     /// The start of the piece that contains `u`, and the integrals from 0 to that start.
-    pub fn begun(&self, u: f64) -> (f64, [f64; M]) {
+    pub fn start_of_piece(&self, u: f64) -> (f64, [f64; M]) {
         let piece = self.piece(u);
         (piece.left, piece.before)
     }
@@ -184,7 +184,7 @@ impl<const M: usize> Antiderivative<M> {
     }
 
     /// Absolute uncertainty of the first integral from 0 to `u`.
-    pub fn doubt_at(&self, u: f64) -> f64 {
+    pub fn uncertainty_at(&self, u: f64) -> f64 {
         let next = self.pieces.partition_point(|p| p.right < u) + 1;
         let after = self.pieces.get(next).map_or(self.doubt[0], |p| p.doubt_before);
         let piece = self.piece(u);

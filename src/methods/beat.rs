@@ -5,7 +5,7 @@ use std::time::Duration;
 use std::time::Instant;
 
 /// The time between two calls of the caller.
-pub(crate) const EVERY: Duration = Duration::from_millis(20);
+pub(crate) const BEAT_PERIOD: Duration = Duration::from_millis(20);
 
 /// A timer that is due about fifty times a second, or at every query where the platform has no clock, as in a
 /// browser's WebAssembly.
@@ -23,7 +23,7 @@ impl Beat {
 
     /// Whether the interval is over; if so, the next interval begins now.
     pub fn is_due(&mut self) -> bool {
-        let due = self.asked.elapsed() >= EVERY;
+        let due = self.asked.elapsed() >= BEAT_PERIOD;
         if due {
             self.asked = Instant::now();
         }

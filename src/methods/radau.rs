@@ -13,12 +13,12 @@
 //! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
 
 use super::rk8::Step;
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
 /// The cost of a step in evaluations of the rates, if it converges fast; and that of J and its factors.
 pub(crate) const COST: u64 = 36;
-const PREPARED: u64 = 20;
+const JACOBIAN_COST: u64 = 20;
 /// The number of stages.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
@@ -34,14 +34,14 @@ const A: [[f64; RADAU_STAGES]; RADAU_STAGES] = [
 /// The eigenvalues of 1/A, of which one is real and the others are pairs, and their right and left vectors, real and
 /// imaginary parts. They determine how fast Newton's iteration converges, but not its limit.
 #[rustfmt::skip]
-const SINGLE: (f64, [f64; RADAU_STAGES], [f64; RADAU_STAGES]) = (
+const REAL_EIGENVALUE: (f64, [f64; RADAU_STAGES], [f64; RADAU_STAGES]) = (
     6.2867047517292765,
     [0.013576867344947943, 0.0016179004017190875, 0.07915785334744721, 0.41225608268046143, 1.0],
     [27.697693775684087, 12.783337911304406, 3.20848938671343, -0.9514904122489162, 0.7415504960259895],
 );
-type Twins = ([f64; 2], [[f64; 2]; RADAU_STAGES], [[f64; 2]; RADAU_STAGES]);
+type ComplexEigenvalue = ([f64; 2], [[f64; 2]; RADAU_STAGES], [[f64; 2]; RADAU_STAGES]);
 #[rustfmt::skip]
-const TWINS: [Twins; 2] = [
+const COMPLEX_EIGENVALUES: [ComplexEigenvalue; 2] = [
     (
         [5.70095329867179, 3.2102656003085497],
         [
@@ -69,41 +69,41 @@ const TWINS: [Twins; 2] = [
 ];
 /// The divided differences of y: of fifth order at the start and the nodes, of fourth at the nodes, of third at the last four.
 #[rustfmt::skip]
-const SPREAD_5: [f64; RADAU_STAGES] = [199.88739542347736, -127.022853068795, 92.10283313613321, -64.16737549081559, 25.2];
+const DIVIDED_DIFFERENCE_5: [f64; RADAU_STAGES] = [199.88739542347736, -127.022853068795, 92.10283313613321, -64.16737549081559, 25.2];
 #[rustfmt::skip]
-const SPREAD_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 53.750332212318185, -55.19935179692277, 25.2];
+const DIVIDED_DIFFERENCE_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 53.750332212318185, -55.19935179692277, 25.2];
 #[rustfmt::skip]
-const SPREAD_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
+const DIVIDED_DIFFERENCE_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
 /// Largest number of Newton's iterations.
 const ITERATIONS: usize = 14;
 /// The number of iterations after which their convergence is judged.
-const TRIALS: usize = 4;
+const TRIAL_ITERATIONS: usize = 4;
 /// The factor of the error: that of an oscillation is known within a factor of ten from 0.2 rad in a step on, however long
 /// the step.
-const MISSED: f64 = 1.5e-4;
+const ERROR_FACTOR: f64 = 1.5e-4;
 /// Largest x^2, which is 0.04 for a radian of an oscillation. Even in a step of 24 rad it is below this.
-const WIDEST: f64 = 10.0;
+const LARGEST_SQUARE: f64 = 10.0;
 /// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
-const STALLED: f64 = 1e-6;
+const STALLED_CHANGE: f64 = 1e-6;
 
 /// The changes Z at the stages with which Newton's iteration begins.
 pub(crate) type Guess<const N: usize> = Option<[[f64; N]; RADAU_STAGES]>;
 /// A step may be this many times longer than the last one, if the iteration begins with the polynomial of that step.
-const LONGER: f64 = 2.0;
+const EXTRAPOLATED_STEP_RATIO: f64 = 2.0;
 
 /// The changes in a step of length `h` by the polynomial of the last step, from its changes and its length.
 #[inline(never)]
 pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f64)>, h: f64) -> Guess<N> {
-    let (moved, before) = last.as_ref().filter(|(_, before)| h <= LONGER * before)?;
+    let (moved, before) = last.as_ref().filter(|(_, before)| h <= EXTRAPOLATED_STEP_RATIO * before)?;
     let end = moved[RADAU_STAGES - 1];
-    Some(ahead(h / before).map(|weights| {
+    Some(extrapolation(h / before).map(|weights| {
         core::array::from_fn(|n| (0..RADAU_STAGES).map(|j| weights[j] * moved[j][n]).sum::<f64>() - end[n])
     }))
 }
 
 /// Lagrange's polynomials of the nodes at the stages of the next step, which is this many times as long. That of the start
 /// would multiply a change of zero.
-fn ahead(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
+fn extrapolation(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
     PLACES.map(|place| {
         let x = 1.0 + place * longer;
         core::array::from_fn(|j| {
@@ -145,13 +145,13 @@ where
     let slopes = slopes.map(|x| if x.is_finite() { x } else { 0.0 });
     let one = SMatrix::<f64, M, M>::identity();
     let complex = |[re, im]: [f64; 2]| Complex::new(re, im);
-    let single = (one - slopes.map(|x| x * (h / SINGLE.0))).lu();
-    let pairs = TWINS.map(|(g, ..)| {
+    let single = (one - slopes.map(|x| x * (h / REAL_EIGENVALUE.0))).lu();
+    let pairs = COMPLEX_EIGENVALUES.map(|(g, ..)| {
         let per = Complex::new(h, 0.0) / complex(g);
         (one.map(Complex::from) - slopes.map(|x| per * x)).lu()
     });
     let moved = guess.unwrap_or([[0.0; N]; RADAU_STAGES]);
-    let mut all = Collocated { moved, rates: [*y; RADAU_STAGES], evaluations: PREPARED };
+    let mut all = Collocated { moved, rates: [*y; RADAU_STAGES], evaluations: JACOBIAN_COST };
     let (mut last, mut unknown, mut moves, mut more) =
         (None::<f64>, f64::INFINITY, [[0.0; N]; RADAU_STAGES], 0.0);
     for done in 1..=ITERATIONS {
@@ -167,11 +167,13 @@ where
         });
         moves = left;
         let solved = single.solve(&SVector::<f64, M>::from_fn(|n, _| {
-            (0..RADAU_STAGES).map(|i| SINGLE.2[i] * left[i][n]).sum()
+            (0..RADAU_STAGES).map(|i| REAL_EIGENVALUE.2[i] * left[i][n]).sum()
         }));
         let twice = [0, 1].map(|k| {
             let of = |n: usize| {
-                (0..RADAU_STAGES).map(|i| complex(TWINS[k].2[i]) * left[i][n]).sum::<Complex<f64>>()
+                (0..RADAU_STAGES)
+                    .map(|i| complex(COMPLEX_EIGENVALUES[k].2[i]) * left[i][n])
+                    .sum::<Complex<f64>>()
             };
             pairs[k].solve(&SVector::<Complex<f64>, M>::from_fn(|n, _| of(n)))
         });
@@ -179,14 +181,15 @@ where
         let mut most = 0.0f64;
         for (i, moves) in moves.iter_mut().enumerate() {
             for n in 0..M {
-                let pairs = complex(TWINS[0].1[i]) * first[n] + complex(TWINS[1].1[i]) * second[n];
-                moves[n] = SINGLE.1[i] * single[n] + 2.0 * pairs.re;
+                let pairs = complex(COMPLEX_EIGENVALUES[0].1[i]) * first[n]
+                    + complex(COMPLEX_EIGENVALUES[1].1[i]) * second[n];
+                moves[n] = REAL_EIGENVALUE.1[i] * single[n] + 2.0 * pairs.re;
             }
             for (n, (moved, by)) in all.moved[i].iter_mut().zip(moves).enumerate() {
                 *moved += *by;
                 // A rate may depend on an integral that is not among the first M numbers.
                 let size = sizes.get(n).copied().unwrap_or(1.0 + moved.abs());
-                most = larger(most, by.abs() / size);
+                most = larger_or_nan(most, by.abs() / size);
             }
         }
         // The first iteration does not show the rate of convergence.
@@ -195,9 +198,9 @@ where
         // The sum of all further changes, if each is this share of the previous one.
         more = if share < 0.9 { share / (1.0 - share) } else { 10.0 };
         unknown = most * more;
-        let stalls = share > 0.9 && unknown < STALLED;
-        let fails =
-            share > 2.0 || done > TRIALS && unknown * share.powi((ITERATIONS - done) as i32) > STALLED;
+        let stalls = share > 0.9 && unknown < STALLED_CHANGE;
+        let fails = share > 2.0
+            || done > TRIAL_ITERATIONS && unknown * share.powi((ITERATIONS - done) as i32) > STALLED_CHANGE;
         if unknown < converged || stalls || fails || !most.is_finite() {
             break;
         }
@@ -208,11 +211,12 @@ where
     let size = |weights: &[f64; RADAU_STAGES]| {
         (0..M).map(|n| difference(weights, n) / sizes[n]).fold(f64::MIN_POSITIVE, f64::hypot)
     };
-    let square = (0.8 * size(&SPREAD_5) / size(&SPREAD_3)).min(WIDEST);
-    let share = if unknown < STALLED { MISSED * square * square } else { f64::NAN };
+    let square = (0.8 * size(&DIVIDED_DIFFERENCE_5) / size(&DIVIDED_DIFFERENCE_3)).min(LARGEST_SQUARE);
+    let share = if unknown < STALLED_CHANGE { ERROR_FACTOR * square * square } else { f64::NAN };
     let fifth = core::array::from_fn(|n| {
         let unknown = moves.iter().fold(0.0, |most: f64, moves| most.max(moves[n].abs())) * more;
-        let spread = difference(&SPREAD_5, n).hypot(square.min(1.0).sqrt() * difference(&SPREAD_4, n));
+        let spread = difference(&DIVIDED_DIFFERENCE_5, n)
+            .hypot(square.min(1.0).sqrt() * difference(&DIVIDED_DIFFERENCE_4, n));
         share * spread + unknown
     });
     // The numbers of an iteration that has not converged are not those of the step.

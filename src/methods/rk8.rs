@@ -39,7 +39,7 @@ impl<T: Real, const N: usize> Step<T, N> {
         fifth / square.sqrt() + number(0.0) * square
     }
 
-    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than 1/`HARDLY`
+    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than 1/`SLOW_CHANGE_FACTOR`
     /// per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself, so that the error is
     /// then bounded relative to the motion. No tolerance becomes smaller than `ROUNDING` by this.
     #[inline(always)]
@@ -52,12 +52,12 @@ impl<T: Real, const N: usize> Step<T, N> {
         }
         let spared = (tol * number(1.0 / ROUNDING)).max(number(1.0));
         let span = self.change[time].abs();
-        (span / (number(HARDLY) * moved + number(1e-60))).max(number(1.0)).min(spared)
+        (span / (number(SLOW_CHANGE_FACTOR) * moved + number(1e-60))).max(number(1.0)).min(spared)
     }
 }
 
-/// [`Step::strictness`] divides the tolerance where no number changes by 1/`HARDLY` per unit of time.
-const HARDLY: f64 = 100.0;
+/// [`Step::strictness`] divides the tolerance where no number changes by 1/`SLOW_CHANGE_FACTOR` per unit of time.
+const SLOW_CHANGE_FACTOR: f64 = 100.0;
 /// The smallest tolerance that [`Step::strictness`] leaves; an error below this is rounding.
 const ROUNDING: f64 = 3e-15;
 
@@ -70,33 +70,33 @@ pub(crate) const STAGES: usize = 12;
 type Weights<const M: usize> = [(usize, f64); M];
 
 #[rustfmt::skip]
-const PLACE_2: Weights<1> = [(0, 0.05260015195876773)];
+const STAGE_2: Weights<1> = [(0, 0.05260015195876773)];
 #[rustfmt::skip]
-const PLACE_3: Weights<2> = [(0, 0.0197250569845379), (1, 0.0591751709536137)];
+const STAGE_3: Weights<2> = [(0, 0.0197250569845379), (1, 0.0591751709536137)];
 #[rustfmt::skip]
-const PLACE_4: Weights<2> = [(0, 0.02958758547680685), (2, 0.08876275643042054)];
+const STAGE_4: Weights<2> = [(0, 0.02958758547680685), (2, 0.08876275643042054)];
 #[rustfmt::skip]
-const PLACE_5: Weights<3> = [(0, 0.2413651341592667), (2, -0.8845494793282861), (3, 0.924834003261792)];
+const STAGE_5: Weights<3> = [(0, 0.2413651341592667), (2, -0.8845494793282861), (3, 0.924834003261792)];
 #[rustfmt::skip]
-const PLACE_6: Weights<3> = [(0, 0.037037037037037035), (3, 0.17082860872947386), (4, 0.12546768756682242)];
+const STAGE_6: Weights<3> = [(0, 0.037037037037037035), (3, 0.17082860872947386), (4, 0.12546768756682242)];
 #[rustfmt::skip]
-const PLACE_7: Weights<4> = [(0, 0.037109375), (3, 0.17025221101954405), (4, 0.06021653898045596), (5, -0.017578125)];
+const STAGE_7: Weights<4> = [(0, 0.037109375), (3, 0.17025221101954405), (4, 0.06021653898045596), (5, -0.017578125)];
 #[rustfmt::skip]
-const PLACE_8: Weights<5> = [(0, 0.03709200011850479), (3, 0.17038392571223998), (4, 0.10726203044637328), (5, -0.015319437748624402), (6, 0.008273789163814023)];
+const STAGE_8: Weights<5> = [(0, 0.03709200011850479), (3, 0.17038392571223998), (4, 0.10726203044637328), (5, -0.015319437748624402), (6, 0.008273789163814023)];
 #[rustfmt::skip]
-const PLACE_9: Weights<6> = [(0, 0.6241109587160757), (3, -3.3608926294469414), (4, -0.868219346841726), (5, 27.59209969944671), (6, 20.154067550477894), (7, -43.48988418106996)];
+const STAGE_9: Weights<6> = [(0, 0.6241109587160757), (3, -3.3608926294469414), (4, -0.868219346841726), (5, 27.59209969944671), (6, 20.154067550477894), (7, -43.48988418106996)];
 #[rustfmt::skip]
-const PLACE_10: Weights<7> = [(0, 0.47766253643826434), (3, -2.4881146199716677), (4, -0.590290826836843), (5, 21.230051448181193), (6, 15.279233632882423), (7, -33.28821096898486), (8, -0.020331201708508627)];
+const STAGE_10: Weights<7> = [(0, 0.47766253643826434), (3, -2.4881146199716677), (4, -0.590290826836843), (5, 21.230051448181193), (6, 15.279233632882423), (7, -33.28821096898486), (8, -0.020331201708508627)];
 #[rustfmt::skip]
-const PLACE_11: Weights<8> = [(0, -0.9371424300859873), (3, 5.186372428844064), (4, 1.0914373489967295), (5, -8.149787010746927), (6, -18.52006565999696), (7, 22.739487099350505), (8, 2.4936055526796523), (9, -3.0467644718982196)];
+const STAGE_11: Weights<8> = [(0, -0.9371424300859873), (3, 5.186372428844064), (4, 1.0914373489967295), (5, -8.149787010746927), (6, -18.52006565999696), (7, 22.739487099350505), (8, 2.4936055526796523), (9, -3.0467644718982196)];
 #[rustfmt::skip]
-const PLACE_12: Weights<9> = [(0, 2.273310147516538), (3, -10.53449546673725), (4, -2.0008720582248625), (5, -17.9589318631188), (6, 27.94888452941996), (7, -2.8589982771350235), (8, -8.87285693353063), (9, 12.360567175794303), (10, 0.6433927460157636)];
+const STAGE_12: Weights<9> = [(0, 2.273310147516538), (3, -10.53449546673725), (4, -2.0008720582248625), (5, -17.9589318631188), (6, 27.94888452941996), (7, -2.8589982771350235), (8, -8.87285693353063), (9, 12.360567175794303), (10, 0.6433927460157636)];
 #[rustfmt::skip]
-const CHANGE: Weights<8> = [(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
+const SOLUTION_WEIGHTS: Weights<8> = [(0, 0.054293734116568765), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, 0.3111643669578199), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.04471061572777259)];
 #[rustfmt::skip]
-const FIFTH: Weights<8> = [(0, 0.01312004499419488), (5, -1.2251564463762044), (6, -0.4957589496572502), (7, 1.6643771824549864), (8, -0.35032884874997366), (9, 0.3341791187130175), (10, 0.08192320648511571), (11, -0.022355307863886294)];
+const FIFTH_ORDER_ERROR: Weights<8> = [(0, 0.01312004499419488), (5, -1.2251564463762044), (6, -0.4957589496572502), (7, 1.6643771824549864), (8, -0.35032884874997366), (9, 0.3341791187130175), (10, 0.08192320648511571), (11, -0.022355307863886294)];
 #[rustfmt::skip]
-const THIRD: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
+const THIRD_ORDER_ERROR: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
 
 /// Space for the rates at the stages of a step, which a flow keeps from one step to the next.
 pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
@@ -138,17 +138,17 @@ fn write_place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stag
         };
     }
     match stage {
-        1 => by!(PLACE_2),
-        2 => by!(PLACE_3),
-        3 => by!(PLACE_4),
-        4 => by!(PLACE_5),
-        5 => by!(PLACE_6),
-        6 => by!(PLACE_7),
-        7 => by!(PLACE_8),
-        8 => by!(PLACE_9),
-        9 => by!(PLACE_10),
-        10 => by!(PLACE_11),
-        _ => by!(PLACE_12),
+        1 => by!(STAGE_2),
+        2 => by!(STAGE_3),
+        3 => by!(STAGE_4),
+        4 => by!(STAGE_5),
+        5 => by!(STAGE_6),
+        6 => by!(STAGE_7),
+        7 => by!(STAGE_8),
+        8 => by!(STAGE_9),
+        9 => by!(STAGE_10),
+        10 => by!(STAGE_11),
+        _ => by!(STAGE_12),
     }
 }
 
@@ -178,9 +178,9 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     }
     let mut made = Step { change: [h; N], fifth: [h; N], third: [h; N] };
     for i in 0..N {
-        made.change[i] = h * weighted(k, &CHANGE, i);
-        made.fifth[i] = h * weighted(k, &FIFTH, i);
-        made.third[i] = h * weighted(k, &THIRD, i);
+        made.change[i] = h * weighted(k, &SOLUTION_WEIGHTS, i);
+        made.fifth[i] = h * weighted(k, &FIFTH_ORDER_ERROR, i);
+        made.third[i] = h * weighted(k, &THIRD_ORDER_ERROR, i);
     }
     made
 }

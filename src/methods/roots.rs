@@ -14,16 +14,16 @@ use crate::numbers::Sum;
 use core::ops::{Add, Mul, Sub};
 
 /// The highest degree, which the polynomial of the boundary of stability of a rounded rim has.
-const MOST: usize = 16;
+const HIGHEST_DEGREE: usize = 16;
 
 /// A few numbers in ascending order.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Few {
-    items: [f64; MOST],
+pub(crate) struct SortedRoots {
+    items: [f64; HIGHEST_DEGREE],
     len: usize,
 }
 
-impl Few {
+impl SortedRoots {
     fn push(&mut self, x: f64) {
         self.items[self.len] = x;
         self.len += 1;
@@ -35,14 +35,14 @@ impl Few {
 }
 
 /// The roots in the open interval (0, 1) of `sum of p[k] t^k`, in ascending order; a double root appears once.
-pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> Few {
+pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> SortedRoots {
     in_unit_interval_with_end(p, sign_below_one(p))
 }
 
 /// The roots in the open interval (0, 1), where the caller knows the sign of the polynomial just below 1 better than
 /// the sum of its rounded coefficients does.
-pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> Few {
-    let mut found = Few { items: [0.0; MOST], len: 0 };
+pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> SortedRoots {
+    let mut found = SortedRoots { items: [0.0; HIGHEST_DEGREE], len: 0 };
     if p.len() < 2 {
         return found;
     }
@@ -53,7 +53,7 @@ pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> 
     let (mut low, mut sign_low) = (0.0, sign_above_zero(p));
     for (high, sign_high) in inside.chain([(1.0, sign_below_one)]) {
         if sign_low * sign_high < 0.0 {
-            found.push(between(p, slope, low, high, sign_low));
+            found.push(bracketed_root(p, slope, low, high, sign_low));
         } else if sign_high == 0.0 && high < 1.0 {
             found.push(high);
         }
@@ -69,8 +69,8 @@ fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 
-fn derivative(p: &[Sum<f64>]) -> [Sum<f64>; MOST] {
-    let mut d = [ZERO; MOST];
+fn derivative(p: &[Sum<f64>]) -> [Sum<f64>; HIGHEST_DEGREE] {
+    let mut d = [ZERO; HIGHEST_DEGREE];
     for (k, c) in p.iter().enumerate().skip(1) {
         d[k - 1] = c.times(k as f64);
     }
@@ -97,7 +97,7 @@ fn sign_below_one(p: &[Sum<f64>]) -> f64 {
 
 /// The root bracketed by `low` and `high`, where `p` changes from the sign `sign_low`. Newton's steps are taken while
 /// they shrink fast; otherwise the bracket is halved.
-fn between(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
+fn bracketed_root(p: &[Sum<f64>], slope: &[Sum<f64>], mut low: f64, mut high: f64, sign_low: f64) -> f64 {
     let mut t = middle_of(low, high);
     let mut step = high - low;
     loop {
@@ -203,7 +203,7 @@ impl Trig {
     }
 
     /// The same polynomial, written over a higher power of 1 + t^2.
-    fn raised(&self, degree: usize) -> Self {
+    fn over_higher_power(&self, degree: usize) -> Self {
         let one = Self { p: [1.0, 0.0, 1.0].map(Sum::from).to_vec(), degree: 1 };
         let product = (self.degree..degree).fold(self.clone(), |all, _| &all * &one);
         Self { degree, ..product }
@@ -244,7 +244,7 @@ impl Add for &Trig {
     type Output = Trig;
     fn add(self, other: &Trig) -> Trig {
         let degree = self.degree.max(other.degree);
-        let (a, b) = (self.raised(degree), other.raised(degree));
+        let (a, b) = (self.over_higher_power(degree), other.over_higher_power(degree));
         Trig { p: a.p.iter().zip(&b.p).map(|(a, b)| a.plus(*b)).collect(), degree }
     }
 }

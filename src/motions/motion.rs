@@ -90,7 +90,7 @@ fn rolled(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
     let found = if ask.conserves() {
-        path::without_slip(start.slip)?;
+        path::refuse_slip(start.slip)?;
         conserved(body, start, times, ask, go_on)?
     } else {
         path::follow(body, start, times, ask, go_on)?
@@ -117,15 +117,15 @@ pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
 
 /// The initial data of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion is over
 /// at once.
-pub(crate) struct Begun {
+pub(crate) struct InitialData {
     pub angle: (f64, f64),
     pub rate: State,
     pub over: Option<Ending>,
 }
 
 /// The initial data of a body's motion, where `way` is the direction of time.
-pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> Begun {
+pub(crate) fn begun(body: &Body, contact: Contact, mu: f64, y: &State, way: f64) -> InitialData {
     let (limits, angle) = (Limits::new(body, &Table::of(contact, mu)), y.theta.sin_cos());
     let rate = limits.rates.derivative(y, angle);
-    Begun { angle, rate, over: limits.at_start_of(y, &rate, angle, way) }
+    InitialData { angle, rate, over: limits.at_start_of(y, &rate, angle, way) }
 }

@@ -47,7 +47,7 @@ const LEAST_TIME: f64 = 400.0;
 const LEAST_LOOKS: f64 = 400.0;
 const MOST_LOOKS: f64 = 40_000.0;
 /// The tolerances with which a motion is computed, one after the other, until its error lets it decide.
-const FINER: [f64; 3] = [1e-8, 1e-11, 1e-14];
+const DECISION_TOLERANCES: [f64; 3] = [1e-8, 1e-11, 1e-14];
 
 /// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's number;
 /// infinite if with every spin the top is unstable upside down or stable upright, unless 1 - l < I1/I3 < 1 + l.
@@ -105,10 +105,10 @@ pub fn turning_spin(
     time: impl Into<Option<f64>>,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<f64>, Error> {
-    let times = looks(friction, lean, time.into())?;
+    let times = times_to_look(friction, lean, time.into())?;
     let turns = |spin: f64| turns_over(top, (friction, lean), &times, spin, &mut go_on);
     let [over, up] = jellett_spins(top)?;
-    searched(over, if up.is_finite() { over.max(up) } else { over }, turns)
+    search_least_spin(over, if up.is_finite() { over.max(up) } else { over }, turns)
 }
 
 /// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
@@ -152,14 +152,14 @@ pub fn rising_spin(
     time: impl Into<Option<f64>>,
     mut go_on: impl FnMut() -> bool,
 ) -> Result<Option<f64>, Error> {
-    let times = looks(friction, lean, time.into())?;
+    let times = times_to_look(friction, lean, time.into())?;
     let rises = |spin: f64| rises(egg, (friction, lean), &times, spin, &mut go_on);
     let least = jellett_rising_spin(egg)?;
-    searched(least, least, rises)
+    search_least_spin(least, least, rises)
 }
 
 /// The times at which the state is computed, up to the time of the search.
-fn looks(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec<f64>, Error> {
+fn times_to_look(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec<f64>, Error> {
     friction.check()?;
     within("lean", lean, (1e-6, 1.0), "1e-6 to 1 rad")?;
     let slows = friction.strength() * friction.patch();
@@ -171,7 +171,7 @@ fn looks(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec<f64>, E
 }
 
 /// The least spin for which `turns` is true, from half of `least` to ten times `most`; None if the search is interrupted.
-fn searched(
+fn search_least_spin(
     least: f64,
     most: f64,
     mut turns: impl FnMut(f64) -> Result<Option<bool>, Error>,
@@ -210,7 +210,7 @@ fn turns_over(
     let state = State { theta: lean, w1: 0.0, w2: 0.0, w3: spin };
     let slip = centre_velocity(top, &state, [0.0; 2]).map(|v| -v);
     let start = Start { slip, ..state.into() };
-    decided(
+    decide_whether_positive(
         friction,
         times,
         spin,
@@ -232,12 +232,14 @@ fn rises(
     let state = StoneState { vertical, w: vertical.map(|x| spin * x) };
     let start = Start { slip: egg.slip(&state, [0.0; 2]), ..state.into() };
     let leans = |y: &StoneState| ON_END - y.vertical[2].abs().min(1.0).acos();
-    decided(friction, times, spin, leans, |times, ask| stone::roll(egg, start, times, ask, &mut *go_on))
+    decide_whether_positive(friction, times, spin, leans, |times, ask| {
+        stone::roll(egg, start, times, ask, &mut *go_on)
+    })
 }
 
 /// Whether `room` is positive in a state of a motion. The motion is computed with smaller tolerances until its error
 /// lets it decide; what happens after the first such state does not matter. None if the motion is interrupted.
-fn decided<S: Moving>(
+fn decide_whether_positive<S: Moving>(
     friction: Friction,
     times: &[f64],
     spin: f64,
@@ -245,7 +247,7 @@ fn decided<S: Moving>(
     mut roll: impl FnMut(&[f64], &Ask) -> Result<Option<Motion<S>>, Error>,
 ) -> Result<Option<bool>, Error> {
     let mut error = f64::INFINITY;
-    for tol in FINER {
+    for tol in DECISION_TOLERANCES {
         let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(friction) };
         let Some(whole) = roll(times, &ask)?.filter(|m| !m.is_interrupted()) else { return Ok(None) };
         let most = whole.states.iter().map(&room).fold(f64::NEG_INFINITY, f64::max);

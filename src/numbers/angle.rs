@@ -71,7 +71,7 @@ pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     let level = Sum::of(number(core::f64::consts::FRAC_PI_2) - theta, number(HALF_PI_LO));
     let beyond = Sum::of(number(core::f64::consts::PI) - theta, number(2.0 * HALF_PI_LO));
     let pick = |near: T, level: T, far: T| quarter.select_lt(theta, most.select_lt(theta, far, level), near);
-    let [s, c] = small(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
+    let [s, c] = sin_cos_below_quarter(pick(theta, level.hi, beyond.hi), pick(zero, level.lo, beyond.lo));
     SinCos {
         sin: Sum { hi: pick(s.hi, c.hi, s.hi), lo: pick(s.lo, c.lo, s.lo) },
         cos: Sum { hi: pick(c.hi, s.hi, -c.hi), lo: pick(c.lo, s.lo, -c.lo) },
@@ -115,7 +115,7 @@ pub(crate) fn short_sincos<T: Real>(theta: T, floor: f64) -> Short<T> {
 
 /// Sine and cosine of x + x_lo, |x| <= pi/4.
 #[inline(always)]
-fn small<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
+fn sin_cos_below_quarter<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
     let one = x.splat(1.0);
     let z = Sum::product(x, x);
 

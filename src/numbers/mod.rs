@@ -49,18 +49,18 @@ pub(crate) fn level() -> Option<Level> {
 
 /// AVX2, if this machine has it. AVX-512 would not speed up computations with a few numbers.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(crate) fn registers() -> Option<fearless_simd::x86::Avx2> {
+pub(crate) fn avx2() -> Option<fearless_simd::x86::Avx2> {
     level().and_then(Level::as_avx2)
 }
 
 /// Other processors have no AVX2.
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-pub(crate) fn registers() -> Option<()> {
+pub(crate) fn avx2() -> Option<()> {
     None
 }
 
 /// Whether `in_registers` also compiles its work for AVX2, so that the plain version serves only old processors.
-pub(crate) const IN_REGISTERS: bool =
+pub(crate) const COMPILES_AVX2: bool =
     cfg!(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight));
 
 /// The sign of a number: 1, -1, or 0 for zero.
@@ -103,7 +103,7 @@ macro_rules! in_registers {
         $crate::numbers::in_registers!($work, else $work)
     };
     ($work:expr, else $plain:expr) => {
-        match $crate::numbers::registers() {
+        match $crate::numbers::avx2() {
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), lanes_of_eight))]
             Some(simd) => $crate::numbers::in_lanes!(@on simd, _ => $work),
             _ => $plain,
@@ -113,7 +113,7 @@ macro_rules! in_registers {
 pub(crate) use in_registers;
 
 /// The larger of two errors; NaN if one of them is NaN.
-pub(crate) fn larger(error: f64, other: f64) -> f64 {
+pub(crate) fn larger_or_nan(error: f64, other: f64) -> f64 {
     if error.is_nan() || other <= error { error } else { other }
 }
 

@@ -134,20 +134,20 @@ const HALF_PI: [f64; 2] = [6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-
 #[inline(always)]
 pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
     let near = Sum { hi: theta, lo: theta.splat(0.0) };
-    let [middle, far] = [below(FRAC_PI_2, 1.0, theta), below(PI, 2.0, theta)];
-    let [sin, cos, fall] = series(in_thirds(theta, near, middle, far));
+    let [middle, far] = [angle_below(FRAC_PI_2, 1.0, theta), angle_below(PI, 2.0, theta)];
+    let [sin, cos, fall] = series(select_by_third(theta, near, middle, far));
     let other = sin.splat(1.0) - sin;
     [
-        in_thirds(theta, sin, cos, sin),
-        in_thirds(theta, cos, sin, -cos),
-        in_thirds(theta, other, fall, other),
-        in_thirds(theta, fall, other, fall),
+        select_by_third(theta, sin, cos, sin),
+        select_by_third(theta, cos, sin, -cos),
+        select_by_third(theta, other, fall, other),
+        select_by_third(theta, fall, other, fall),
     ]
 }
 
 /// `parts` times pi/2 minus theta, where `from` is the double nearest to `parts` times pi/2.
 #[inline(always)]
-fn below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
+fn angle_below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
     let zero = theta.splat(0.0);
     let rest = Sum::of(theta.splat(from) - theta, theta.splat(parts * HALF_PI[0]));
     rest.plus(Sum { hi: theta.splat(parts * HALF_PI[1]), lo: zero })
@@ -155,7 +155,7 @@ fn below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
 
 /// Returns `near` up to pi/4, `middle` up to 3 pi/4 and `far` beyond.
 #[inline(always)]
-fn in_thirds<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>) -> Sum<T> {
+fn select_by_third<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>) -> Sum<T> {
     let [low, high] = [theta.splat(FRAC_PI_4), theta.splat(3.0 * FRAC_PI_4)];
     Sum {
         hi: low.select_lt(theta, high.select_lt(theta, far.hi, middle.hi), near.hi),

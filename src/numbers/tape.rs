@@ -29,7 +29,7 @@ enum Op {
     Root(u16),
     Rounded(u16),
     /// The third operand where the first is less than the second at t = 0, else the fourth.
-    Picked([u16; 4]),
+    Selected([u16; 4]),
 }
 
 impl Op {
@@ -43,7 +43,7 @@ impl Op {
             Self::Quotient(of) => Self::Quotient(of.map(to)),
             Self::Root(a) => Self::Root(to(a)),
             Self::Rounded(a) => Self::Rounded(to(a)),
-            Self::Picked(of) => Self::Picked(of.map(to)),
+            Self::Selected(of) => Self::Selected(of.map(to)),
         }
     }
 }
@@ -226,7 +226,7 @@ impl Real for Taped<'_> {
         if self.of.is_none() && other.of.is_none() {
             return if self.shift < other.shift { yes } else { no };
         }
-        self.tape.plain(self.tape.result(Op::Picked([self, other, yes, no].map(Self::index))))
+        self.tape.plain(self.tape.result(Op::Selected([self, other, yes, no].map(Self::index))))
     }
 }
 
@@ -250,7 +250,7 @@ pub(crate) struct Player {
 
 /// The sum of a_j b_(n-j) over 0 < j < n, of even and of odd j, so that one product does not wait for the other.
 #[inline(always)]
-fn between(a: &Row, b: &Row, n: usize) -> f64 {
+fn inner_products(a: &Row, b: &Row, n: usize) -> f64 {
     let mut sums = [0.0; 2];
     (1..n).for_each(|j| sums[j % 2] += a.at[j] * b.at[n - j]);
     sums[0] + sums[1]
@@ -334,7 +334,7 @@ impl Player {
                     (root, at(a).1 / (root + root).max(f64::MIN_POSITIVE))
                 }
                 Op::Rounded(a) => (at(a).0.round_ties_even(), 0.0),
-                Op::Picked([a, b, yes, no]) => at(if at(a).0 < at(b).0 { yes } else { no }),
+                Op::Selected([a, b, yes, no]) => at(if at(a).0 < at(b).0 { yes } else { no }),
             };
             (to[0].at[0], to[0].slope) = (value, slope);
         }
@@ -368,18 +368,20 @@ impl Player {
                 Op::Affine(a, [k, _]) => k * row(a).at[n],
                 Op::Product(of) => {
                     let [a, b] = of.map(row);
-                    between(a, b, n) + (a.at[0] * b.at[n] + a.at[n] * b.at[0])
+                    inner_products(a, b, n) + (a.at[0] * b.at[n] + a.at[n] * b.at[0])
                 }
                 Op::Quotient(of) => {
                     let [a, b] = of.map(row);
-                    (a.at[n] - between(to, b, n) - to.at[0] * b.at[n]) / b.at[0]
+                    (a.at[n] - inner_products(to, b, n) - to.at[0] * b.at[n]) / b.at[0]
                 }
                 Op::Root(a) => {
-                    let rest = row(a).at[n] - between(to, to, n);
+                    let rest = row(a).at[n] - inner_products(to, to, n);
                     if to.at[0] == 0.0 && rest == 0.0 { 0.0 } else { rest / (2.0 * to.at[0]) }
                 }
                 Op::Rounded(_) => 0.0,
-                Op::Picked([a, b, yes, no]) => row(if row(a).at[0] < row(b).at[0] { yes } else { no }).at[n],
+                Op::Selected([a, b, yes, no]) => {
+                    row(if row(a).at[0] < row(b).at[0] { yes } else { no }).at[n]
+                }
             };
         }
     }

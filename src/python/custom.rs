@@ -2,7 +2,7 @@
 
 use super::options::MotionAsked;
 use super::pointer::GivenLaw;
-use super::watch::ASK;
+use super::watch::CHECK_PERIOD;
 use crate::laws::body::Body;
 use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::state::State;
@@ -44,7 +44,7 @@ impl Raised {
 
     fn check_signals(&self, py: Python<'_>) -> PyResult<()> {
         let now = Instant::now();
-        if self.asked.get().is_none_or(|asked| now - asked >= ASK) {
+        if self.asked.get().is_none_or(|asked| now - asked >= CHECK_PERIOD) {
             self.asked.set(Some(now));
             py.check_signals()?;
         }

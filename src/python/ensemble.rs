@@ -104,12 +104,12 @@ pub fn ensemble<'py>(
     let mut go_on = |share: f64| watch.go_on(share);
     if asked.calls_python() {
         with_laws(py, &asked, |laws| {
-            roll_custom(&starts, &job, out, (&CustomLaws::Here(laws), threads), &mut go_on)
+            roll_custom(&starts, &job, out, (&CustomLaws::ThisThread(laws), threads), &mut go_on)
         })??;
     } else if asked.is_custom() {
         let pointed = asked.pointed();
         let of = || pointed.custom();
-        py.detach(|| roll_custom(&starts, &job, out, (&CustomLaws::Anywhere(&of), threads), &mut go_on))?;
+        py.detach(|| roll_custom(&starts, &job, out, (&CustomLaws::AnyThread(&of), threads), &mut go_on))?;
     } else {
         py.detach(|| roll_among(&starts, &job, out, threads, &mut go_on))?;
     }

@@ -49,7 +49,7 @@ fn or_nan(result: Result<f64, Error>) -> f64 {
 
 thread_local! {
     /// The body of the last call of `rate_of_one`, with the bits of its numbers.
-    static LAST: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
+    static LAST_BODY: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
 /// A function of a body; `x` begins with the numbers of the body, and the result is NaN if these are invalid.
@@ -77,21 +77,21 @@ fn state_of(x: &[f64]) -> State {
 }
 
 /// One number, chosen by `pick`, of the state and the slip of a thrown or pressed body; NaN for an error.
-fn left(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
+fn number_of_throw(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
     or_nan(thrown.map(|(y, slip)| pick(&y, slip)))
 }
 
 /// A number of a pressed body: `x` has impulse, angle, friction of finger and table, then the numbers of the body.
 fn of_press(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
-    of_body(&x[4..], |b| left(throw::pressed(b, x[0], x[1], x[2], x[3]), &pick))
+    of_body(&x[4..], |b| number_of_throw(throw::pressed(b, x[0], x[1], x[2], x[3]), &pick))
 }
 
 /// A number of a thrown body: `x` has velocity, backspin, then the numbers of the body.
 fn of_throw(x: &[f64], pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
-    of_body(&x[2..], |b| left(throw::thrown(b, x[0], x[1]), &pick))
+    of_body(&x[2..], |b| number_of_throw(throw::thrown(b, x[0], x[1]), &pick))
 }
 
-fn some(x: &[f64], f: impl Fn(&Body) -> [f64; MOST]) -> [f64; MOST] {
+fn numbers_of_body(x: &[f64], f: impl Fn(&Body) -> [f64; MOST]) -> [f64; MOST] {
     body_of(x).map_or([f64::NAN; MOST], |body| f(&body))
 }
 
@@ -130,7 +130,7 @@ static LAWS: &[ArrayFunction] = &[
         name: "precession_of_spin",
         inputs: 9,
         value: Value::Pick(|x| {
-            some(&x[2..], |b| {
+            numbers_of_body(&x[2..], |b| {
                 let [slow, fast] = steady::precessions_of_spin(b, x[0], x[1]).unwrap_or([f64::NAN; 2]);
                 core::array::from_fn(|i| [slow, fast].get(i).copied().unwrap_or(f64::NAN))
             })
@@ -139,34 +139,34 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "inclination",
         inputs: 8,
-        value: Value::Pick(|x| some(&x[1..], |b| steady::inclinations(b, x[0]))),
+        value: Value::Pick(|x| numbers_of_body(&x[1..], |b| steady::inclinations(b, x[0]))),
     },
     ArrayFunction {
         name: "states_w1",
         inputs: 8,
-        value: Value::Pick(|x| some(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w1))),
+        value: Value::Pick(|x| numbers_of_body(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w1))),
     },
     ArrayFunction {
         name: "states_w3",
         inputs: 8,
-        value: Value::Pick(|x| some(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w3))),
+        value: Value::Pick(|x| numbers_of_body(&x[1..], |b| steady::states(b, x[0]).map(|y| y.w3))),
     },
     ArrayFunction {
         name: "count",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| steady::count(b, x[0]).map_or(f64::NAN, |n| n as f64))),
     },
-    ArrayFunction { name: "fold", inputs: 7, value: Value::Pick(|x| some(x, steady::folds)) },
-    ArrayFunction { name: "ridge", inputs: 7, value: Value::Pick(|x| some(x, steady::ridge)) },
+    ArrayFunction { name: "fold", inputs: 7, value: Value::Pick(|x| numbers_of_body(x, steady::folds)) },
+    ArrayFunction { name: "ridge", inputs: 7, value: Value::Pick(|x| numbers_of_body(x, steady::ridge)) },
     ArrayFunction {
         name: "boundary_rolling",
         inputs: 7,
-        value: Value::Pick(|x| some(x, |b| stability::boundaries(b, Contact::Rolling))),
+        value: Value::Pick(|x| numbers_of_body(x, |b| stability::boundaries(b, Contact::Rolling))),
     },
     ArrayFunction {
         name: "boundary_smooth",
         inputs: 7,
-        value: Value::Pick(|x| some(x, |b| stability::boundaries(b, Contact::Smooth))),
+        value: Value::Pick(|x| numbers_of_body(x, |b| stability::boundaries(b, Contact::Smooth))),
     },
     ArrayFunction {
         name: "theta_balance",
@@ -291,7 +291,7 @@ static LAWS: &[ArrayFunction] = &[
         inputs: 2,
         value: Value::One(|x| or_nan(Body::rounded_tube(x[0], 0.0, x[1]).map(|b| capsule_end(&b)))),
     },
-    ArrayFunction { name: "stone_tilted", inputs: 3, value: Value::Pick(stone::tilted) },
+    ArrayFunction { name: "stone_tilted", inputs: 3, value: Value::Pick(stone::vertical_of_tilt) },
     ArrayFunction { name: "stone_inclinations", inputs: 4, value: Value::Pick(stone::inclinations) },
     ArrayFunction { name: "stone_spin", inputs: 6, value: Value::One(stone::spin) },
     ArrayFunction { name: "stone_lever", inputs: stone::STONE + 4, value: Value::Pick(stone::lever) },
@@ -377,12 +377,12 @@ mod _core {
         let numbers = [ell, i1, i3, bore, fillet, theta_end];
         let bits = numbers.map(f64::to_bits);
         // The body of the last call is reused, since most callers ask for many rates of one body.
-        let known = LAST.get().filter(|(of, _)| *of == bits);
+        let known = LAST_BODY.get().filter(|(of, _)| *of == bits);
         let Some((_, body)) = known.or_else(|| body_of(&numbers).ok().map(|body| (bits, body))) else {
             return f64::NAN;
         };
         if known.is_none() {
-            LAST.set(Some((bits, body)));
+            LAST_BODY.set(Some((bits, body)));
         }
         steady::rate(&body, theta)
     }

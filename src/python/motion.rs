@@ -38,14 +38,14 @@ struct NamedArray {
 const ROWS: usize = 1 << 12;
 
 /// The arrays of a motion for Python, written row by row for as long as `go_on` returns true.
-struct ToldRows<'a> {
+struct ArrayRows<'a> {
     count: usize,
     columns: Vec<NamedArray>,
     goes_on: bool,
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
-impl ToldRows<'_> {
+impl ArrayRows<'_> {
     fn add(
         &mut self,
         name: &'static str,
@@ -66,10 +66,10 @@ impl ToldRows<'_> {
 }
 
 /// A state whose motions can be converted to arrays for Python.
-trait Told: Moving + Sized {
+trait StateArrays: Moving + Sized {
     type Body;
     /// Adds the arrays of the states, poses and forces.
-    fn tell(m: &Motion<Self>, body: &Self::Body, rows: &mut ToldRows<'_>) -> Result<(), Error>;
+    fn add_arrays(m: &Motion<Self>, body: &Self::Body, rows: &mut ArrayRows<'_>) -> Result<(), Error>;
     /// The angular velocity about the vertical.
     fn drilling(&self) -> f64;
     /// The normal component of a force.
@@ -80,10 +80,10 @@ trait Told: Moving + Sized {
     }
 }
 
-impl Told for State {
+impl StateArrays for State {
     type Body = Body;
 
-    fn tell(m: &Motion, body: &Body, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn add_arrays(m: &Motion, body: &Body, rows: &mut ArrayRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
         rows.add("w", 3, &|i, to| to.extend([m.states[i].w1, m.states[i].w2, m.states[i].w3]))?;
         if let Some(poses) = &m.poses {
@@ -126,10 +126,10 @@ impl Told for State {
     }
 }
 
-impl Told for StoneState {
+impl StateArrays for StoneState {
     type Body = Ellipsoid;
 
-    fn tell(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ToldRows<'_>) -> Result<(), Error> {
+    fn add_arrays(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ArrayRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
         rows.add("w", 3, &|i, to| to.extend(m.states[i].w))?;
         rows.add("vertical", 3, &|i, to| to.extend(m.states[i].vertical))?;
@@ -163,15 +163,15 @@ impl Told for StoneState {
 
 /// The arrays of a motion for Python; None if `go_on` returns false.
 #[inline(never)] // its frame is not on the stack of the motion
-fn motion_columns<S: Told>(
+fn motion_columns<S: StateArrays>(
     m: &Motion<S>,
     body: &S::Body,
     (ask, loses): (&Ask, bool),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Vec<NamedArray>>, Error> {
-    let mut rows = ToldRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
+    let mut rows = ArrayRows { count: m.times.len(), columns: Vec::new(), goes_on: true, go_on };
     rows.add("t", 0, &|i, to| to.push(m.times[i]))?;
-    S::tell(m, body, &mut rows)?;
+    S::add_arrays(m, body, &mut rows)?;
     if let Some(path) = &m.path
         && !path.aloft.is_empty()
     {
@@ -257,7 +257,7 @@ pub fn roll<'py>(
                     custom::roll_with(&body, start, times, &ask, laws, go_on)
                 });
             }
-            found(py, &body, (&ask, loses), |watch| {
+            motion_as_dictionary(py, &body, (&ask, loses), |watch| {
                 motion::roll_with(&body, start, times, &ask, || watch.still())
             })
         }
@@ -270,7 +270,7 @@ pub fn roll<'py>(
                     custom::roll_stone(&stone, start, times, &ask, laws, go_on)
                 });
             }
-            found(py, &stone, (&ask, loses), |watch| {
+            motion_as_dictionary(py, &stone, (&ask, loses), |watch| {
                 stone::roll(&stone, start, times, &ask, || watch.still())
             })
         }
@@ -279,7 +279,7 @@ pub fn roll<'py>(
 }
 
 /// The motion of a body or a stone under user-defined laws, of which only functions of Python need the GIL.
-fn under_own_laws<'py, S: Told + Send + Sync>(
+fn under_own_laws<'py, S: StateArrays + Send + Sync>(
     py: Python<'py>,
     (body, asked): (&S::Body, &MotionAsked),
     (ask, loses): (&Ask, bool),
@@ -291,7 +291,9 @@ where
 {
     if !asked.calls_python() {
         let pointed = asked.pointed();
-        return found(py, body, (ask, loses), |watch| roll(pointed.custom(), &mut || watch.still()));
+        return motion_as_dictionary(py, body, (ask, loses), |watch| {
+            roll(pointed.custom(), &mut || watch.still())
+        });
     }
     let mut watch = Watch::new(None);
     let rolled = with_laws(py, asked, |laws| roll(laws, &mut || watch.still()))?;
@@ -344,7 +346,7 @@ fn rubs(ask: &Ask) -> bool {
 }
 
 /// Computes a motion with the GIL released, and converts it to a dictionary.
-fn found<'py, S: Told + Send + Sync>(
+fn motion_as_dictionary<'py, S: StateArrays + Send + Sync>(
     py: Python<'py>,
     body: &S::Body,
     (ask, loses): (&Ask, bool),
@@ -367,7 +369,7 @@ where
 
 /// The dictionary for Python: the arrays, the end of the motion, the method and the error estimates.
 #[inline(never)]
-fn dictionary<'py, S: Told>(
+fn dictionary<'py, S: StateArrays>(
     py: Python<'py>,
     (m, body): (&Motion<S>, &S::Body),
     columns: Vec<NamedArray>,

@@ -23,19 +23,19 @@ pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
 }
 
 /// The numbers of a stone, and its largest semi-axis in the unit of the given lengths.
-fn told(stone: &Ellipsoid) -> ([f64; STONE], f64) {
+fn numbers_and_unit(stone: &Ellipsoid) -> ([f64; STONE], f64) {
     (stone.numbers(), stone.unit())
 }
 
 /// The first of several results of an elementwise function; the others are NaN.
-fn first<const N: usize>(found: [f64; N]) -> [f64; MOST] {
+fn first_results<const N: usize>(found: [f64; N]) -> [f64; MOST] {
     core::array::from_fn(|k| found.get(k).copied().unwrap_or(f64::NAN))
 }
 
 /// A function of a stone, for `x` that begins with the numbers of the stone; NaN if there is no such stone.
 fn of_stone<const N: usize>(x: &[f64], f: impl Fn(&Ellipsoid, &[f64]) -> [f64; N]) -> [f64; MOST] {
     let stone = x.first_chunk().map(stone_of);
-    stone.and_then(Result::ok).map_or([f64::NAN; MOST], |stone| first(f(&stone, &x[STONE..])))
+    stone.and_then(Result::ok).map_or([f64::NAN; MOST], |stone| first_results(f(&stone, &x[STONE..])))
 }
 
 fn state(x: &[f64]) -> StoneState {
@@ -43,13 +43,13 @@ fn state(x: &[f64]) -> StoneState {
 }
 
 /// The vertical in the axes of a tilted stone: `x` has pitch and roll.
-pub fn tilted(x: &[f64]) -> [f64; MOST] {
-    first(StoneState::spinning(0.0, x[0], x[1]).vertical)
+pub fn vertical_of_tilt(x: &[f64]) -> [f64; MOST] {
+    first_results(StoneState::spinning(0.0, x[0], x[1]).vertical)
 }
 
 /// The angles between the vertical and the axes of a stone.
 pub fn inclinations(x: &[f64]) -> [f64; MOST] {
-    first(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
+    first_results(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
 }
 
 /// The angular velocity about the vertical: `x` has the vertical and w.
@@ -114,7 +114,7 @@ pub fn check_stones<'py>(
 /// The numbers of a uniform ellipsoid.
 #[pyfunction]
 pub fn uniform_stone(axes: [f64; 3]) -> PyResult<([f64; STONE], f64)> {
-    Ok(told(&Ellipsoid::uniform(axes)?))
+    Ok(numbers_and_unit(&Ellipsoid::uniform(axes)?))
 }
 
 /// The numbers of a rattleback.
@@ -125,13 +125,13 @@ pub fn rattleback(
     twist: f64,
     offset: Option<[f64; 3]>,
 ) -> PyResult<([f64; STONE], f64)> {
-    Ok(told(&Ellipsoid::rattleback(axes, moments, twist, offset)?))
+    Ok(numbers_and_unit(&Ellipsoid::rattleback(axes, moments, twist, offset)?))
 }
 
 /// The numbers of an egg.
 #[pyfunction]
 pub fn egg(radius: f64, half_length: f64, offset: f64) -> PyResult<([f64; STONE], f64)> {
-    Ok(told(&Ellipsoid::egg(radius, half_length, offset)?))
+    Ok(numbers_and_unit(&Ellipsoid::egg(radius, half_length, offset)?))
 }
 
 /// The principal moments of a stone, in ascending order.
@@ -239,13 +239,20 @@ pub fn stones<'py>(
     let mut go_on = |share| watch.go_on(share);
     let found: Option<Vec<StoneSummary>> = if asked.calls_python() {
         with_laws(py, &asked, |laws| {
-            many_custom(count, &row, times, (&ask, turns), (&CustomLaws::Here(laws), threads), &mut go_on)
+            many_custom(
+                count,
+                &row,
+                times,
+                (&ask, turns),
+                (&CustomLaws::ThisThread(laws), threads),
+                &mut go_on,
+            )
         })??
     } else {
         let pointed = asked.pointed();
         let of = || pointed.custom();
         py.detach(|| {
-            let laws = CustomLaws::Anywhere(&of);
+            let laws = CustomLaws::AnyThread(&of);
             many_custom(count, &row, times, (&ask, turns), (&laws, threads), &mut go_on)
         })?
     };

@@ -149,14 +149,14 @@ unsafe extern "C" fn inner(
     };
     let done = match law.value {
         Value::AtRest(quantity) => in_parts(&run, AT_REST, |part| {
-            in_lanes!(level(), simd => at_rest(simd, part, quantity), else alone(part, quantity));
+            in_lanes!(level(), simd => at_rest(simd, part, quantity), else run_one_by_one(part, quantity));
         }),
         Value::One(f) => in_parts(&run, ONE, |part| {
             for i in 0..part.count {
                 part.put(i, f(&part.row(i)[..part.inputs]));
             }
         }),
-        Value::Pick(f) => pick(&run, f),
+        Value::Pick(f) => run_of_pick(&run, f),
     };
     // NaN is a regular result here: the floating-point flags are cleared, so that NumPy's casts do not warn
     // of it.
@@ -174,9 +174,9 @@ const PICKED: u64 = 10_000;
 
 /// Runs a long loop in parts and checks for Ctrl-C before each part; returns whether all parts are done.
 fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
-    const PART: isize = 1 << 10;
-    for first in (0..run.count).step_by(PART as usize) {
-        let part = run.part(first, PART);
+    const ELEMENTS_PER_PART: isize = 1 << 10;
+    for first in (0..run.count).step_by(ELEMENTS_PER_PART as usize) {
+        let part = run.part(first, ELEMENTS_PER_PART);
         if !still(each * part.count as u64) {
             return false;
         }
@@ -185,7 +185,7 @@ fn in_parts(run: &Loop, each: u64, work: impl Fn(&Loop)) -> bool {
     true
 }
 
-fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
+fn run_of_pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
     let pick = run.inputs - 1;
     let mut last = ([f64::NAN.to_bits(); MOST], f(&[f64::NAN; MOST][..pick]));
     for i in 0..run.count {
@@ -206,7 +206,7 @@ fn pick(run: &Loop, f: fn(&[f64]) -> [f64; steady::MOST]) -> bool {
 }
 
 /// Computes one inclination after the other, without SIMD lanes.
-fn alone(run: &Loop, quantity: Quantity) {
+fn run_one_by_one(run: &Loop, quantity: Quantity) {
     for i in 0..run.count {
         let theta = run.get(0, i);
         let of = run.body(i).map(|body| Column::of(&body).found(theta, quantity.wanted()));

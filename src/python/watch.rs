@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// The time between two checks.
-pub(super) const ASK: Duration = Duration::from_millis(20);
+pub(super) const CHECK_PERIOD: Duration = Duration::from_millis(20);
 
 /// Checks for Ctrl-C, and reports the finished share of the work to `progress`.
 pub struct Watch {
@@ -19,9 +19,9 @@ impl Watch {
         Self { progress, asked: Instant::now(), interrupt: None }
     }
 
-    /// Whether to go on; frequent calls are cheap, because Python is called at most once in `ASK`.
+    /// Whether to go on; frequent calls are cheap, because Python is called at most once in `CHECK_PERIOD`.
     pub fn still(&mut self) -> bool {
-        self.asked.elapsed() < ASK || self.go_on(f64::NAN)
+        self.asked.elapsed() < CHECK_PERIOD || self.go_on(f64::NAN)
     }
 
     /// Whether to go on; reports the finished share of the work.
@@ -44,29 +44,29 @@ impl Watch {
 }
 
 /// Approximate work, in nanoseconds, between two readings of the clock.
-const UNASKED: u64 = 1_000_000;
+const WORK_BETWEEN_CHECKS: u64 = 1_000_000;
 
 thread_local! {
-    static DONE: Cell<u64> = const { Cell::new(0) };
-    static ASKED: Cell<Option<Instant>> = const { Cell::new(None) };
+    static WORK_SINCE_CHECK: Cell<u64> = const { Cell::new(0) };
+    static LAST_CHECK: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
 /// Whether the loop of a ufunc is to go on with work of about `work` nanoseconds; if not, Python's error is
 /// set. The time of the last check is kept here, because the loop keeps no data between its calls.
 pub fn still(work: u64) -> bool {
-    let done = DONE.get() + work;
-    DONE.set(done);
-    done < UNASKED || ask()
+    let done = WORK_SINCE_CHECK.get() + work;
+    WORK_SINCE_CHECK.set(done);
+    done < WORK_BETWEEN_CHECKS || ask()
 }
 
 #[cold]
 fn ask() -> bool {
-    DONE.set(0);
+    WORK_SINCE_CHECK.set(0);
     let now = Instant::now();
-    if ASKED.get().is_some_and(|asked| now - asked < ASK) {
+    if LAST_CHECK.get().is_some_and(|asked| now - asked < CHECK_PERIOD) {
         return true;
     }
-    ASKED.set(Some(now));
+    LAST_CHECK.set(Some(now));
     // The interpreter is shutting down if this is None, and the result will not be used.
     Python::try_attach(|py| py.check_signals().map_err(|e| e.restore(py)).is_ok()).unwrap_or(true)
 }

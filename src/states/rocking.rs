@@ -230,7 +230,11 @@ impl Ellipsoid {
 
     /// The modes of a characteristic polynomial.
     fn modes(&self, quartic: &Quartic, spin: f64) -> Rocking {
-        let mut all = if self.is_even() || spin == 0.0 { even(quartic) } else { general(quartic) };
+        let mut all = if self.is_even() || spin == 0.0 {
+            roots_of_even_quartic(quartic)
+        } else {
+            roots_of_quartic(quartic)
+        };
         let before = |a: &Complex, b: &Complex| {
             let [a_im, b_im] = [a, b].map(|x| x.im.hi.abs());
             a_im < b_im || a_im == b_im && a.re.hi.abs() < b.re.hi.abs()
@@ -286,7 +290,7 @@ fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
 }
 
 /// The roots of a polynomial without odd powers.
-fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
+fn roots_of_even_quartic(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
     let (zero, half) = (Long::from(0.0), Long::from(0.5));
     let square = a2 * a2 * half * half - a0;
     let middle = -(a2 * half);
@@ -305,7 +309,7 @@ fn even(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
 }
 
 /// The four roots of a quartic, by simultaneous iteration (Durand and Kerner).
-fn general(quartic: &Quartic) -> [Complex; 4] {
+fn roots_of_quartic(quartic: &Quartic) -> [Complex; 4] {
     let number = |re: f64, im: f64| Complex { re: Long::from(re), im: Long::from(im) };
     let bound = (0..4).map(|i| quartic[i].hi.abs().powf(1.0 / (4 - i) as f64)).fold(0.0, f64::max);
     let mut all = [0.4, 1.9, 3.6, 5.0].map(|turn: f64| number(bound * turn.cos(), bound * turn.sin()));

@@ -9,14 +9,14 @@ import numpy as np
 _Kind = TypeVar("_Kind")
 
 
-def key(value: Any) -> Hashable:
+def equality_key(value: Any) -> Hashable:
     """A hashable key that is the same for equal values; numbers and arrays compare by value, not by type."""
     if hasattr(type(value), "_compared"):
         return value  # type: ignore[no-any-return]
     if isinstance(value, Mapping):
-        return frozenset((name, key(x)) for name, x in value.items())
+        return frozenset((name, equality_key(x)) for name, x in value.items())
     if isinstance(value, tuple | list):
-        return tuple(map(key, value))
+        return tuple(map(equality_key, value))
     if not isinstance(value, int | float) and not hasattr(value, "__array__"):
         return value  # type: ignore[no-any-return]
     array = np.ma.filled(value.astype(np.float64), np.nan) if np.ma.isMA(value) else np.asarray(value)
@@ -26,13 +26,13 @@ def key(value: Any) -> Hashable:
     return plain.shape, np.where(np.isnan(plain), np.nan, plain).tobytes()
 
 
-def compared(kind: type[_Kind]) -> type[_Kind]:
+def compared_by_value(kind: type[_Kind]) -> type[_Kind]:
     """Class decorator: instances are equal, and have the same hash, if all their named fields are equal."""
     named: Any = kind
     names: tuple[str, ...] = getattr(kind, "_fields", ()) or tuple(x.name for x in fields(named))
 
     def keys(self: Any) -> Hashable:
-        return tuple(key(getattr(self, name)) for name in names)
+        return tuple(equality_key(getattr(self, name)) for name in names)
 
     def equal(self: Any, other: object) -> bool:
         if type(other) is type(self):

@@ -29,7 +29,7 @@ def path_of(name: str, value: str | os.PathLike[str]) -> Path:
 
 
 @contextmanager
-def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
+def writing_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Context with an empty file to write to, which replaces `path` at the end, or is removed on failure.
 
     The name of the file is absolute and ends in the suffix of `path` in small letters, so that other programs
@@ -43,7 +43,7 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
         If `open` or the writing fails; the error has the given path.
     """
     path = Path(path)
-    there = _there(path)
+    there = _status_of(path)
     target = _target(path, there)
     folder = Path(gettempdir()) if target is None else target.parent
     part = folder / f".spincyl-{uuid4().hex}.part{path.suffix.lower()}"
@@ -51,17 +51,17 @@ def replaced(path: str | os.PathLike[str]) -> Iterator[Path]:
         with open(part, "xb", opener=partial(os.open, mode=0o666 if there is None else 0o600)) as made:
             yield part
             os.fsync(made.fileno())
-        if target is None or not _moved(part, target, there):
+        if target is None or not _move(part, target, there):
             with path.open("wb") as sink, part.open("rb") as source:
                 shutil.copyfileobj(source, sink)
     except OSError as e:
-        raise _of(path, part, e) from None
+        raise _error_about_path(path, part, e) from None
     finally:
         with suppress(OSError):
             part.unlink()
 
 
-def _there(path: Path) -> os.stat_result | None:
+def _status_of(path: Path) -> os.stat_result | None:
     """The status of an existing file, else None; raises OSError if the file is not writable."""
     try:
         there = path.stat()
@@ -91,7 +91,7 @@ def _is_open(path: Path) -> bool:
     return False
 
 
-def _moved(part: Path, target: Path, there: os.stat_result | None) -> bool:
+def _move(part: Path, target: Path, there: os.stat_result | None) -> bool:
     """Move the part to the target, with the owner and permissions of an older file. Returns success."""
     try:
         if there is not None:
@@ -105,7 +105,7 @@ def _moved(part: Path, target: Path, there: os.stat_result | None) -> bool:
     return True
 
 
-def _of(path: Path, part: Path, error: OSError) -> OSError:
+def _error_about_path(path: Path, part: Path, error: OSError) -> OSError:
     """Rewrite an error about the temporary file as one about the path."""
     if error.errno is None:
         return OSError(f"{path}: {str(error).replace(str(part), str(path))}")

@@ -14,8 +14,8 @@ import numpy as np
 
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
-_FEW = 24  #: More names than these are not listed.
-_LEVEL = "only a flat and level table is modelled"
+_MOST_LISTED = 24  #: More names than these are not listed.
+_LEVEL_ONLY = "only a flat and level table is modelled"
 #: Proposals for attributes of bodies and states.
 _STILL = dict.fromkeys(
     ("still", "still_symbols", "symbols"),
@@ -24,7 +24,7 @@ _STILL = dict.fromkeys(
 #: Proposals for names that the library does not have.
 _INSTEAD = {
     **_STILL,
-    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL),
+    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL_ONLY),
     "height": "give length= for the height of a body; sc.dropped(body, height, theta) starts in the air",
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
@@ -40,23 +40,23 @@ _INSTEAD = {
 }
 
 
-def instead(name: str, known: Iterable[str]) -> str:
+def proposal(name: str, known: Iterable[str]) -> str:
     """A proposal in place of a name, after a colon; empty if no known name is similar."""
     names = [x for x in known if not x.startswith("_")]
     if name in _INSTEAD:
         return f": {_INSTEAD[name]}"
     near = difflib.get_close_matches(name, names, 3, 0.7)
     told = f"did you mean {' or '.join(near)}?" if near else f"expected {', '.join(names)}"
-    return f": {told}" if near or 0 < len(names) <= _FEW else ""
+    return f": {told}" if near or 0 < len(names) <= _MOST_LISTED else ""
 
 
-def installs(what: str) -> str:
+def install_command(what: str) -> str:
     """The command that installs something for the Python that runs, by its path in a virtual environment."""
     python = shlex.quote(sys.executable) if sys.prefix != sys.base_prefix and sys.executable else "python"
     return f"{python} -m pip install {what}"
 
 
-def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
+def with_hints(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
     """Decorator: the error about an unknown argument proposes known ones."""
 
     @wraps(call)
@@ -64,22 +64,22 @@ def helpful(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
         try:
             return call(*args, **named)
         except TypeError as e:
-            explain(call, named, e)
+            raise_with_proposal(call, named, e)
             raise
 
     return helped
 
 
-def explain(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
+def raise_with_proposal(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
     """If an argument is unknown, raise a TypeError that proposes known arguments."""
     known = signature(call).parameters
     odd = next((x for x in named if x not in known), None)
     if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):
         named_ = [x for x, of in known.items() if of.kind != of.VAR_KEYWORD and x not in ("self", "cls")]
-        raise TypeError(f"{error}{instead(odd, named_)}") from None
+        raise TypeError(f"{error}{proposal(odd, named_)}") from None
 
 
-def of_texts(value: Any) -> str:
+def why_no_numbers(value: Any) -> str:
     """Why texts are no numbers: a decimal comma, or a unit where there can be none."""
     if isinstance(value, str):
         return "a text with a unit is one number in SI, and this argument is in natural units or a list"

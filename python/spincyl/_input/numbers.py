@@ -13,7 +13,7 @@ from typing import Any, ParamSpec, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from spincyl._input.hints import explain, installs, of_texts
+from spincyl._input.hints import install_command, raise_with_proposal, why_no_numbers
 
 #: A number or an array of numbers; NumPy, pandas, xarray and dask arrays keep their kind.
 Reals: TypeAlias = Any
@@ -39,7 +39,7 @@ def reals(name: str, value: Reals) -> Reals:
         raise TypeError(f"{name}: expected real numbers, not {type(value).__name__}")
     for dtype in kinds:
         if getattr(dtype, "kind", "O") in "US":
-            raise TypeError(f"{name}: expected real numbers, not texts; {of_texts(value)}")
+            raise TypeError(f"{name}: expected real numbers, not texts; {why_no_numbers(value)}")
         if getattr(dtype, "kind", "O") not in "biuf" or dtype.itemsize > 8:
             raise TypeError(f"{name}: expected real numbers of at most double precision, not {dtype}")
     if type(array) is np.ndarray and array.ndim > 31:  # NumPy takes 32, and a law may need one for itself
@@ -94,7 +94,7 @@ def warn(why: str, kind: type[Warning] = UserWarning) -> None:
     warnings.warn(why, kind, stacklevel=level)
 
 
-def _own(value: Any) -> Any:
+def _compact_copy(value: Any) -> Any:
     """A copy of an array in which an axis of repeated numbers (stride 0) takes no memory."""
     if not isinstance(value, np.ndarray) or 0 not in value.strides:
         return value.copy()
@@ -102,7 +102,7 @@ def _own(value: Any) -> Any:
     return np.broadcast_to(once, value.shape)
 
 
-def kept(value: Reals) -> Reals:
+def read_only_copy(value: Reals) -> Reals:
     """`value` for storage in a field: a copy that the caller cannot change, read-only if possible.
 
     A lazy array needs no copy, since it cannot be changed.
@@ -111,7 +111,7 @@ def kept(value: Reals) -> Reals:
         return value
     if getattr(value, "chunks", None) is not None:
         return value
-    own = _own(value)
+    own = _compact_copy(value)
     array = getattr(own, "data", own) if hasattr(own, "dims") else own
     if isinstance(array, np.ndarray):
         array.setflags(write=False)
@@ -135,14 +135,14 @@ def metres(measures: dict[str, Any]) -> dict[str, float]:
     return {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
 
 
-def lengths(name: str, value: Any) -> tuple[Any, bool]:
+def lengths_in_metres(name: str, value: Any) -> tuple[Any, bool]:
     """Lengths by name or in a list, in metres if one of them is a text with a unit; and whether one is."""
     listed = not isinstance(value, dict) and isinstance(value, Sequence)
     named = {f"{name}[{i}]": x for i, x in enumerate(value)} if listed else value
     if not isinstance(named, dict) or not any(isinstance(x, str) for x in named.values()):
         return value, False
     found = metres(named)
-    alike(named)
+    refuse_mixed_units(named)
     return [*found.values()] if listed else found, True
 
 
@@ -153,7 +153,7 @@ def vector_in(unit: str, name: str, value: Reals) -> Reals:
     return radians_per_second(name, value) if unit == "radian/second" else si(name, value, unit)
 
 
-def alike(measures: dict[str, Any]) -> None:
+def refuse_mixed_units(measures: dict[str, Any]) -> None:
     """ValueError if some measures are texts with a unit and others bare numbers, whose unit is uncertain."""
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
     if bare and any(isinstance(x, str) for x in measures.values()):
@@ -187,7 +187,7 @@ def _read(name: str, text: str, unit: str) -> float:
     from spincyl._input import units
 
     try:
-        return units.read(text, unit)
+        return units.number_in_si(text, unit)
     except (ArgumentTypeError, TypeError) as e:
         kind = TypeError if isinstance(e, TypeError) else ValueError
         raise kind(f"{name}: {e}") from None
@@ -299,7 +299,7 @@ def whole(name: str, value: object, low: int, high: int) -> int:
     return int(found)
 
 
-def fitting(named: dict[str, Reals]) -> tuple[int, ...]:
+def common_shape(named: dict[str, Reals]) -> tuple[int, ...]:
     """The common shape of unlabelled arrays by broadcasting, or ValueError with the names and shapes."""
     shapes = {name: np.shape(x) for name, x in named.items() if not hasattr(x, "dims")}
     try:
@@ -325,16 +325,16 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
             if "self" in given:
                 own = given.pop("self")
                 given[type(own).__name__] = own
-            fitting({name: of_its_shape(x) for name, x in given.items()})
+            common_shape({name: with_common_shape(x) for name, x in given.items()})
             raise
         except TypeError as e:
-            explain(law, named, e)
+            raise_with_proposal(law, named, e)
             raise
 
     return quiet
 
 
-def of_its_shape(*values: Any) -> Reals:
+def with_common_shape(*values: Any) -> Reals:
     """An array of the common shape of the values; for a body or a state, the shape of its fields."""
     fields: list[Any] = []
     for value in values:
@@ -348,7 +348,7 @@ def of_its_shape(*values: Any) -> Reals:
         return 0.0
 
 
-def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
+def refuse_bad_value(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
     """ValueError that names the first bad value; the values of a lazy array are not computed."""
     if getattr(value, "chunks", None) is not None:
         return
@@ -359,7 +359,7 @@ def refuse(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) ->
         raise ValueError(f"{name} = {first!r}: {expected}")
 
 
-def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+def in_range(name: str, value: object, low: float, high: float, unit: str = "") -> float:
     """A number in its range, or an error naming the argument."""
     found = number(name, si(name, value, "radian") if unit == "radians" else value)
     if not low <= found <= high:
@@ -367,7 +367,7 @@ def within(name: str, value: object, low: float, high: float, unit: str = "") ->
     return found
 
 
-def made(name: str, value: object, kind: type[_Kind]) -> _Kind:
+def instance_of(name: str, value: object, kind: type[_Kind]) -> _Kind:
     """Return `value` if it is an instance of `kind`, else raise TypeError naming the argument."""
     if not isinstance(value, kind):
         like = f"{'an' if kind.__name__[0] in 'AEIO' else 'a'} {kind.__name__}"
@@ -383,7 +383,7 @@ def one_of(name: str, value: Any, known: Sequence[object]) -> Any:
     return value
 
 
-def words(
+def known_words(
     name: str, value: str | Iterable[str], known: Sequence[str], hint: Callable[[str], str] = lambda _: ""
 ) -> tuple[str, ...]:
     """One or several of the known words, as a tuple, or an error naming the argument, with a `hint`."""
@@ -406,7 +406,7 @@ def flag(name: str, value: object) -> bool:
     return bool(value)
 
 
-def several(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
+def numbered(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
     """`values` with a new last axis, followed by the numbers 0, 1, ... along it.
 
     For laws with up to `most` results. xarray broadcasts by name: there the new axis is called `name`.
@@ -426,25 +426,25 @@ def components(vectors: Reals) -> list[Reals]:
     return [vectors[..., i] for i in range(vectors.shape[-1])]
 
 
-def extra(module: str, name: str) -> ModuleType:
+def optional_library(module: str, name: str) -> ModuleType:
     """An optional library, or ImportError naming the extra that installs it."""
     from importlib import import_module
 
     try:
         return import_module(module)
     except ImportError as e:
-        how = installs(f"'spincyl[{name}]'")
+        how = install_command(f"'spincyl[{name}]'")
         raise ImportError(f"this needs {module.split('.', maxsplit=1)[0]}: {how}") from e
 
 
-def plain(value: Any) -> Any:
+def json_value(value: Any) -> Any:
     """The value as JSON can hold it: lists for arrays and tuples, None for numbers that are not finite."""
     if isinstance(value, dict):
-        return {key: plain(x) for key, x in value.items()}
+        return {key: json_value(x) for key, x in value.items()}
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, list | tuple):
-        return [plain(x) for x in value]
+        return [json_value(x) for x in value]
     if isinstance(value, float | np.floating):
         return float(value) if math.isfinite(value) else None
     return value

@@ -10,9 +10,9 @@ from typing import Any, TypeAlias
 
 Progress: TypeAlias = Callable[[float], object]
 
-_PATIENCE = 2.0  # seconds before a bar is shown
+_SECONDS_BEFORE_BAR = 2.0  # seconds before a bar is shown
 _FORMAT = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}<{remaining}"
-_watched = True  # False while something else tells how far the work is
+_shows_bars = True  # False while something else tells how far the work is
 
 
 class _Bar:
@@ -44,7 +44,7 @@ class _Bar:
 
 
 @contextmanager
-def telling(
+def reporting_progress(
     progress: Progress | bool | None, what: str, *, by_default: bool = True
 ) -> Iterator[Progress | None]:
     """What work is to call with its finished share, or None.
@@ -52,18 +52,21 @@ def telling(
     `progress` is a function, or True for a bar at once, or False for none. By default a bar is shown after
     two seconds if somebody can see it.
     """
-    global _watched
+    global _shows_bars
     if progress is not None and not isinstance(progress, bool):
         if not callable(progress):
             kind = type(progress).__name__
             raise TypeError(f"progress: expected a function, True or False, not {kind}")
         yield progress
         return
-    if not (progress or (progress is None and by_default and _watched and _is_seen())) or not _has_tqdm():
+    if (
+        not (progress or (progress is None and by_default and _shows_bars and _has_spectator()))
+        or not _has_tqdm()
+    ):
         yield None
         return
-    bar = _Bar(what, 0.0 if progress else _PATIENCE)
-    with alone():
+    bar = _Bar(what, 0.0 if progress else _SECONDS_BEFORE_BAR)
+    with without_bars():
         try:
             yield bar
         finally:
@@ -71,17 +74,17 @@ def telling(
 
 
 @contextmanager
-def alone() -> Iterator[None]:
+def without_bars() -> Iterator[None]:
     """Let work within this block show no bar unless it is asked for one."""
-    global _watched
-    before, _watched = _watched, False
+    global _shows_bars
+    before, _shows_bars = _shows_bars, False
     try:
         yield
     finally:
-        _watched = before
+        _shows_bars = before
 
 
-def _is_seen() -> bool:
+def _has_spectator() -> bool:
     """Whether this thread writes to a terminal or into a notebook."""
     if threading.current_thread() is not threading.main_thread():
         return False

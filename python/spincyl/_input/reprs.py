@@ -9,17 +9,17 @@ from spincyl._input.numbers import Reals, is_scalar
 _FEW = 6
 
 
-def call(name: str, *plain: Reals, **named: Reals) -> str:
+def repr_of_call(name: str, *plain: Reals, **named: Reals) -> str:
     """A call of a constructor, which Python can evaluate unless an array was abridged."""
-    words = [text(x) for x in plain] + [f"{key}={text(x)}" for key, x in named.items()]
+    words = [repr_of_numbers(x) for x in plain] + [f"{key}={repr_of_numbers(x)}" for key, x in named.items()]
     line = f"{name}({', '.join(words)})"
     return line if len(line) <= 110 else f"{name}({(',' + chr(10) + ' ' * (len(name) + 1)).join(words)})"
 
 
-def text(value: Reals) -> str:
+def repr_of_numbers(value: Reals) -> str:
     """A number with all digits, a short array as a list, a long array by its ends and shape; or a tuple."""
     if isinstance(value, tuple):
-        return f"({', '.join(map(text, value))})"
+        return f"({', '.join(map(repr_of_numbers, value))})"
     if is_scalar(value):
         return repr(float(value))
     kind = "array" if type(value) is np.ndarray else type(value).__name__
@@ -29,7 +29,7 @@ def text(value: Reals) -> str:
     if values.size <= _FEW:
         listed = repr(values.astype(np.float64).tolist())
         return listed if kind == "array" else f"{kind}({listed})"
-    first, last = (", ".join(map(_short, ends)) for ends in (values.flat[:3], values.flat[-3:]))
+    first, last = (", ".join(map(_short_repr, ends)) for ends in (values.flat[:3], values.flat[-3:]))
     return f"{kind}([{first}, ..., {last}], shape={values.shape})"
 
 
@@ -38,5 +38,5 @@ def is_lazy(value: Any) -> bool:
     return getattr(value, "chunks", None) is not None
 
 
-def _short(x: Any) -> str:
+def _short_repr(x: Any) -> str:
     return "--" if x is np.ma.masked else repr(float(f"{x:.6g}"))

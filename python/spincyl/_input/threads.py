@@ -10,13 +10,17 @@ try:
 except ImportError:  # not on Windows
     resource = None  # type: ignore[assignment]
 
-_BORN = os.getpid()
+_FIRST_PROCESS = os.getpid()
 
 
-def is_roomy() -> bool:
+def has_large_stack() -> bool:
     """Whether the calling thread has a stack of some MiB: the main one, with the usual limit."""
     # in a forked child the main thread is a copy of any thread of the parent, perhaps one with a small stack
-    if resource is None or os.getpid() != _BORN or threading.current_thread() is not threading.main_thread():
+    if (
+        resource is None
+        or os.getpid() != _FIRST_PROCESS
+        or threading.current_thread() is not threading.main_thread()
+    ):
         return False
     limit: int = resource.getrlimit(resource.RLIMIT_STACK)[0]
     return limit == resource.RLIM_INFINITY or limit >= 4 << 20

@@ -54,7 +54,7 @@ class MetresPerSecond(float):
     """A speed given in metres per second, not in sqrt(g R)."""
 
 
-def joined(argv: Sequence[str]) -> list[str]:
+def join_units(argv: Sequence[str]) -> list[str]:
     """Join units to their numbers, and negative numbers that argparse does not recognise to their options."""
     words: list[str] = []
     for word in argv:
@@ -113,7 +113,7 @@ def quantity(kind: str) -> Callable[[str], float]:
     """A function that reads a quantity of a kind, such as a length, with or without its unit."""
     units = _UNITS[kind]
 
-    def read(text: str) -> float:
+    def number_in_si(text: str) -> float:
         number, unit = _parts(text)
         unit = unit.replace(" ", "")  # "N m s" as well as "Nms"
         if unit not in {"", *units}:
@@ -131,7 +131,7 @@ def quantity(kind: str) -> Callable[[str], float]:
             )
         return found
 
-    return read
+    return number_in_si
 
 
 #: Sizes in metres and densities in kg/m^3, from foam to osmium, beyond which units are in doubt.
@@ -173,7 +173,7 @@ _EXAMPLES = {
 }
 
 
-def read(text: str, unit: str) -> float:
+def number_in_si(text: str, unit: str) -> float:
     """Convert a number with a unit to the unit `unit` of SI; TypeError if number or unit is missing."""
     known = unit in _KINDS or unit == "radian"
     if not known or _NUMBER.match(text.strip()) is None or not has_unit(text):
@@ -185,11 +185,11 @@ def read(text: str, unit: str) -> float:
 def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:
     """A function that reads a number in natural units or, if a unit is given, a quantity of this kind."""
 
-    def read(text: str) -> float:
+    def number_in_si(text: str) -> float:
         number, unit = _parts(text)
         return si(quantity(kind)(text)) if unit else float(number)
 
-    return read
+    return number_in_si
 
 
 #: A time in sqrt(R/g), or Seconds if it has a unit.
@@ -218,7 +218,7 @@ def whole_text(text: str) -> int:
         return int(value)
 
 
-def dubious(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
+def suspicion_of_units(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
     """Why millimetres or grams are suspected in the size (length, width) of a body; empty if they are not."""
     why = ""
     if max(sides) > _LENGTHS[1]:

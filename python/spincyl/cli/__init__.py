@@ -9,7 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from spincyl._input.units import joined
+from spincyl._input.units import join_units
 from spincyl.cli._options import parser
 
 __all__ = ["main"]
@@ -33,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(argv: Sequence[str]) -> int:
-    args = parser().parse_args(joined(argv))
+    args = parser().parse_args(join_units(argv))
     try:
         args.run(args)
         return 0

@@ -16,10 +16,10 @@ import numpy as np
 
 from spincyl import Body, Motion, Scale, State, StepWarning, roll
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.files import replaced
-from spincyl._input.numbers import extra, within
+from spincyl._input.files import writing_whole
+from spincyl._input.numbers import in_range, optional_library
 from spincyl._input.units import Metres, Seconds
-from spincyl._measured import speaking
+from spincyl._measured import errors_in_seconds
 from spincyl.cli._files import columns, needed, write_csv, writer_of
 from spincyl.cli._losses import losses_of
 from spincyl.cli._output import Working, folder, writable
@@ -38,7 +38,7 @@ from spincyl.cli._tell import (
 _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
-def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
+def _refuse_options(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
     """Raise ValueError for options that exclude a kind of body, naming the first of them."""
     for name in names:
         if getattr(args, name) is not None:
@@ -48,10 +48,12 @@ def _refuse(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
 def _ball_of(args: Namespace) -> Body:
     """One ball or two, from the options."""
     if args.balls is not None:
-        _refuse(args, "--balls", (*_TUBE, "ball"), "two balls are given by the distance of their centres")
-        with _naming("separation", "--balls"):
+        _refuse_options(
+            args, "--balls", (*_TUBE, "ball"), "two balls are given by the distance of their centres"
+        )
+        with _errors_name_option("separation", "--balls"):
             return Body.balls(args.balls)
-    _refuse(
+    _refuse_options(
         args,
         "--ball",
         [x for x in _TUBE if x not in ("i1", "i3")],
@@ -59,12 +61,12 @@ def _ball_of(args: Namespace) -> Body:
     )
     if args.i1 is None or args.i3 is None:
         raise ValueError("--ball needs both --i1 and --i3, the moments of inertia of the ball")
-    with _naming("offset", "--ball"), _naming("ell", "--ball"):
+    with _errors_name_option("offset", "--ball"), _errors_name_option("ell", "--ball"):
         return Body.ball(args.ball, args.i1, args.i3)
 
 
 @contextmanager
-def _naming(name: str, option: str) -> Iterator[None]:
+def _errors_name_option(name: str, option: str) -> Iterator[None]:
     """Context in which errors about an argument of the library name the option that gave it."""
     try:
         yield
@@ -86,14 +88,14 @@ def _measured(args: Namespace) -> Body:
         raise ValueError("give only one of --inner, --bore and --wall")
     inner = args.inner if bore is None else float(bore)
     if args.wall is not None:
-        with _naming("wall", "--wall"):
-            inner = args.outer - 2 * within("wall", args.wall, 0.0, args.outer / 2, "metres")
+        with _errors_name_option("wall", "--wall"):
+            inner = args.outer - 2 * in_range("wall", args.wall, 0.0, args.outer / 2, "metres")
     more = {} if inner is None else {"inner_diameter": inner}
     if args.fillet is not None:
         more["fillet"] = (
             float(args.fillet) if isinstance(args.fillet, Metres) else args.fillet * args.outer / 2
         )
-    with _naming("fillet", "--fillet"):
+    with _errors_name_option("fillet", "--fillet"):
         body = Body.from_metres(outer_diameter=args.outer, length=args.length, **more)
     why = body._doubt_of(Scale(args.outer / 2, math.nan))
     if why:
@@ -101,7 +103,7 @@ def _measured(args: Namespace) -> Body:
     return body
 
 
-def _told(args: Namespace) -> Body:
+def _body_from_numbers(args: Namespace) -> Body:
     """A body from its numbers in natural units."""
     if args.ell is None:
         raise ValueError("no body: give --ell, or --balls, or --ball, or --outer and --length")
@@ -118,7 +120,7 @@ def _told(args: Namespace) -> Body:
         raise ValueError("give both --i1 and --i3, or neither")
     if args.i1 is not None and args.bore is not None:
         raise ValueError("give either --bore or --i1 and --i3, not both")
-    with _naming("fillet", "--fillet"):
+    with _errors_name_option("fillet", "--fillet"):
         if args.i1 is None:
             return Body.tube(args.ell, args.bore or 0.0, fillet)
         return Body(args.ell, args.i1, args.i3, fillet=fillet)
@@ -136,9 +138,9 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
     elif any(x is not None for x in (args.outer, args.inner, args.wall, args.length)):
         body = _measured(args)
     else:
-        body = _told(args)
+        body = _body_from_numbers(args)
     if args.theta_end is not None:
-        with _naming("theta_end", "--theta-end"):
+        with _errors_name_option("theta_end", "--theta-end"):
             body = replace(body, theta_end=args.theta_end)
     given = {name: getattr(args, name) for name in ("mass", "gravity")}
     given = {name: x for name, x in given.items() if x is not None}
@@ -186,7 +188,7 @@ def portrait(args: Namespace) -> None:
         raise ValueError(f"--points {args.points}: expected 2 to 100000")
     if not args.ell_max > 0:
         raise ValueError(f"--ell-max {args.ell_max}: expected a positive number")
-    with _naming("fillet", "--fillet"):
+    with _errors_name_option("fillet", "--fillet"):
         Body.tube(args.ell_max, args.bore, args.fillet)
     suffixes = (".png", ".pdf", ".svg", ".nc", "-")
     suffix = args.output if args.output == "-" else Path(args.output).suffix.lower()
@@ -203,7 +205,7 @@ def portrait(args: Namespace) -> None:
     with Working("portrait") as working:
         data = sweep.portrait(theta, ell, args.bore, args.fillet, want=want, progress=working)
         if suffix == ".nc":
-            with replaced(args.output) as part:
+            with writing_whole(args.output) as part:
                 data.to_netcdf(part)
         elif suffix != "-":
             _draw_map(data, args)
@@ -222,8 +224,8 @@ def _draw_map(data: Any, args: Namespace) -> None:
     from spincyl import plot
     from spincyl.studio.plot._style import saved
 
-    extra("matplotlib", "plot").use("agg")
-    plt: Any = extra("matplotlib.pyplot", "plot")
+    optional_library("matplotlib", "plot").use("agg")
+    plt: Any = optional_library("matplotlib.pyplot", "plot")
     figure, ax = plt.subplots(figsize=(9, 6.4), layout="constrained")
     plot.portrait(data, contact=args.contact, ax=ax)
     saved(figure, Path(args.output), slide=args.slides)
@@ -232,7 +234,7 @@ def _draw_map(data: Any, args: Namespace) -> None:
 
 def figures(args: Namespace) -> None:
     """Draw the figures of a lecture."""
-    extra("matplotlib", "plot").use("agg")
+    optional_library("matplotlib", "plot").use("agg")
     from spincyl import plot
 
     place = folder(args.folder)
@@ -258,7 +260,7 @@ def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
         if scale is None:
             raise ValueError(f"--patch {float(patch):g}m needs --radius, or --outer and --length in metres")
         patch = float(patch) / scale.metres(1.0)
-    with _naming("patch", "--patch"):
+    with _errors_name_option("patch", "--patch"):
         return Coulomb(args.mu, args.static, patch)._known()  # in natural units here
 
 
@@ -274,7 +276,7 @@ def contact_of(args: Namespace, scale: Scale | None) -> AnyContact:
     if args.contact == "viscous":
         if args.viscosity is None:
             raise ValueError("--contact viscous needs --viscosity, the coefficient of viscous friction")
-        with _naming("c", "--viscosity"):
+        with _errors_name_option("c", "--viscosity"):
             return Viscous(args.viscosity)._known()  # in natural units here
     found: AnyContact = args.contact
     return found
@@ -303,7 +305,7 @@ def roll_(args: Namespace) -> None:
     how["losses"] = losses_of(args, scale)
     with warnings.catch_warnings(record=True) as caught, Working("roll"):
         warnings.simplefilter("always", StepWarning)
-        with speaking(scale if isinstance(args.t, Seconds) else None):
+        with errors_in_seconds(scale if isinstance(args.t, Seconds) else None):
             m = roll(body, start, t, want=("pose", "force"), beyond=args.beyond, **how)
         if writer is not None:
             writer(m, scale, Path(args.output))

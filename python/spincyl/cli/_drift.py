@@ -13,7 +13,7 @@ import numpy as np
 
 import spincyl
 from spincyl import Scale
-from spincyl._input.numbers import Floats, extra
+from spincyl._input.numbers import Floats, optional_library
 from spincyl._input.units import angle, whole_text
 from spincyl.cli._commands import body_of
 from spincyl.cli._files import needed, write_csv
@@ -39,7 +39,7 @@ spincyl drift --outer 75mm --length 12.8mm --mass 440g --theta 0.3 --law rolling
 spincyl drift --ell 0.1704 --theta 0.3 --law dry-contour=5e-3 --centre rolling -o whirr.csv
 spincyl drift --ell 6 --bore 0.8 --theta 85deg --law dry-contour=1e-3 --law air-quadratic=1e-3 -o fall.png"""
 
-_ROWS = 11
+_PRINTED_ROWS = 11
 
 
 def drift_options(sub: ArgumentParser) -> None:
@@ -53,7 +53,9 @@ def drift_options(sub: ArgumentParser) -> None:
         default="rest",
         help="the centre is kept at rest (default), or the body rolls without slip",
     )
-    how.add_argument("--points", type=whole_text, help=f"number of rows (default {_ROWS}, in a file 401)")
+    how.add_argument(
+        "--points", type=whole_text, help=f"number of rows (default {_PRINTED_ROWS}, in a file 401)"
+    )
     how.add_argument(
         "-o",
         "--output",
@@ -67,14 +69,16 @@ def drift(args: Namespace) -> None:
     body, scale = body_of(args)
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
-    suffix = _suffix(args.output)
+    suffix = _suffix_of_output(args.output)
     losses: Any = losses_of(args, scale)  # at least one is required
     with warnings.catch_warnings(record=True) as caught, Working("drift"):
         warnings.simplefilter("always", UserWarning)
         found: Any = spincyl.drift(body, args.theta, losses, centre=args.centre)
-        columns = _columns(found, args.theta, scale, args.points or (_ROWS if suffix is None else 401))
+        columns = _columns(
+            found, args.theta, scale, args.points or (_PRINTED_ROWS if suffix is None else 401)
+        )
         rows = list(_rows(found, losses, args.centre, scale))
-        shown = columns if suffix is None else _columns(found, args.theta, scale, _ROWS)
+        shown = columns if suffix is None else _columns(found, args.theta, scale, _PRINTED_ROWS)
         if suffix == ".csv":
             write_csv(columns, Path(args.output))
         elif suffix in _PICTURES:
@@ -104,7 +108,7 @@ def drift(args: Namespace) -> None:
 _PICTURES = ".png", ".pdf", ".svg"
 
 
-def _suffix(output: str | None) -> str | None:
+def _suffix_of_output(output: str | None) -> str | None:
     """The kind of output, by suffix; an error before any work if it is unknown or cannot be written."""
     if output is None or output == "-":
         return output
@@ -166,7 +170,7 @@ def _print(columns: dict[str, Floats]) -> None:
 
 def _draw_drift(found: Any, args: Namespace) -> None:
     """Draw inclination and precession rate against time."""
-    extra("matplotlib", "plot").use("agg")
+    optional_library("matplotlib", "plot").use("agg")
     from spincyl.studio.plot._style import saved
 
     figure: Any = found.plot().figure

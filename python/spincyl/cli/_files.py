@@ -7,12 +7,12 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from spincyl._contact import named
-from spincyl._input.files import replaced
-from spincyl._input.hints import installs
-from spincyl._input.numbers import extra
+from spincyl._contact import contact_in_words
+from spincyl._input.files import writing_whole
+from spincyl._input.hints import install_command
+from spincyl._input.numbers import optional_library
 from spincyl._labelled import columns as labelled_columns
-from spincyl._loss import titled
+from spincyl._loss import losses_in_words
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 
@@ -44,12 +44,12 @@ def writer_of(path: Path) -> Callable[[Motion, Scale | None, Path], None]:
 def needed(suffix: str) -> None:
     """Import the libraries that a file of this suffix needs, or raise ImportError naming one."""
     if suffix in _PICTURES:
-        extra("matplotlib", "plot")
+        optional_library("matplotlib", "plot")
     if suffix == ".nc":
-        extra("xarray", "sweep")
+        optional_library("xarray", "sweep")
         if not any(find_spec(name) for name in ("netCDF4", "h5netcdf", "scipy")):
             raise ImportError(
-                f"a .nc file needs netCDF4, h5netcdf or scipy; install one: {installs('scipy')}"
+                f"a .nc file needs netCDF4, h5netcdf or scipy; install one: {install_command('scipy')}"
             )
 
 
@@ -64,7 +64,7 @@ def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
     if not isinstance(file, Path):
         np.savetxt(file, table, **how)
         return
-    with replaced(file) as part:
+    with writing_whole(file) as part:
         np.savetxt(part, table, **how)
 
 
@@ -73,12 +73,12 @@ def _write_npz(m: Motion, scale: Scale | None, path: Path) -> None:
         "status": int(m.status),
         "message": m.message,
         "error": m.error,
-        "contact": named(m.contact),
+        "contact": contact_in_words(m.contact),
     }
     if m.losses is not None:
         about["losses"] = repr(m.losses)
     about["body"] = np.array([m.body.ell, m.body.i1, m.body.i3])
-    with replaced(path) as part:
+    with writing_whole(path) as part:
         np.savez_compressed(part, **about | columns(m, scale))
 
 
@@ -86,12 +86,12 @@ def _write_nc(m: Motion, scale: Scale | None, path: Path) -> None:
     data = m.to_xarray()
     if scale is not None:
         data = data.assign_coords(seconds=("t", scale.seconds(m.t), {"units": "s"}))
-    with replaced(path) as part:
+    with writing_whole(path) as part:
         data.to_netcdf(part)
 
 
 def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
-    extra("matplotlib", "plot").use("agg")
+    optional_library("matplotlib", "plot").use("agg")
     from spincyl import plot
     from spincyl.studio.plot._style import saved
 
@@ -102,7 +102,9 @@ def _write_picture(m: Motion, scale: Scale | None, path: Path) -> None:
 def _write_view(m: Motion, scale: Scale | None, path: Path) -> None:
     from spincyl import view
 
-    about = f"{m.body!r}, {named(m.contact)}" + ("" if m.losses is None else f", {titled(m.losses, m.scale)}")
+    about = f"{m.body!r}, {contact_in_words(m.contact)}" + (
+        "" if m.losses is None else f", {losses_in_words(m.losses, m.scale)}"
+    )
     view(m, labels=[about], title=about, scale=scale).save(path)
 
 

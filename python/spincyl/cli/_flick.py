@@ -20,7 +20,7 @@ from spincyl._input.units import (
     time,
     whole_text,
 )
-from spincyl._measured import speaking
+from spincyl._measured import errors_in_seconds
 from spincyl.cli._commands import body_of, coulomb, delivered, natural, recipient
 from spincyl.cli._losses import TEXT as LAWS
 from spincyl.cli._losses import losses_of, option
@@ -134,7 +134,7 @@ def flick(args: Namespace) -> None:
     with Working("flick"):
         t = np.linspace(0.0, last or 0.0, args.points)
         how: dict[str, Any] = {"tol": args.tol, "restitution": args.restitution, "losses": losses}
-        with speaking(scale if isinstance(lasting, Seconds) else None):
+        with errors_in_seconds(scale if isinstance(lasting, Seconds) else None):
             m = roll(body, start, t, want=("pose", "force"), contact=contact, **how)
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]

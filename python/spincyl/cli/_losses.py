@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 
 from spincyl import Scale, loss
 from spincyl._input.units import has_unit, quantity
-from spincyl._loss import LAWS, Law, Loss, sized, typed
+from spincyl._loss import LAWS, Law, Loss, command_line_name, marked_as_si
 from spincyl.loss import KINDS
 
 #: The coefficients of the laws by the names of the laws on the command line, in the order of the core.
-_NAMES = {typed(law): coefficient for coefficient, law in KINDS.items()}
+_NAMES = {command_line_name(law): coefficient for coefficient, law in KINDS.items()}
 
 
-def _line(name: str, coefficient: str) -> str:
+def _help_line(name: str, coefficient: str) -> str:
     """A line of help: coefficients in natural units and in SI, and the law in words."""
     natural, in_si, words = KINDS[coefficient]._example
     return f"  {name + '=' + natural:<24} or {in_si:<9} {words}"
@@ -22,7 +22,7 @@ def _line(name: str, coefficient: str) -> str:
 TEXT = "\n".join(
     [
         "Loss laws, with coefficients in natural units of M, R and g, or in SI with --radius and --mass:",
-        *(_line(*one) for one in _NAMES.items()),
+        *(_help_line(*one) for one in _NAMES.items()),
     ]
 )
 
@@ -69,10 +69,10 @@ def losses_of(args: Namespace, scale: Scale | None) -> Loss | None:
     """The losses given by the options; None without any."""
     if args.losses is None:
         return None
-    return loss.Sum(_made(given, scale, weighed=args.mass is not None) for given in args.losses)
+    return loss.Sum(_law_of_given(given, scale, weighed=args.mass is not None) for given in args.losses)
 
 
-def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
+def _law_of_given(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
     """A law in natural units."""
     made: Any = KINDS[given.coefficient]
     if given.si:
@@ -86,4 +86,4 @@ def _made(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
     except ValueError as e:
         raise ValueError(f"{given.text}: {e}") from None
     # a number without a unit is in natural units, also for a measured body, as the help says
-    return sized(found)
+    return marked_as_si(found)

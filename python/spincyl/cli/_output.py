@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from spincyl._input.progress import alone
+from spincyl._input.progress import without_bars
 
 
 def writable(path: str | Path) -> Path:
@@ -19,7 +19,7 @@ def writable(path: str | Path) -> Path:
         if path.is_dir() or not os.access(path, os.W_OK):
             path.open("ab").close()  # raises the error
         return path
-    _try(Path(os.path.realpath(path)).parent, path)  # the target of a link
+    _try_to_write(Path(os.path.realpath(path)).parent, path)  # the target of a link
     return path
 
 
@@ -27,11 +27,11 @@ def folder(path: str | Path) -> Path:
     """Return a writable folder, creating it if necessary, or raise OSError naming it."""
     path = Path(path)
     path.mkdir(parents=True, exist_ok=True)
-    _try(path, path)
+    _try_to_write(path, path)
     return path
 
 
-def _try(place: Path, asked: Path) -> None:
+def _try_to_write(place: Path, asked: Path) -> None:
     try:
         tempfile.TemporaryFile(dir=place).close()
     except OSError as e:
@@ -49,7 +49,7 @@ class Working:
         self.share = 0.0
         self._done = threading.Event()
         self._thread: threading.Thread | None = None
-        self._alone = alone()
+        self._alone = without_bars()
 
     def __call__(self, share: float) -> None:
         self.share = share

@@ -9,9 +9,9 @@ from typing import Any, TextIO, TypeAlias
 import numpy as np
 
 from spincyl import Body, Motion, Scale, State, swing
-from spincyl._contact import Contact, Coulomb, Viscous, named
-from spincyl._input.numbers import plain
-from spincyl._phases import Phase, duration, rubs
+from spincyl._contact import Contact, Coulomb, Viscous, contact_in_words
+from spincyl._input.numbers import json_value
+from spincyl._phases import Phase, has_friction, slipping_time
 
 Row: TypeAlias = tuple[str, str, str]  # name, natural value, SI value
 Numbers: TypeAlias = dict[str, Any]
@@ -26,7 +26,7 @@ def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
 def print_json(value: Any, file: TextIO | None = None) -> None:
     """Print strict JSON, with null for numbers that are not finite."""
     wide = isinstance(value, dict) and "columns" in value
-    json.dump(plain(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
+    json.dump(json_value(value), file or sys.stdout, indent=None if wide else 2, allow_nan=False)
     print(file=file)
 
 
@@ -112,10 +112,10 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
     yield "energy", f"{n['energy']:.9g}", si("energy_joules", "J") if weighed else ""
     contacts: tuple[tuple[str, Contact], ...] = (("rolling", "rolling"), ("smooth table", "smooth"))
     for name, contact in contacts:
-        yield name, *_lasting(body, state, contact, n[f"kappa_{contact}"], scale)
+        yield name, *_stability_in_words(body, state, contact, n[f"kappa_{contact}"], scale)
 
 
-def _lasting(
+def _stability_in_words(
     body: Body, state: State, contact: Contact, kappa: float, scale: Scale | None
 ) -> tuple[str, str]:
     """Whether a state is stable, and its nutation or growth rate."""
@@ -132,7 +132,7 @@ def _lasting(
 
 def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
     """Properties of a motion: initial state, nutation and end."""
-    found: Numbers = {"body": body_numbers(m.body, scale), "contact": named(m.contact)}
+    found: Numbers = {"body": body_numbers(m.body, scale), "contact": contact_in_words(m.contact)}
     found["start"] = {name: getattr(m.start, name) for name in ("theta", "w1", "w2", "w3")}
     found |= {"status": m.status.name, "message": m.message, "method": m.method, "error": m.error}
     found["event"] = None if m.event is None else {"ending": m.event.ending.name, "time": m.event.time}
@@ -140,7 +140,7 @@ def motion_numbers(m: Motion, scale: Scale | None) -> Numbers:
     if isinstance(m.contact, Coulomb | Viscous):
         found["start"]["slip"] = list(m.start._slip)
         found["phases"] = [_phase_numbers(m.body, phase, scale) for phase in m.phases]
-        found["slipping"] = duration(m.phases, _end(m))
+        found["slipping"] = slipping_time(m.phases, _end(m))
         if m.t.size:
             found |= {"dissipated": end.dissipated[-1]}
         if m.natural._impacts is not None:
@@ -214,7 +214,7 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
 def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
     """Energy that a motion has lost, and its share."""
     first = float(m.energy[0])
-    first += float(m.dissipated[0]) if rubs(m.contact) else 0.0
+    first += float(m.dissipated[0]) if has_friction(m.contact) else 0.0
     first += 0.0 if m.losses is None else float(m.work_lost[0])
     joules = "" if scale is None else f"{scale.joules(lost):.6g} J, "
     return f"{lost:.9g} M g R", f"{joules}{lost / first:.1%} of the energy"
@@ -227,7 +227,7 @@ def _end(m: Motion) -> float:
 
 def _at_its_end(m: Motion) -> Motion:
     """The motion with its end as last time, if it loses energy and ends between two requested times."""
-    loses = rubs(m.contact) or m.losses is not None
+    loses = has_friction(m.contact) or m.losses is not None
     if not loses or m.event is None or not m.t.size or m.t[-1] >= m.event.time:
         return m
     # a motion is integrated to 1e-12 before a face lands
@@ -285,5 +285,5 @@ def _phase_rows(m: Motion, scale: Scale | None) -> Iterator[Row]:
             yield f"  {name}", f"{n[name]:.6g}", si(f"{n.get(f'{name}_hertz', 0.0):.6g} turns/s")
         if phase.kind == "rolling" and not math.isnan(phase.state.contact_radius):
             yield "  still symbols", f"{phase.state.contact_radius:.4g} a turn", ""
-    lasted = duration(m.phases, _end(m))
+    lasted = slipping_time(m.phases, _end(m))
     yield "slipping lasted", f"{lasted:.9g}", "" if scale is None else f"{scale.seconds(lasted):.6g} s"

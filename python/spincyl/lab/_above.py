@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, number, reals
-from spincyl._measured import with_size
+from spincyl._measured import sized_body
 from spincyl._scale import Scale
 from spincyl.lab._alias import Reading, Readings, read
 from spincyl.lab._columns import Columns
@@ -25,13 +25,15 @@ from spincyl.lab._tracker import read_tracker
 
 _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
 _SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
-_RULER = 1.05  # times the tube's length: a longer line raises an error, since noise does not explain it
-_SHORT = 0.0105  # times the tube's length: a shorter line raises an error, since a unit is probably wrong
+# times the tube's length: a longer line raises an error, since noise does not explain it
+_LONGEST_LINE = 1.05
+# times the tube's length: a shorter line raises an error, since a unit is probably wrong
+_SHORTEST_LINE = 0.0105
 _FARTHEST = 1e12  # metres or seconds: larger numbers raise an error
-_WANDERS = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
+_LARGEST_WANDER = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
 
 
-@compared
+@compared_by_value
 class Filmed(NamedTuple):
     """Steady state of a tube, measured in a film from above; returned by `from_above`.
 
@@ -197,7 +199,7 @@ def from_above(
     >>> sc.data.from_above(sc.data.example("tube_from_above"), tube)
     <Filmed: 7.2936 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
     """
-    body, scale = with_size("tube", tube, scale)
+    body, scale = sized_body("tube", tube, scale)
     ruler = number("ruler", ruler)
     if not 0 <= ruler < 0.5:
         raise ValueError(f"ruler = {ruler!r}: expected at least 0 and less than 0.5; 0.01 means one per cent")
@@ -206,15 +208,15 @@ def from_above(
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
     first, second = (_positions(tracks, name) for name in _ends(tracks, ends))
-    t, between, unseen = _between(first, second)
+    t, between, unseen = _line_between_ends(first, second)
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
     line = np.abs(between)
-    share, share_err = _share(line / tall, ruler)
+    share, share_err = _sine_of_inclination(line / tall, ruler)
     one = float(scale.hertz(body, 1.0))
     # a line that is longer than the tube only says that the inclination is near 90 degrees
     sine, sine_err = min(share, 1.0), max(share_err, share - 1)
     films = read(t, _unwrapped(t, between), body, one=one, line=share * tall, sine=sine, sine_err=sine_err)
-    told = _aliased(films, t, math.degrees(math.asin(min(share, 1.0))))
+    told = _warning_of_aliases(films, t, math.degrees(math.asin(min(share, 1.0))))
     slope, inclinations = films.taken.slope, films.taken.inclinations
     hertz, hertz_err = abs(slope) / (2 * math.pi), films.taken.slope_err / (2 * math.pi)
     # near 90 degrees the sine hardly changes, so errors are not small beside the distance from 90 degrees
@@ -236,15 +238,15 @@ def from_above(
         unseen=unseen,
         aliases=np.array([other.hertz for other in films.possible if other is not films.taken]),
     )
-    told = _unsteady(films.taken) or told
+    told = _warning_of_uneven_turning(films.taken) or told
     if told:
         warnings.warn(told, UserWarning, stacklevel=2)
     return found
 
 
-def _unsteady(taken: Reading) -> str:
+def _warning_of_uneven_turning(taken: Reading) -> str:
     """A warning if the direction does not turn evenly."""
-    if taken.scatter <= _WANDERS:
+    if taken.scatter <= _LARGEST_WANDER:
         return ""
     return (
         f"the line deviates from uniform rotation by {taken.scatter:.2g} rad: the tube is not steady, or the"
@@ -252,7 +254,7 @@ def _unsteady(taken: Reading) -> str:
     )
 
 
-def _aliased(films: Readings, t: Floats, degrees: float) -> str:
+def _warning_of_aliases(films: Readings, t: Floats, degrees: float) -> str:
     """A warning if the inclination is not steady at the slowest rate, or if other rates are possible as well.
 
     Raises ValueError if the tube turns by almost half a turn from frame to frame, so that two rates are close
@@ -332,9 +334,11 @@ def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     return found[0], found[1] + 1j * found[2]
 
 
-def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Floats, int]:
+def _line_between_ends(
+    first: tuple[Floats, Floats], second: tuple[Floats, Floats]
+) -> tuple[Floats, Floats, int]:
     """Ascending times, the vector from the second end to the first, and the number of rows that lack one."""
-    (t, one), (s, two) = (_ordered(*track) for track in (first, second))
+    (t, one), (s, two) = (_in_order_of_time(*track) for track in (first, second))
     # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
     _, rows, others = np.intersect1d(np.round(t / fine), np.round(s / fine), return_indices=True)
@@ -351,7 +355,7 @@ def _between(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tup
     return t, between, unseen
 
 
-def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
+def _in_order_of_time(t: Floats, place: Floats) -> tuple[Floats, Floats]:
     """A track in order of time, without rows that have no time or repeat an earlier row."""
     known = np.isfinite(t)
     t, place = t[known], place[known]
@@ -367,21 +371,21 @@ def _ordered(t: Floats, place: Floats) -> tuple[Floats, Floats]:
     return np.delete(t, lost), np.delete(place, lost)
 
 
-def _share(shares: Floats, ruler: float) -> tuple[float, float]:
+def _sine_of_inclination(shares: Floats, ruler: float) -> tuple[float, float]:
     """The sine of the inclination, as the median of line over length of the tube; and its standard error."""
     share = float(np.median(shares))
     scatter = 1.4826 * float(np.median(np.abs(shares - share)))
     error = math.hypot(1.2533 * scatter / math.sqrt(shares.size), ruler * share)
-    if share > max(_RULER, 1 + 4 * ruler):
+    if share > max(_LONGEST_LINE, 1 + 4 * ruler):
         units = {1 / factor: unit for unit, factor in _METRES.items() if unit and factor != 1.0}
         near = min(units, key=lambda k: abs(math.log(share / k)))
         hint = "; is the scale of length right?"
-        if 0.5 < share / near <= _RULER:
+        if 0.5 < share / near <= _LONGEST_LINE:
             hint = f"; are x and y in {units[near]}?"
         elif share > 100:
             hint = "; are x and y in pixels? Set the scale of length in Tracker"
         raise ValueError(f"tracks: the line between the ends is {share:.4g} times as long as the tube{hint}")
-    if share < _SHORT:
+    if share < _SHORTEST_LINE:
         raise ValueError(
             f"tracks: the line between the ends has only {share:.2g} of the tube's length; is the tube in"
             " metres?"

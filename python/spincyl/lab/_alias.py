@@ -15,11 +15,13 @@ from spincyl._input.numbers import Floats
 from spincyl.lab._report import student
 
 _MOST = 2  # whole turns between two frames
-_FITS = 4.0  # standard errors from a steady inclination up to which a rate is possible
-_FAR = 8.0  # standard errors from every steady inclination, from which on another rate replaces the slowest
-_UNEVEN = 3.0  # ratio of the scatter of two rates, if the frames are uneven in time, that excludes the larger
-_FASTEST = 10.0  # metres per second: no finger makes the ends of a tube faster
-_ROUND = 1e-6  # standard error of the sine of an exact film
+_POSSIBLE_WITHIN = 4.0  # standard errors from a steady inclination up to which a rate is possible
+# standard errors from every steady inclination, from which on another rate replaces the slowest
+_IMPOSSIBLE_BEYOND = 8.0
+# ratio of the scatter of two rates, if the frames are uneven in time, that excludes the larger
+_SCATTER_RATIO = 3.0
+_FASTEST_END = 10.0  # metres per second: no finger makes the ends of a tube faster
+_LEAST_SINE_ERROR = 1e-6  # standard error of the sine of an exact film
 
 
 class Reading(NamedTuple):
@@ -74,14 +76,14 @@ def read(
     found = []
     for turns in sorted(range(-_MOST, _MOST + 1), key=abs):
         own = direction + 2 * math.pi * turns * frame
-        found.append(_reading(t, own, body, one, sine, math.hypot(sine_err, _ROUND)))
-    found = [found[0], *(x for x in found[1:] if abs(x.slope) * line / 2 < _FASTEST)]
+        found.append(_reading(t, own, body, one, sine, math.hypot(sine_err, _LEAST_SINE_ERROR)))
+    found = [found[0], *(x for x in found[1:] if abs(x.slope) * line / 2 < _FASTEST_END)]
     found[1:] = sorted(found[1:], key=lambda x: x.hertz)
-    most = student(_FITS, t.size - 1)
-    least = _UNEVEN * min(one.scatter for one in found) if _is_uneven(t, frame) else math.inf
+    most = student(_POSSIBLE_WITHIN, t.size - 1)
+    least = _SCATTER_RATIO * min(one.scatter for one in found) if _is_uneven(t, frame) else math.inf
     possible = [one for one in found if one.off <= most and one.scatter <= least]
     taken = found[0]
-    if len(possible) == 1 and taken.off > student(_FAR, t.size - 1):
+    if len(possible) == 1 and taken.off > student(_IMPOSSIBLE_BEYOND, t.size - 1):
         taken = possible[0]
     return Readings(found[0], taken, possible, fps)
 

@@ -16,11 +16,11 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._input.numbers import Floats, extra
+from spincyl._input.numbers import Floats, optional_library
 
-_ROUNDED = 1e-10  # smallest scatter, in units of the errors: exact points scatter by rounding
+_LEAST_SCATTER = 1e-10  # smallest scatter, in units of the errors: exact points scatter by rounding
 # two variables whose effects on the points are correlated more than this cannot be told apart
-_ALIKE = 0.9995
+_INDISTINGUISHABLE = 0.9995
 
 
 class Fit(NamedTuple):
@@ -48,7 +48,7 @@ class Fit(NamedTuple):
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
         """Ratio, its error, factor, its error; the errors follow from the scatter unless `known`."""
-        errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _ROUNDED**2)))
+        errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
         found |= dict(zip(self.names, pairs, strict=True))
@@ -64,7 +64,7 @@ class Balance:
     """Measured inclinations and rates with their errors, and the torque that is left at each point."""
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
-        self.odrpack = extra("odrpack", "lab")
+        self.odrpack = optional_library("odrpack", "lab")
         i3 = float(body.i3)
         self.i3 = i3
         self.own = {"ratio": float(body.i1) / i3, "factor": 1.0}
@@ -115,7 +115,10 @@ class Balance:
         lengths = [float(np.linalg.norm(change)) for change in changes]
         if not min(lengths) > 1:
             return False
-        return len(names) < 2 or abs(float(changes[0] @ changes[1])) < _ALIKE * lengths[0] * lengths[1]
+        return (
+            len(names) < 2
+            or abs(float(changes[0] @ changes[1])) < _INDISTINGUISHABLE * lengths[0] * lengths[1]
+        )
 
     def _changes(self, names: tuple[str, ...], there: dict[str, float]) -> list[Floats]:
         """Shifts of the points, in errors, per unit relative change of each variable."""

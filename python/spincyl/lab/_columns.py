@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from spincyl._input.equality import key
+from spincyl._input.equality import equality_key
 from spincyl._input.numbers import Floats
 
 #: Words that are units when they stand alone.
@@ -98,7 +98,9 @@ class Columns(dict[str, Floats]):
         """Whether names (in any order), numbers (NaN equal to NaN) and units are the same."""
         if not isinstance(other, Mapping):
             return NotImplemented
-        same = dict(self).keys() == dict(other).keys() and key(dict(self)) == key(dict(other))
+        same = dict(self).keys() == dict(other).keys() and equality_key(dict(self)) == equality_key(
+            dict(other)
+        )
         return same and (not isinstance(other, Columns) or self.units == other.units)
 
     def __ne__(self, other: object) -> bool:

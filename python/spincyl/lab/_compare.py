@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, extra, number, reals, turns_per_second
-from spincyl._measured import with_size
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import Floats, Reals, number, optional_library, reals, turns_per_second
+from spincyl._measured import sized_body
 from spincyl._single import one_body
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 from spincyl.lab._balance import Balance, Fit, with_ratio
 from spincyl.lab._points import LEAST, points
 from spincyl.lab._report import counted, section, student, variables, with_error, written
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@compared
+@compared_by_value
 class Comparison(NamedTuple):
     """Measured inclinations and rates compared with the steady states of a body; returned by `compare`.
 
@@ -155,7 +155,7 @@ class Comparison(NamedTuple):
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the measurement with error bars, and the branches of the body as built and as fitted."""
         shown = self if self.factor == 1 else self._replace(rate=self.rate / self.factor)
-        drawn: Axes = above("Comparison.plot")(shown, ax)
+        drawn: Axes = function_of_method("Comparison.plot")(shown, ax)
         if self.factor != 1:
             drawn.set_xlabel(rf"{drawn.get_xlabel()}, measured over {self.factor:.4g}")
         return drawn
@@ -288,7 +288,7 @@ def compare(
     <Comparison: one point, 0.9 errors from a steady state: agrees with the body as built>
     """
     one_body(body)
-    extra("odrpack", "lab")
+    optional_library("odrpack", "lab")
     rate, rate_err, unit = _reduced(body, rate, rate_err, hertz, hertz_err)
     common = number("common", common)
     if not common >= 0 or 0 < common < 1e-6:
@@ -375,7 +375,7 @@ def _reduced(
         return rate, rate_err, math.nan
     if rate_err is not None:
         raise TypeError("rate_err: use it only with rate=; for hertz= give hertz_err=")
-    found, scale = with_size("body", body, None)
+    found, scale = sized_body("body", body, None)
     unit = float(scale.hertz(found, 1.0))
     given = (("hertz", hertz), ("hertz_err", hertz_err))
     turns, errors = (
@@ -401,7 +401,7 @@ def _doubts_of_ratio(
         return ""
     if both is not None and both.success:
         ratio, _, factor, factor_err = both.told(known)
-        if abs(factor - 1) > _sure(4.0, both.freedom, known) * factor_err:
+        if abs(factor - 1) > _equivalent_standard_errors(4.0, both.freedom, known) * factor_err:
             return (
                 f"all rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'}"
                 f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frame rate"
@@ -409,7 +409,7 @@ def _doubts_of_ratio(
             )
     ratio, ratio_err, *_ = found.told(known)
     as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
-    if abs(ratio - own) > _sure(3.0, found.freedom, known) * ratio_err and as_well:
+    if abs(ratio - own) > _equivalent_standard_errors(3.0, found.freedom, known) * ratio_err and as_well:
         return (
             f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
             f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
@@ -418,6 +418,6 @@ def _doubts_of_ratio(
     return ""
 
 
-def _sure(errors: float, freedom: int, known: bool) -> float:
+def _equivalent_standard_errors(errors: float, freedom: int, known: bool) -> float:
     """Number of standard errors that is as unlikely as `errors` normal deviates: larger for few points."""
     return errors if known else student(errors, freedom)

@@ -11,7 +11,7 @@ from spincyl._input.files import path_of
 
 #: Largest size in bytes of a file, and of all the contents of a zip file together.
 MOST_BYTES = 100_000_000
-_PIECE = 1 << 20
+_BYTES_PER_READ = 1 << 20
 
 
 def contents(path: str | PathLike[str]) -> bytes:
@@ -24,7 +24,7 @@ def contents(path: str | PathLike[str]) -> bytes:
 def limited(file: IO[bytes], name: str, most: int) -> bytes:
     """The bytes of a file, whatever size the directory of its zip file gives; ValueError beyond `most`."""
     pieces, left = [], most
-    while piece := file.read(_PIECE):
+    while piece := file.read(_BYTES_PER_READ):
         pieces.append(piece)
         left -= len(piece)
         if left < 0:

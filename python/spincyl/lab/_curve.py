@@ -16,14 +16,14 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._drift import drift
 from spincyl._input.numbers import Floats
-from spincyl._loss import sized
+from spincyl._loss import marked_as_si
 from spincyl.loss import ViscousContour
 from spincyl.studio.shape import steepest
 
 #: Total coefficient of tabulated drifts: so small that each law holds at all inclinations of the points.
-_UNIT = 1e-9
+_TABLE_COEFFICIENT = 1e-9
 #: Distance from the end of the clock, as a share of it, at which the tangent replaces the curve.
-_NEAR = 1e-6
+_TANGENT_SHARE = 1e-6
 
 
 class Curve:
@@ -45,7 +45,7 @@ class Curve:
     def law(self, coefficients: Sequence[float] | Floats) -> Any:
         """The law, or sum of laws, with these coefficients."""
         shares = coefficients[: len(self.laws)]
-        made = [sized(law(float(k))) for law, k in zip(self.laws, shares, strict=True)]
+        made = [marked_as_si(law(float(k))) for law, k in zip(self.laws, shares, strict=True)]
         total = made[0]
         for more in made[1:]:
             total = total + more
@@ -104,17 +104,17 @@ class Curve:
         if key not in self._known:
             if len(self._known) > 8:
                 self._known.clear()
-            self._known[key] = self.quietly([_UNIT * share for share in shares], top)
+            self._known[key] = self.quietly([_TABLE_COEFFICIENT * share for share in shares], top)
         drift = self._known[key]
-        return drift, total / _UNIT, 0.0 if top == theta else float(drift.time(theta))
+        return drift, total / _TABLE_COEFFICIENT, 0.0 if top == theta else float(drift.time(theta))
 
 
 def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
     """Values of a drift at times, continued by tangents beyond its beginning and end."""
-    last = (1 - _NEAR) * stop
+    last = (1 - _TANGENT_SHARE) * stop
     inside = np.clip(clock, 0.0, last)
     found = np.array(shown(inside), np.float64)
-    step = _NEAR * (stop if np.isfinite(stop) else float(np.abs(clock).max()) + 1.0)
+    step = _TANGENT_SHARE * (stop if np.isfinite(stop) else float(np.abs(clock).max()) + 1.0)
     for outside, end, side in ((clock < 0, 0.0, step), (clock > last, last, -step)):
         if outside.any():
             there, beside = shown(np.array([end, end + side]))
@@ -151,4 +151,7 @@ def goes_down(body: Body, centre: str, theta: float) -> bool:
     if centre == "rest":  # towards smaller energy
         low, high = (body.energy(body.steady(theta * (1 + sign * 1e-5))) for sign in (-1, 1))
         return bool(low < high)
-    return float(drift(body.natural, theta, ViscousContour(_UNIT), centre=centre).ends_at_theta) < theta
+    return (
+        float(drift(body.natural, theta, ViscousContour(_TABLE_COEFFICIENT), centre=centre).ends_at_theta)
+        < theta
+    )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._input.numbers import extra, made
+from spincyl._input.numbers import instance_of, optional_library
 from spincyl.lab._compare import Comparison
 from spincyl.lab._lossfit import LossFit
 from spincyl.lab._report import with_error
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _NATURAL = {"t": r"$\sqrt{R/g}$", "precession": r"$\sqrt{g/R}$"}
 _SECONDS = {"t": "s", "precession": "rad/s"}
-_MOST = 4  # number of laws that are drawn
+_MOST_LAWS = 4  # number of laws that are drawn
 
 
 @sized
@@ -54,7 +54,7 @@ def comparison(found: Comparison, ax: "Axes | None" = None) -> "Axes":
     TypeError
         If `found` is not a Comparison, or `ax` not an Axes.
     """
-    made("found", found, Comparison)
+    instance_of("found", found, Comparison)
     ax, ratio = new_axes(ax), with_error(found.ratio, found.ratio_err, r"\pm")
     curves = (
         (found.body, BLUE, "-", f"$I_1/I_3 = {found.expected:.4g}$, as built"),
@@ -104,9 +104,9 @@ def losses(found: LossFit, axes: "Sequence[Axes] | None" = None) -> "list[Axes]"
     TypeError
         If `found` is not a LossFit, or `axes` are not three Axes.
     """
-    made("found", found, LossFit)
+    instance_of("found", found, LossFit)
     if axes is None:
-        plt: Any = extra("matplotlib.pyplot", "plot")
+        plt: Any = optional_library("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
         own_ticks(*axes)
     data, rest, logs = axes
@@ -130,7 +130,7 @@ def losses(found: LossFit, axes: "Sequence[Axes] | None" = None) -> "list[Axes]"
         found.t, values, xerr=t_err, yerr=errors, color=BLACK, label="measured", alpha=0.5, zorder=1, **bars
     )
     styles = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
-    for fit, (colour, line) in zip(found.fits[:_MOST], styles, strict=False):
+    for fit, (colour, line) in zip(found.fits[:_MOST_LAWS], styles, strict=False):
         last = min(float(found.t[-1]), fit.stops_at)
         clock = np.linspace(0.0, last - float(found.t[0]), 601)[:-1]
         with warnings.catch_warnings():
@@ -160,13 +160,13 @@ def losses(found: LossFit, axes: "Sequence[Axes] | None" = None) -> "list[Axes]"
         rest.legend()
 
     logs.set_ylabel(drawn)
-    _logs(found, logs, values, unit["t"])
+    _draw_log_log(found, logs, values, unit["t"])
     return [data, rest, logs]
 
 
-def _logs(found: LossFit, ax: "Axes", values: Any, unit: str) -> None:
+def _draw_log_log(found: LossFit, ax: "Axes", values: Any, unit: str) -> None:
     """Draw the log-log line against the time left until it reaches zero; without a line, only the data."""
-    ticker: Any = extra("matplotlib.ticker", "plot")
+    ticker: Any = optional_library("matplotlib.ticker", "plot")
     ax.set_xscale("log")
     ax.set_yscale("log")
     for axis in (ax.xaxis, ax.yaxis):

@@ -9,8 +9,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.numbers import Floats, Reals, extra, reals, turns_per_second
-from spincyl._input.progress import Progress, telling
+from spincyl._input.numbers import Floats, Reals, optional_library, reals, turns_per_second
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl._single import one_body
 from spincyl.lab._curve import Curve
 from spincyl.lab._line import line
@@ -18,7 +18,7 @@ from spincyl.lab._lossfit import APART, FittedLoss, LossFit, Refused, called, in
 from spincyl.lab._spindown import Several, SpinDown, asked, centres, measured
 from spincyl.lab._typical import far_from_typical
 
-_RESTED = 0.02  #: First guess of the share in `Curve` that gives where the centre was at rest.
+_FIRST_REST_SHARE = 0.02  #: First guess of the share in `Curve` that gives where the centre was at rest.
 _CORRELATED = 0.999  #: Two coefficients with a higher correlation cannot be told apart.
 
 
@@ -121,7 +121,7 @@ def fit_losses(
     >>> found.best.name, round(found.best.coefficient, 9)
     ('DryContour', 0.001)
     """
-    odrpack = extra("odrpack", "lab")
+    odrpack = optional_library("odrpack", "lab")
     if hertz is not None or hertz_err is not None:
         if precession is not None or precession_err is not None:
             raise TypeError("precession, hertz: give only one of them, and the error of the same name")
@@ -142,8 +142,8 @@ def fit_losses(
         precession_err=precession_err,
         start=start,
     )
-    with telling(progress, "fit") as told:
-        found, refused = _every(odrpack, body, spindown, centres(centre), asked(laws), told)
+    with reporting_progress(progress, "fit") as told:
+        found, refused = _fit_every_law(odrpack, body, spindown, centres(centre), asked(laws), told)
     whole = []
     for raw in found:
         try:
@@ -156,7 +156,7 @@ def fit_losses(
     whole.sort(key=_aic)
     best, data = whole[0], whole[0].data
     spread = best.spread
-    fits = [_told(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
+    fits = [_fitted_loss(f, _aic(f), (_aic(f) - _aic(best)) / spread) for f in whole]
     # only the best drift may issue warnings
     fits[0] = fits[0]._replace(drift=best.curve.drift(best.beta[:-1], float(best.beta[-1])))
     said = _doubts_of_laws(body, best, fits)
@@ -185,7 +185,7 @@ def fit_losses(
     return fit if body.scale is None else in_si(fit, body, body.scale.seconds(1.0))
 
 
-class _Raw(NamedTuple):
+class _RawFit(NamedTuple):
     """A fit by odrpack: parameters, and their covariance in units of the errors."""
 
     data: SpinDown
@@ -204,16 +204,16 @@ class _Raw(NamedTuple):
         return 1.0 if self.data.estimated else max(self.chi2 / self.freedom, 1.0)
 
 
-def _every(
+def _fit_every_law(
     odrpack: Any,
     body: Body,
     spindown: Callable[..., SpinDown],
     kept: Any,
     sums: Any,
     told: Progress | None,
-) -> tuple[list[_Raw], list[tuple[str, Any, Exception]]]:
+) -> tuple[list[_RawFit], list[tuple[str, Any, Exception]]]:
     """The fits of every law, and the laws that are refused with the reasons."""
-    found: list[_Raw] = []
+    found: list[_RawFit] = []
     refused: list[tuple[str, Any, Exception]] = []
     count, rounds = len(kept) * len(sums), 2  # the second with errors that the first has estimated
     for one in kept:
@@ -245,7 +245,7 @@ def _every(
     return found, refused
 
 
-def _doubts_of_laws(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]:
+def _doubts_of_laws(body: Body, best: _RawFit, fits: list[FittedLoss]) -> list[str]:
     """Warnings about the best fit: inconsistent units, or points that no law explains."""
     said, data, fit = [], best.data, fits[0]
     units = "natural units" if body.scale is None else "seconds and rad/s"
@@ -270,15 +270,15 @@ def _doubts_of_laws(body: Body, best: _Raw, fits: list[FittedLoss]) -> list[str]
     return said + (known[:1] if all(known) else [])
 
 
-def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _Raw:
+def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _RawFit:
     """Fit one law, or a sum, from given parameters or from a guess."""
-    at: Floats = _guess(odrpack, data, curve) if begin is None else begin.copy()
+    at: Floats = _first_guess(odrpack, data, curve) if begin is None else begin.copy()
     many = len(curve.laws)
     if curve.centre == "rolling" and at.size == many + 1:
-        at = np.insert(at, -1, _RESTED)
+        at = np.insert(at, -1, _FIRST_REST_SHARE)
     at[-1] = np.clip(at[-1], *curve.ends)
     if at.size > many + 1:
-        at[-2] = np.clip(at[-2], _RESTED, 0.9)
+        at[-2] = np.clip(at[-2], _FIRST_REST_SHARE, 0.9)
     exact = not data.t_err.any()
     weights = np.where(np.isfinite(data.values), data.errors**-2.0, 0.0)
 
@@ -308,10 +308,10 @@ def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | No
         at[-2] = max(at[-2], 1e-12)
         found = fit(at, np.arange(at.size) == at.size - 2)
     covariance = np.asarray(found.cov_beta) * np.outer(at, at)
-    return _Raw(data, curve, np.asarray(found.beta) * at, covariance, float(found.sum_square))
+    return _RawFit(data, curve, np.asarray(found.beta) * at, covariance, float(found.sum_square))
 
 
-def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
+def _first_guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     """A guess of coefficients and first inclination. Times are proportional to those of a tabulated drift."""
     if len(curve.laws) > 1:
         alone = [
@@ -323,7 +323,7 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
             np.r_[(1 - share) * alone[0].beta[0], share * alone[1].beta[0], alone[0].beta[1:-1], theta]
             for share in (0.1, 0.3, 0.5, 0.7, 0.9)
         ]
-        return min(mixed, key=lambda beta: _squares(data, curve, beta))
+        return min(mixed, key=lambda beta: _sum_of_squares(data, curve, beta))
     near = np.isfinite(data.near)
     inclinations, t = data.near[near], data.clock[near]  # a guess must not depend on the origin of time
     clock, less, more = curve.times([1.0], inclinations * np.array([[1.0], [0.999], [1.001]]))
@@ -342,12 +342,12 @@ def _guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
     return np.array([coefficient, first])
 
 
-def _squares(data: SpinDown, curve: Curve, beta: Floats) -> float:
+def _sum_of_squares(data: SpinDown, curve: Curve, beta: Floats) -> float:
     off = curve(data.names, data.clock, beta[:-1], beta[-1]) - data.values
     return float(np.nansum((off / data.errors) ** 2))
 
 
-def _refuse_degenerate(found: _Raw) -> None:
+def _refuse_degenerate(found: _RawFit) -> None:
     """Refuse a law that no coefficient fits, or two laws that the points cannot tell apart."""
     errors = np.sqrt(np.diag(_covariance(found)))[: len(found.curve.laws)]
     if len(errors) < 2:
@@ -369,7 +369,7 @@ def _refuse_degenerate(found: _Raw) -> None:
         raise ValueError(f"laws: {told}, since {why}; fit them one by one")
 
 
-def _covariance(found: _Raw) -> Floats:
+def _covariance(found: _RawFit) -> Floats:
     """The covariance of the parameters; estimated errors follow from the scatter about this law.
 
     If points scatter by more than their given errors, it is enlarged accordingly.
@@ -377,14 +377,14 @@ def _covariance(found: _Raw) -> Floats:
     return found.covariance * (found.chi2 / found.freedom if found.data.estimated else found.spread)
 
 
-def _aic(found: _Raw) -> float:
+def _aic(found: _RawFit) -> float:
     data, squares = found.data, found.chi2
     if len(data.estimated) == len(data.names) and not data.t_err.any():
         squares = data.numbers * math.log(found.chi2 / data.numbers + 1e-300)
     return squares + 2 * len(found.beta)
 
 
-def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
+def _fitted_loss(found: _RawFit, aic: float, daic: float) -> FittedLoss:
     """The result of a fit, with the stopping time and its error."""
     data, curve, beta = found.data, found.curve, found.beta
     chi2 = found.chi2 / found.freedom
@@ -396,7 +396,7 @@ def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
         other = 1 if many > 1 else -1
         stop_err, correlation = math.nan, covariance[0, other] / (errors[0] * errors[other])
     if math.isfinite(left) and errors[-1] > 0:
-        gradient = np.array([_slope(curve, beta, k, errors[k]) for k in range(len(beta))])
+        gradient = np.array([_slope_of_stop(curve, beta, k, errors[k]) for k in range(len(beta))])
         stop_err = math.sqrt(max(float(gradient @ covariance @ gradient), 0.0))
         if many == 1:
             both = errors[0] * stop_err
@@ -422,12 +422,12 @@ def _told(found: _Raw, aic: float, daic: float) -> FittedLoss:
     )
 
 
-def _slope(curve: Curve, beta: Floats, k: int, error: float) -> float:
+def _slope_of_stop(curve: Curve, beta: Floats, k: int, error: float) -> float:
     """Derivative of the stopping time by a parameter."""
     size = beta[k]
     low, high = curve.ends if k == len(beta) - 1 else (0.5 * size, 2 * size)
     if len(curve.laws) <= k < len(beta) - 1:
-        low, high, size = 0.0, 0.95, _RESTED
+        low, high, size = 0.0, 0.95, _FIRST_REST_SHARE
     step = max(min(0.1 * error, 0.01 * size), 1e-7 * size)  # exact data have zero errors
     places = np.clip([beta[k] - step, beta[k] + step], low, high)
     times = []

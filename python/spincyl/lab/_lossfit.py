@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats
 from spincyl._loss import Loss
-from spincyl._upward import above
+from spincyl._upward import function_of_method
 from spincyl.lab._line import Line
 from spincyl.lab._report import section, variables, written
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 APART = 6.0
 
 
-@compared
+@compared_by_value
 class FittedLoss(NamedTuple):
     """Fit of one law, or of the sum of two, to a spin-down; one of the results of `fit_losses`.
 
@@ -116,7 +116,7 @@ class FittedLoss(NamedTuple):
         return f"<{self.name}{rolling}: {said}, {_stops(self)}, chi2 {self.chi2:.3g}, dAIC {self.daic:.1f}>"
 
 
-@compared
+@compared_by_value
 class Refused(NamedTuple):
     """A law that could not be fitted, and the reason.
 
@@ -135,7 +135,7 @@ class Refused(NamedTuple):
     why: str
 
 
-@compared
+@compared_by_value
 class LossFit(NamedTuple):
     """A measured spin-down and the laws fitted to it, the best first; returned by `fit_losses`.
 
@@ -258,7 +258,7 @@ class LossFit(NamedTuple):
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw the data with the fits, the residuals and the log-log diagram; see `spincyl.plot.losses`."""
-        drawn: list[Axes] = above("LossFit.plot")(self, axes)
+        drawn: list[Axes] = function_of_method("LossFit.plot")(self, axes)
         return drawn
 
     def __repr__(self) -> str:

@@ -19,8 +19,8 @@ _PANEL, _POINT = _HOME + "cabrillo.tracker.TrackerPanel", _HOME + "cabrillo.trac
 _DECLARED = re.compile(rb"""\s*<\?xml[^>]{0,200}?encoding\s*=\s*["']([\w.:-]{1,40})["']""")
 _MOST = 1_000_000  #: Largest number of elements of a project.
 #: Undecoded bytes, which XML may not contain, and the private-use characters that replace them meanwhile.
-_BARE = dict(zip(range(0xDC80, 0xDD00), range(0xF780, 0xF800), strict=True))
-_BACK = {private: bare for bare, private in _BARE.items()}
+_PRIVATE_OF_BYTE = dict(zip(range(0xDC80, 0xDD00), range(0xF780, 0xF800), strict=True))
+_BYTE_OF_PRIVATE = {private: bare for bare, private in _PRIVATE_OF_BYTE.items()}
 
 
 class _Builder(ElementTree.TreeBuilder):
@@ -80,25 +80,25 @@ def _tree(text: str) -> Any:
     """The root of a project; ValueError with the line at which the XML is damaged."""
     parser = ElementTree.XMLParser(target=_Builder())
     try:
-        parser.feed(text.translate(_BARE))
+        parser.feed(text.translate(_PRIVATE_OF_BYTE))
         return parser.close()
     except ElementTree.ParseError as e:
         raise ValueError(f"line {e.position[0]} is damaged: {str(e).split(':')[0]}") from None
 
 
-def _own(of: Any) -> dict[str, Any]:
+def _properties(of: Any) -> dict[str, Any]:
     """The properties of an object, by name."""
     return {} if of is None else {one.get("name", ""): one for one in of if one.tag == "property"}
 
 
-def _inside(of: Any) -> Any:
+def _object_of_property(of: Any) -> Any:
     """The object that a property holds; None for any other."""
     return None if of is None else of.find("object")
 
 
 def _text(of: Any, default: str = "") -> str:
     """The text of a property."""
-    return default if of is None or not of.text else str(of.text).strip().translate(_BACK)
+    return default if of is None or not of.text else str(of.text).strip().translate(_BYTE_OF_PRIVATE)
 
 
 def _finite(own: dict[str, Any], name: str, default: float = math.nan) -> float:
@@ -117,10 +117,10 @@ def _finite(own: dict[str, Any], name: str, default: float = math.nan) -> float:
 
 def _frames(own: dict[str, Any]) -> Iterator[tuple[int, dict[str, Any]]]:
     """The numbers of the frames for which there is data, and the data."""
-    for name, one in _own(own.get("framedata")).items():
-        data = _inside(one)
+    for name, one in _properties(own.get("framedata")).items():
+        data = _object_of_property(one)
         if data is not None and re.fullmatch(r"\[\d{1,9}\]", name):
-            yield int(name[1:-1]), _own(data)
+            yield int(name[1:-1]), _properties(data)
 
 
 def _tracks_of_points(root: Any) -> dict[str, Columns]:
@@ -128,12 +128,12 @@ def _tracks_of_points(root: Any) -> dict[str, Columns]:
     kind = root.get("class", root.tag)
     if kind != _PANEL:
         raise ValueError(f"of the kind {kind.rpartition('.')[2]!r}: open it in Tracker and save a single tab")
-    own = _own(root)
+    own = _properties(root)
     moving = _text(own.get("referenceframe"))
     if moving:
         raise ValueError(f"its axes move with {moving!r}: choose the default reference frame and save it")
     marks, others = _marks(own)
-    clip = _own(_inside(own.get("videoclip")))
+    clip = _properties(_object_of_property(own.get("videoclip")))
     first, step = (int(_finite(clip, key, default)) for key, default in (("startframe", 0), ("stepsize", 1)))
     step = max(step, 1)
     last = first + step * (int(_finite(clip, "stepcount", 1e9)) - 1)
@@ -151,7 +151,9 @@ def _tracks_of_points(root: Any) -> dict[str, Columns]:
     if many * len(shown) > _MOST:
         raise ValueError(f"{len(shown)} tracks over {many} frames are too many")
     n = begin + step * np.arange(many, dtype=np.float64)
-    timing = _own(_inside(clip.get("video"))) | _own(_inside(own.get("clipcontrol")))
+    timing = _properties(_object_of_property(clip.get("video"))) | _properties(
+        _object_of_property(own.get("clipcontrol"))
+    )
     milliseconds = _finite(timing, "delta_t")
     if not milliseconds > 0:
         raise ValueError(f"delta_t = {milliseconds!r}: expected a positive duration of a frame")
@@ -172,10 +174,10 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
     marks: dict[str, dict[int, complex]] = {}
     others = []
     for one in own.get("tracks", ()):
-        track = _inside(one)
+        track = _object_of_property(one)
         if track is None:
             continue
-        mine, kind = _own(track), track.get("class", "")
+        mine, kind = _properties(track), track.get("class", "")
         name = _text(mine.get("name"), "track")
         if kind != _POINT:
             others.append(f"{kind.rpartition('.')[2]} {name!r}")
@@ -189,7 +191,7 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
 def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[Floats, Floats]], str]:
     """The map from positions in the picture, x + iy downward, to coordinates, and the unit of length."""
     keys = ("xorigin", "yorigin", "angle", "xscale", "yscale")
-    system = _own(_inside(own.get("coords")))
+    system = _properties(_object_of_property(own.get("coords")))
     rows = sorted((n, *(_finite(at, key) for key in keys)) for n, at in _frames(system))
     if not rows:
         raise ValueError("it has no axes and no scale of length (coords)")

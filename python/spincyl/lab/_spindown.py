@@ -14,7 +14,7 @@ from spincyl.studio.shape import steepest
 
 LAWS = tuple(CODES["Law"])
 CENTRES = ("rest", "rolling")
-_SHARE = 0.01  # first guess of the relative error of values
+_FIRST_ERROR = 0.01  # first guess of the relative error of values
 
 
 class Several(ValueError):
@@ -158,7 +158,7 @@ def measured(
             hint = "; noise near the end? Leave out the last points, or set them to NaN" if late else ""
             raise ValueError(told + hint)
         rows.append(row)
-        errs.append(_errors(f"{name}_err", given[name][1], time, _SHARE * row))
+        errs.append(_errors(f"{name}_err", given[name][1], time, _FIRST_ERROR * row))
     values, errors = np.stack(rows), np.stack(errs)
     times = _errors("t_err", t_err, time, np.zeros_like(time))
     if theta is not None:
@@ -185,7 +185,7 @@ def measured(
     estimated = tuple(name for name in names if given[name][1] is None)
     rises = {name: _rises(name, time, row) for name, row in zip(names, values, strict=True)}
     columns = dict(zip(names, values, strict=True))
-    near, ends, down = _near(body, columns, rises, centre, start)
+    near, ends, down = _first_inclinations(body, columns, rises, centre, start)
     return SpinDown(time, times, names, values, errors, estimated, near, ends, down)
 
 
@@ -195,10 +195,10 @@ def leaning(name: str, theta: Floats, body: Body) -> None:
     if not ((known > 0) & (known <= steepest(body))).all():
         degrees = (known > 0).all() and known.max() <= math.degrees(steepest(body))
         hint = "; these look like degrees: give np.radians(theta)" if degrees else ""
-        raise ValueError(f"{name}: expected inclinations in {_reach(body)}, in radians{hint}")
+        raise ValueError(f"{name}: expected inclinations in {_range_in_words(body)}, in radians{hint}")
 
 
-def _reach(body: Body) -> str:
+def _range_in_words(body: Body) -> str:
     """The range of inclinations of a body's steady states, in words."""
     named = {math.pi / 2: "pi/2", math.pi: "pi"}
     most = steepest(body)
@@ -236,13 +236,13 @@ def _ranks(values: Floats) -> Floats:
     return found
 
 
-def _near(
+def _first_inclinations(
     body: Body, columns: dict[str, Floats], rises: dict[str, bool], centre: str, start: float | None
 ) -> tuple[Floats, tuple[float, float], bool]:
     """Approximate inclinations, the ends of their branch, and whether the drift goes down on it."""
     pieces = branches(body, centre)
     if start is not None and not 0 < number("start", start) <= steepest(body):
-        raise ValueError(f"start = {start!r}: expected an inclination in {_reach(body)}, in radians")
+        raise ValueError(f"start = {start!r}: expected an inclination in {_range_in_words(body)}, in radians")
     theta = columns.get("theta")
     if theta is not None:
         known = theta[np.isfinite(theta)]

@@ -8,9 +8,9 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._drift import Drift, drift
-from spincyl._input.equality import compared
-from spincyl._input.numbers import Floats, Reals, number, radians, reals, refuse, si
-from spincyl._loss import sized
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import Floats, Reals, number, radians, reals, refuse_bad_value, si
+from spincyl._loss import marked_as_si
 from spincyl._single import one_body
 from spincyl.lab._lossfit import CENTRE, Refused
 from spincyl.lab._report import section, student, variables
@@ -19,16 +19,16 @@ from spincyl.lab._typical import far_from_typical
 
 _UNIT = 1e-9  #: Coefficient so small that the law holds at all inclinations of the drift.
 _ENDS = ("face lands", "lies down")  #: Ends at which the body is seen to stop.
-_FEW = 5.0  #: With fewer turns before the end the drift is not slow.
+_FEWEST_TURNS = 5.0  #: With fewer turns before the end the drift is not slow.
 _LONGEST = 1e9  #: Seconds.
-_MIXED = 3.0  #: A larger ratio of the times causes a warning.
-_MANY = 5  #: With fewer times their scatter does not show which of them is an outlier.
+_MIXED_RATIO = 3.0  #: A larger ratio of the times causes a warning.
+_FEWEST_TIMES = 5  #: With fewer times their scatter does not show which of them is an outlier.
 #: Robust standard deviations from the median, and the least of these deviations as a share of the median. Of
 #: 1000 sets of five normal times one has a time that is farther.
 _OUTLIER, _STEADY = 9.0, 0.02
 
 
-@compared
+@compared_by_value
 class FittedStop(NamedTuple):
     """Coefficient of a loss for one of the two kinds of drift; returned by `fit_stop`.
 
@@ -81,7 +81,7 @@ class FittedStop(NamedTuple):
         return f"<{type(self.law).__name__} {CENTRE[self.centre]}: {value:.4g} +- {error:.2g}{unit}>"
 
 
-@compared
+@compared_by_value
 class StopFit(NamedTuple):
     """Measured times until a body stops, and the coefficient of loss; returned by `fit_stop`.
 
@@ -242,9 +242,11 @@ def fit_stop(
     theta, theta_err = (
         number(name, radians(name, x)) for name, x in (("from_", from_), ("from_err", from_err))
     )
-    refuse("from_", theta, lambda x: ~(x > 0), "expected a positive angle (radians)")
-    refuse("from_err", theta_err, lambda x: ~((x >= 0) & (x < theta)), "expected at least 0, less than from_")
-    times, mean, mean_err = _timed(seconds, error)
+    refuse_bad_value("from_", theta, lambda x: ~(x > 0), "expected a positive angle (radians)")
+    refuse_bad_value(
+        "from_err", theta_err, lambda x: ~((x >= 0) & (x < theta)), "expected at least 0, less than from_"
+    )
+    times, mean, mean_err = _mean_of_times(seconds, error)
     turns = mean * float(body.hertz(theta))
     if turns < 1:
         told = f"the body would stop within {turns:.2g} of a turn, too fast for a drift"
@@ -263,7 +265,7 @@ def fit_stop(
         warnings.warn(far, UserWarning, stacklevel=2)
     for kept in {one.category: one for one in said}.values():  # not once for each centre
         warnings.warn(kept.message, kept.category, stacklevel=2)
-    if turns < _FEW:
+    if turns < _FEWEST_TURNS:
         told = (
             f"the body turns only {turns:.2g} times before it stops, too few for a slow drift: are the times"
             " in seconds?"
@@ -282,12 +284,12 @@ def fit_stop(
     )
 
 
-def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
+def _mean_of_times(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
     """The times, their mean and its standard error."""
     given = np.asarray(reals("seconds", si("seconds", seconds, "second")), np.float64)
     if given.ndim > 1:
         raise ValueError(f"seconds: expected a time or a list of them, not shape {given.shape}")
-    refuse(
+    refuse_bad_value(
         "seconds", given, lambda x: (x <= 0) | (x > _LONGEST), f"expected more than 0, at most {_LONGEST:g}"
     )
     times = np.atleast_1d(given)[np.isfinite(np.atleast_1d(given))]
@@ -296,7 +298,7 @@ def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
     mean = float(np.mean(times))
     one = math.nan if error is None else number("error", si("error", error, "second"))
     if error is not None:
-        refuse(
+        refuse_bad_value(
             "error", one, lambda x: ~((x > 0) & (x < mean)), "expected a positive time, less than the mean"
         )
     elif times.size < 2 or np.ptp(times) == 0:
@@ -304,8 +306,8 @@ def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
         raise ValueError(
             f"seconds: {what} no scatter; give the standard error of a time in seconds, such as error=0.2"
         )
-    told = _outliers(given, times) if times.size >= _MANY else ""
-    if not told and times.max() > _MIXED * times.min():
+    told = _warning_of_outliers(given, times) if times.size >= _FEWEST_TIMES else ""
+    if not told and times.max() > _MIXED_RATIO * times.min():
         told = f"the times range from {times.min():.4g} to {times.max():.4g} s: are all of them in seconds?"
     if told:
         warnings.warn(told, UserWarning, stacklevel=3)
@@ -314,7 +316,7 @@ def _timed(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
     return times, mean, spread / math.sqrt(times.size)
 
 
-def _outliers(given: Floats, times: Floats) -> str:
+def _warning_of_outliers(given: Floats, times: Floats) -> str:
     """A warning that names times far from the median, in units of the median deviation; empty if none is."""
     middle = float(np.median(times))
     scale = max(1.4826 * float(np.median(np.abs(times - middle))), _STEADY * middle)
@@ -353,6 +355,6 @@ def _fitted_drift(
     coefficient = _UNIT * one.stops_at / (mean / second)
     by_times = coefficient * mean_err / mean
     by_angle = coefficient * float(np.nanmean(off)) / one.stops_at if theta_err else 0.0
-    law = sized(kind(coefficient), body)
+    law = marked_as_si(kind(coefficient), body)
     found = drift(body, theta, law, centre)
     return FittedStop(centre, law, coefficient, math.hypot(by_times, by_angle), by_times, by_angle, found)

@@ -17,7 +17,7 @@ from spincyl.lab._project import project
 #: Delimiters of columns in the order of trial; spaces come last, since names contain them.
 _DELIMITERS = ("\t", ";", ",", None)
 #: Names and the first row of numbers have to be within this many lines that are not empty.
-_TOP = 10_000
+_LINES_SEARCHED = 10_000
 
 
 def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Columns:
@@ -66,7 +66,7 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
 
 def table(raw: bytes, name: str, encoding: str | None = None) -> Columns:
     """The single table in a file; ValueError for several."""
-    tracks = _named(raw, name, encoding, "a table", 1)
+    tracks = _tracks_of_file(raw, name, encoding, "a table", 1)
     if len(tracks) > 1:
         legible(name, tracks)
         raise ValueError(
@@ -119,12 +119,12 @@ def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> d
     raw, name = contents(path), str(path)
     found = project(raw, name, encoding)
     if found is None:
-        found = _named(raw, name, encoding, "a table exported by Tracker", 2)
+        found = _tracks_of_file(raw, name, encoding, "a table exported by Tracker", 2)
         legible(name, found)
     return found
 
 
-def _named(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -> dict[str, Columns]:
+def _tracks_of_file(raw: bytes, name: str, encoding: str | None, kind: str, least: int) -> dict[str, Columns]:
     """The tracks of a file; an error names the file and the reason."""
     text = decoded(raw, name, encoding)
     try:
@@ -157,11 +157,13 @@ def _read_tracks(text: str, least: int) -> dict[str, Columns]:
     kinds.sort(key=lambda kind: numbers_in(lines[-1][1], *kind) is None)
     why = ""
     for kind in kinds:
-        first = next((k for k, (_, x) in enumerate(lines[:_TOP]) if numbers_in(x, *kind) is not None), None)
+        first = next(
+            (k for k, (_, x) in enumerate(lines[:_LINES_SEARCHED]) if numbers_in(x, *kind) is not None), None
+        )
         if not first:
             continue
         try:
-            found = _found(lines, first, kind, bool(several), least)
+            found = _tracks_in_format(lines, first, kind, bool(several), least)
         except _Garbled as e:
             why = str(e)
             break
@@ -171,15 +173,18 @@ def _read_tracks(text: str, least: int) -> dict[str, Columns]:
         if found is not None:
             return found
     (first, _), (last, line) = lines[0], lines[-1]
-    why = why or _texts(lines, [delimiter for delimiter, comma in kinds if delimiter and not comma])
-    raise ValueError(why or f"{none} from line {first} to line {last}; the last line is {_shown(line)}")
+    why = why or _column_of_texts(lines, [delimiter for delimiter, comma in kinds if delimiter and not comma])
+    raise ValueError(why or f"{none} from line {first} to line {last}; the last line is {_shortened(line)}")
 
 
-def _texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
+def _column_of_texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
     """The column of texts in a table that otherwise has numbers; empty if there is none."""
     for delimiter in delimiters:
         try:
-            rows = [(at, [cell.strip() for cell in split(line, delimiter)]) for at, line in lines[:_TOP]]
+            rows = [
+                (at, [cell.strip() for cell in split(line, delimiter)])
+                for at, line in lines[:_LINES_SEARCHED]
+            ]
         except ValueError:
             continue
         for (_, names), (at, cells) in pairwise(rows):
@@ -189,7 +194,7 @@ def _texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
             name, cell = next(
                 (n, c) for n, c, is_one in zip(names, cells, numbers, strict=True) if not is_one
             )
-            told = f"line {at} has the text {_shown(cell)} in the column {_shown(name)}"
+            told = f"line {at} has the text {_shortened(cell)} in the column {_shortened(name)}"
             return f"{told}: expected only numbers; leave out a column of names"
     return ""
 
@@ -198,7 +203,7 @@ class _Garbled(ValueError):
     """The reason why a line cannot be a line of names, in any format."""
 
 
-def _found(
+def _tracks_in_format(
     lines: list[tuple[int, str]], first: int, kind: tuple[str | None, bool], several: bool, least: int
 ) -> dict[str, Columns] | None:
     """The tracks of lines in one format; line `first` has the first numbers. None if names are missing."""
@@ -216,15 +221,17 @@ def _found(
         return None
     if all(numbers):
         below = lines[first][0]
-        raise ValueError(f"line {at} has numbers in another format than line {below}: {_shown(line)}")
+        raise ValueError(f"line {at} has numbers in another format than line {below}: {_shortened(line)}")
     if any(numbers):  # a row of numbers with a cell that is not a number
-        raise _Garbled(f"line {at} has a cell that is not a number: {_shown(line)}")
+        raise _Garbled(f"line {at} has a cell that is not a number: {_shortened(line)}")
     alone = delimiter is None or len(columns) == 1
     if not any(columns) or (
         alone and set(_BRACKETS.sub("", columns[0] if len(columns) == 1 else line)) & set(",;")
     ):
-        raise ValueError(f"line {at} has no names separated in the same way as the numbers: {_shown(line)}")
-    above = _above(lines[first - 2][1], delimiter, columns, several) if first > 1 else []
+        raise ValueError(
+            f"line {at} has no names separated in the same way as the numbers: {_shortened(line)}"
+        )
+    above = _track_names(lines[first - 2][1], delimiter, columns, several) if first > 1 else []
     if several and delimiter is None:
         raise ValueError("several tracks cannot be told apart if columns are separated by spaces")
     rows = [(i, line) for i, line in lines[first + bool(units) :] if line.lstrip()[0] not in "#%"]
@@ -243,13 +250,13 @@ def _is_marker(line: str) -> bool:
     return ":" in line and line.strip(" #;,\t").lower() == "multi:"
 
 
-def _shown(line: str) -> str:
+def _shortened(line: str) -> str:
     """A line for a message, shortened."""
     line = line.strip()
     return repr(line if len(line) <= 60 else line[:60] + "...")
 
 
-def _above(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
+def _track_names(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
     """Names of tracks above columns, empty above their further columns; else the line as a single name."""
     try:
         names = [cell.strip() for cell in split(line, delimiter)]
@@ -272,7 +279,7 @@ def _names(at: int, line: str, delimiter: str | None) -> list[str]:
     try:
         return [cell.strip() for cell in split(line, delimiter)]
     except ValueError as e:
-        raise ValueError(f"line {at} has {e}: {_shown(line)}") from None
+        raise ValueError(f"line {at} has {e}: {_shortened(line)}") from None
 
 
 def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, width: int) -> Floats:
@@ -288,7 +295,7 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
             )
     if comma and delimiter == ",":
         _refuse_thousands(lines)
-    plain = _plain([line for _, line in lines], delimiter, comma, width)
+    plain = _table_by_numpy([line for _, line in lines], delimiter, comma, width)
     if plain is not None:
         return plain
     table: list[list[float]] = []
@@ -297,7 +304,7 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
         if numbers is None:
             numbers = missing_in(line, delimiter)
         if numbers is None:
-            raise ValueError(f"line {i} has {_trouble(line, delimiter, comma)}: {_shown(line)}")
+            raise ValueError(f"line {i} has {_why_no_row(line, delimiter, comma)}: {_shortened(line)}")
         if len(numbers) > width:
             raise ValueError(f"line {i} has {len(numbers)} cells under {width} column names")
         table.append(numbers + [math.nan] * (width - len(numbers)))
@@ -309,7 +316,7 @@ def _table(lines: list[tuple[int, str]], delimiter: str | None, comma: bool, wid
     return np.array(table)
 
 
-def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
+def _why_no_row(line: str, delimiter: str | None, comma: bool) -> str:
     """The reason why a line is not a row of numbers."""
     try:
         split(line, delimiter)
@@ -322,7 +329,7 @@ def _trouble(line: str, delimiter: str | None, comma: bool) -> str:
 
 def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
     """ValueError if all quoted commas could be thousands separators as well as decimal commas: "1,234"."""
-    found = [(i, cell) for i, line in lines for cell in _quoted(line) if "," in cell]
+    found = [(i, cell) for i, line in lines for cell in _cells_with_quotes(line) if "," in cell]
     if found and all(_THOUSANDS.fullmatch(cell) for _, cell in found):
         i, cell = found[0]
         readings = f"{cell.replace(',', '.')} or {cell.replace(',', '')}"
@@ -333,7 +340,7 @@ def _refuse_thousands(lines: list[tuple[int, str]]) -> None:
 _THOUSANDS = re.compile(r"\s*[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+\s*")
 
 
-def _quoted(line: str) -> list[str]:
+def _cells_with_quotes(line: str) -> list[str]:
     """The cells of a comma-separated line that has quotes; empty for an unclosed quote."""
     try:
         return split(line, ",") if '"' in line else []
@@ -341,7 +348,7 @@ def _quoted(line: str) -> list[str]:
         return []
 
 
-def _plain(lines: list[str], delimiter: str | None, comma: bool, width: int) -> Floats | None:
+def _table_by_numpy(lines: list[str], delimiter: str | None, comma: bool, width: int) -> Floats | None:
     """The result of `_table` by NumPy's reader, five times faster; None if lines have anything unusual."""
     if any('"' in line or (comma and "." in line) for line in lines):
         return None

@@ -12,24 +12,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._input.equality import compared
+from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, Reals, number, reals
 
-_TURNS = 8  # turns in a window
+_TURNS_PER_WINDOW = 8  # turns in a window
 _PER_OCTAVE = 24  # filters per octave
 # least coherence: share of the fundamental that is in phase with the fit; noise has about 0.7
-_COHERENT = 0.9
+_LEAST_COHERENCE = 0.9
 _MAINS = (50.0, 60.0)  # hertz
-_HUMS = 2000.0  # hertz: harmonics of the mains up to here are removed, each within `_NARROW` hertz
-_NARROW = 1.0
-_LEAP = 0.4  # a larger jump of the logarithm of the rate means another sound
-_EVEN = 0.2  # least fundamental in any turn of a window, as a share of the window's mean
-_KNOCK = 4.0  # a window whose scatter exceeds that of its neighbours by this factor contains a knock
-_RUN = 4  # least number of coherent windows in a row
-_BIAS = 1e-3  # relative systematic error of a window without noise
+_HIGHEST_HUM = 2000.0  # hertz: harmonics of the mains up to here are removed, each within `_HUM_WIDTH` hertz
+_HUM_WIDTH = 1.0
+_LARGEST_JUMP = 0.4  # a larger jump of the logarithm of the rate means another sound
+_LEAST_FUNDAMENTAL = 0.2  # least fundamental in any turn of a window, as a share of the window's mean
+_KNOCK_SCATTER = 4.0  # a window whose scatter exceeds that of its neighbours by this factor contains a knock
+_FEWEST_WINDOWS = 4  # least number of coherent windows in a row
+_SYSTEMATIC_ERROR = 1e-3  # relative systematic error of a window without noise
 
 
-@compared
+@compared_by_value
 class Wobble(NamedTuple):
     """Turns per second of a contact point over time; returned by `wobble`.
 
@@ -90,35 +90,35 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     x, begin, hertz = _recording(t, sound, low, high)
     level, pace = _envelope(x, hertz, high)
     begin += 0.5 / pace - 0.5 / hertz  # the middle of the first block
-    rest = _levelled(level, pace, low)
+    rest = _relative_envelope(level, pace, low)
     track = _loudest_path(rest, pace, low, high)
     clock = np.arange(rest.size) / pace
     for _ in range(3):
         time, turns, errors, heard = _windows(rest, pace, track)
         heard &= (turns > 0.8 * low) & (turns < 1.2 * high)
-        keep = _one(_runs(heard), turns)
+        keep = _longest_run(_separate_windows(heard), turns)
         if not keep.any():
-            raise ValueError(_unheard(heard, float(track.mean() * rest.size / pace), low, high))
+            raise ValueError(_why_unheard(heard, float(track.mean() * rest.size / pace), low, high))
         # outside the audible range keep the previous track
-        half = 0.5 * _TURNS / turns[keep]
-        better = np.exp(_curve(clock, time[keep], np.log(turns[keep])))
+        half = 0.5 * _TURNS_PER_WINDOW / turns[keep]
+        better = np.exp(_smooth_cubic(clock, time[keep], np.log(turns[keep])))
         within = (clock >= time[keep][0] - half[0]) & (clock <= time[keep][-1] + half[-1])
         track = np.where(within, better, track)
     time, turns, errors = time[keep], turns[keep], errors[keep]
     # errors that remain in sounds without noise: 1e-3, and the cube of the relative change within a window
     quickens = np.abs(np.gradient(np.log(turns)))
-    return Wobble(begin + time, turns, np.hypot(errors, turns * (_BIAS + quickens**3)))
+    return Wobble(begin + time, turns, np.hypot(errors, turns * (_SYSTEMATIC_ERROR + quickens**3)))
 
 
-def _unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
+def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
     """The reason why no wobble was detected: too few audible turns, or none."""
-    needed = _RUN * _TURNS
+    needed = _FEWEST_WINDOWS * _TURNS_PER_WINDOW
     if turns < needed and heard.size and heard.mean() > 0.5:
         return f"sound: too short: {int(turns)} turns, at least {needed} needed"
     edges = np.flatnonzero(np.diff(np.r_[0, heard.astype(int), 0])).reshape(-1, 2)
     row = int(np.diff(edges, axis=1).max(initial=0))  # consecutive windows start one turn apart
-    if row >= 2 * _TURNS:  # noise has short rows of audible windows
-        many = row + _TURNS - 1
+    if row >= 2 * _TURNS_PER_WINDOW:  # noise has short rows of audible windows
+        many = row + _TURNS_PER_WINDOW - 1
         return f"sound: too short: {many} turns in a row are audible, at least {needed + 2} needed"
     return f"sound: no wobble between {low:g} and {high:g} turns a second stands out from the noise"
 
@@ -143,9 +143,11 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
         if not np.isfinite(values).all():
             bad = np.size(values) - np.isfinite(values).sum()
             raise ValueError(f"{name}: expected finite numbers; {bad} are NaN or infinite")
-    least = _RUN * _TURNS / high
+    least = _FEWEST_WINDOWS * _TURNS_PER_WINDOW / high
     if x.size < 2 or time[-1] - time[0] < least:
-        told = f"expected at least {_RUN * _TURNS} turns, which take {least:.2g} s or more"
+        told = (
+            f"expected at least {_FEWEST_WINDOWS * _TURNS_PER_WINDOW} turns, which take {least:.2g} s or more"
+        )
         raise ValueError(f"sound: too short: {told}")
     step = (time[-1] - time[0]) / (x.size - 1)
     # times written with few digits may be off by some of these
@@ -186,8 +188,10 @@ def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
     """A spectrum without the harmonics of the mains, whose beats are as regular as a wobble."""
     power = np.abs(spectrum) ** 2
     for mains in _MAINS:
-        lines = [k * mains for k in range(1, int(_HUMS / mains) + 1) if (k + 1) * mains < frequency[-1]]
-        on = [np.abs(frequency - line) < _NARROW for line in lines]
+        lines = [
+            k * mains for k in range(1, int(_HIGHEST_HUM / mains) + 1) if (k + 1) * mains < frequency[-1]
+        ]
+        on = [np.abs(frequency - line) < _HUM_WIDTH for line in lines]
         beside = [(np.abs(frequency - line) < 15) & ~there for line, there in zip(lines, on, strict=True)]
         loud = [
             bool(some.any()) and power[there].max() > 100 * np.median(power[some]) > 0
@@ -198,7 +202,7 @@ def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
     return spectrum
 
 
-def _levelled(level: Floats, pace: float, low: float) -> Floats:
+def _relative_envelope(level: Floats, pace: float, low: float) -> Floats:
     """The envelope divided by its mean over 1.5 of the slowest turns to either side, minus 1."""
     half = int(1.5 * pace / low) + 1
     total = np.cumsum(np.r_[0.0, level])
@@ -217,7 +221,7 @@ def _loudest_path(rest: Floats, pace: float, low: float, high: float) -> Floats:
     frames = np.linspace(0, rest.size - 1, min(rest.size, 2000)).astype(int)
     loud = np.zeros((bank.size, frames.size))
     for k, f in enumerate(bank[bank < 0.45 * pace]):
-        width = f / (2 * _TURNS)
+        width = f / (2 * _TURNS_PER_WINDOW)
         inside = np.abs(frequency - f) < 4 * width
         passed = np.zeros_like(spectrum)
         passed[inside] = spectrum[inside] * np.exp(-(((frequency[inside] - f) / width) ** 2) / 2)
@@ -253,18 +257,18 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
     turn = np.floor(phase - phase[0]).astype(int)
     # the last turn counts if it is complete up to rounding
     many = turn[-1] + int(phase[-1] - phase[0] - turn[-1] + track[-1] / pace > 0.95)
-    if many < _TURNS:
+    if many < _TURNS_PER_WINDOW:
         return (np.empty(0),) * 3 + (np.empty(0, bool),)
     turned = rest * np.exp(-2j * np.pi * phase)
     size = np.bincount(turn, minlength=many)[:many]
     z = np.bincount(turn, turned.real, many) + 1j * np.bincount(turn, turned.imag, many)
-    z = np.lib.stride_tricks.sliding_window_view(z[:many] / np.maximum(size, 1), _TURNS)
-    n = np.arange(_TURNS) - (_TURNS - 1) / 2
+    z = np.lib.stride_tricks.sliding_window_view(z[:many] / np.maximum(size, 1), _TURNS_PER_WINDOW)
+    n = np.arange(_TURNS_PER_WINDOW) - (_TURNS_PER_WINDOW - 1) / 2
     bend = n**2 - np.mean(n**2)
     # search a grid for the error of the track, slope and curvature of its phase; then fit by least squares
     slopes = np.linspace(-1.2, 1.2, 61)
     bends = np.linspace(-0.12, 0.12, 13)
-    trial = np.exp(-1j * (slopes[:, None, None] * n + bends[:, None] * bend)).reshape(-1, _TURNS)
+    trial = np.exp(-1j * (slopes[:, None, None] * n + bends[:, None] * bend)).reshape(-1, _TURNS_PER_WINDOW)
     best = np.concatenate(
         [np.abs(some @ trial.T).argmax(axis=1) for some in np.array_split(z, len(z) // 1000 + 1)]
     )
@@ -274,18 +278,20 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
     weight = np.abs(left) + 1e-300
     coherent = np.abs(left.sum(axis=1)) / weight.sum(axis=1)
     # half a window of silence would be coherent, too: every turn has to be audible
-    even = left.real.min(axis=1) > _EVEN * weight.mean(axis=1)
+    even = left.real.min(axis=1) > _LEAST_FUNDAMENTAL * weight.mean(axis=1)
     angle = np.angle(left)
     weight /= weight.mean(axis=1, keepdims=True)
-    table = np.stack([np.ones(_TURNS), n, bend], axis=1)
+    table = np.stack([np.ones(_TURNS_PER_WINDOW), n, bend], axis=1)
     covariance = np.linalg.inv(np.einsum("ki,ia,ib->kab", weight, table, table))
     more = np.einsum("kab,ib,ki->ka", covariance, table, weight * angle)
     off = angle - more @ table.T
-    scatter = (weight * off**2).sum(axis=1) / (_TURNS - 3)
+    scatter = (weight * off**2).sum(axis=1) / (_TURNS_PER_WINDOW - 3)
     # eight phases for three parameters give a poor estimate of the scatter: average it with the neighbours'
-    joined = _joined(scatter)
+    joined = _scatter_of_neighbours(scatter)
     errors = np.sqrt(covariance[:, 1, 1] * joined)
-    middle = np.interp(np.arange(len(z)) + _TURNS / 2, phase - phase[0], np.arange(phase.size) / pace)
+    middle = np.interp(
+        np.arange(len(z)) + _TURNS_PER_WINDOW / 2, phase - phase[0], np.arange(phase.size) / pace
+    )
     there = np.interp(middle, np.arange(phase.size) / pace, track)
     turns = there * (1 + (slope + more[:, 1]) / (2 * np.pi))
     # a knock makes the scatter of its window exceed that of the neighbours
@@ -293,20 +299,20 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
         middle,
         turns,
         there * errors / (2 * np.pi),
-        (coherent > _COHERENT) & even & (scatter < _KNOCK * joined),
+        (coherent > _LEAST_COHERENCE) & even & (scatter < _KNOCK_SCATTER * joined),
     )
 
 
-def _joined(scatter: Floats) -> Floats:
+def _scatter_of_neighbours(scatter: Floats) -> Floats:
     """The mean scatter of each window and its neighbours without common turns; outliers are limited."""
-    reach = np.arange(-3, 4) * _TURNS
+    reach = np.arange(-3, 4) * _TURNS_PER_WINDOW
     at = np.arange(scatter.size)[:, None] + reach
     near = np.where((at >= 0) & (at < scatter.size), scatter[np.clip(at, 0, scatter.size - 1)], np.nan)
     held: Floats = np.nanmean(np.minimum(near, 5 * np.nanmedian(near, axis=1, keepdims=True)), axis=1)
     return held
 
 
-def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
+def _smooth_cubic(at: Floats, x: Floats, y: Floats) -> Floats:
     """A smooth cubic through points, with the slopes of parabolas; linear beyond the ends."""
     slope = np.gradient(y, x, edge_order=2)
     k = np.clip(np.searchsorted(x, at) - 1, 0, x.size - 2)
@@ -320,7 +326,7 @@ def _curve(at: Floats, x: Floats, y: Floats) -> Floats:
     return found
 
 
-def _runs(heard: np.ndarray) -> np.ndarray:
+def _separate_windows(heard: np.ndarray) -> np.ndarray:
     """Windows that do not overlap, several in a row, each of which and both neighbours are audible.
 
     A sound that begins or ends during the recording does so within a turn: windows with that turn are left
@@ -332,18 +338,18 @@ def _runs(heard: np.ndarray) -> np.ndarray:
     inner[:-1] &= heard[1:]
     begin = 0
     while begin < heard.size:
-        row = inner[begin::_TURNS]
+        row = inner[begin::_TURNS_PER_WINDOW]
         many = row.size if row.all() else int(row.argmin())
-        if many >= _RUN:
-            keep[begin : begin + many * _TURNS : _TURNS] = True
-        begin += max(many * _TURNS, 1) if many >= _RUN else 1
+        if many >= _FEWEST_WINDOWS:
+            keep[begin : begin + many * _TURNS_PER_WINDOW : _TURNS_PER_WINDOW] = True
+        begin += max(many * _TURNS_PER_WINDOW, 1) if many >= _FEWEST_WINDOWS else 1
     return keep
 
 
-def _one(keep: np.ndarray, turns: Floats) -> np.ndarray:
+def _longest_run(keep: np.ndarray, turns: Floats) -> np.ndarray:
     """The windows of a single whirr: the longest run without a jump of the rate."""
     rows = np.flatnonzero(keep)
-    leaps = np.flatnonzero(np.abs(np.diff(np.log(turns[rows]))) > _LEAP) + 1
+    leaps = np.flatnonzero(np.abs(np.diff(np.log(turns[rows]))) > _LARGEST_JUMP) + 1
     longest = max(np.split(rows, leaps), key=len)
     found = np.zeros_like(keep)
     found[longest] = True

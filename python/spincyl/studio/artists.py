@@ -9,7 +9,7 @@ import numpy as np
 
 from spincyl.studio.painted import Painted
 
-_FINE = 2  # pixels of Agg for one pixel of the film, along each side, where there are triangles
+_SUPERSAMPLING = 2  # pixels of Agg for one pixel of the film, along each side, where there are triangles
 
 
 def photo_of(ax: Any, vector: bool) -> Any:
@@ -66,16 +66,18 @@ def surface_of(ax: Any, vector: bool) -> Any:
             where = np.s_[top:bottom, left:right]
             # draw on what is there, at twice the resolution, and average
             wide, tall = right - left, bottom - top
-            fine = agg(_FINE * wide, _FINE * tall, 100 * _FINE)
+            fine = agg(_SUPERSAMPLING * wide, _SUPERSAMPLING * tall, 100 * _SUPERSAMPLING)
             canvas = np.asarray(fine.buffer_rgba())
             under = picture.view(np.uint32)[where][..., 0]
-            canvas.view(np.uint32)[..., 0] = under.repeat(_FINE, 0).repeat(_FINE, 1)
-            to = ax.transData.frozen().translate(-left, bottom - height).scale(_FINE)
+            canvas.view(np.uint32)[..., 0] = under.repeat(_SUPERSAMPLING, 0).repeat(_SUPERSAMPLING, 1)
+            to = ax.transData.frozen().translate(-left, bottom - height).scale(_SUPERSAMPLING)
             graphics = fine.new_gc()
             fine.draw_gouraud_triangles(graphics, self.corners, self.colours, to)
             graphics.restore()
-            found = Image.frombuffer("RGBX", (_FINE * wide, _FINE * tall), canvas, "raw", "RGBX", 0, 1)
-            picture[where] = np.asarray(found.reduce(_FINE))
+            found = Image.frombuffer(
+                "RGBX", (_SUPERSAMPLING * wide, _SUPERSAMPLING * tall), canvas, "raw", "RGBX", 0, 1
+            )
+            picture[where] = np.asarray(found.reduce(_SUPERSAMPLING))
 
     class Polygons(PolyCollection):
         """Polygons, whose edges close the gaps between them."""

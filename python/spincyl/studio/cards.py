@@ -12,11 +12,11 @@ from contextlib import suppress
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import named
+from spincyl._contact import contact_in_words
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats, Reals, is_scalar
 from spincyl._input.reprs import is_lazy
-from spincyl._loss import titled
+from spincyl._loss import losses_in_words
 from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -114,9 +114,9 @@ def stone_motion(found: EllipsoidMotion) -> str:
 
 def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
     """Rows that all motions have, and the inclinations between which the body nods."""
-    rows = [("body", repr(found.body)), ("contact", named(found.contact))]
+    rows = [("body", repr(found.body)), ("contact", contact_in_words(found.contact))]
     if found.losses is not None:
-        rows.append(("losses", titled(found.losses, found.scale)))
+        rows.append(("losses", losses_in_words(found.losses, found.scale)))
     reached: tuple[float, ...] = ()
     if found.t.size:
         time = _time(found.scale, found.body._length)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, made, number, si, whole
+from spincyl._input.numbers import Floats, instance_of, number, si, whole
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.poses import seen, span
@@ -221,7 +221,7 @@ def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = No
 
 def _open(motion: Motion, seconds: float | None, scale: Scale | None) -> tuple[float, float]:
     """The times at which the shutter opens and closes, in natural units."""
-    made("motion", motion, Motion)
+    instance_of("motion", motion, Motion)
     first, last = span(motion.natural)
     scale = scale_of(scale, motion.body)
     if seconds is None:

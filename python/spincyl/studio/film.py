@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._input.files import replaced
-from spincyl._input.hints import installs
-from spincyl._input.numbers import extra, whole, within
-from spincyl._input.progress import Progress, telling
+from spincyl._input.files import writing_whole
+from spincyl._input.hints import install_command
+from spincyl._input.numbers import in_range, optional_library, whole
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl.studio.frames import Reel, frames, pictures, vector
 from spincyl.studio.poses import span
 
-_LONG = 10.0  # seconds, the default length of a film
-_LARGE = 20e6  # bytes; a larger file causes a warning
+_DEFAULT_SECONDS = 10.0  # seconds, the default length of a film
+_LARGE_FILE = 20e6  # bytes; a larger file causes a warning
 
 
 def reel(
@@ -47,15 +47,16 @@ def reel(
     if seconds is None:
         spans = [sorted(span(m)) for m in view.motions]
         lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
-        if lasts > _LONG * (1 + 1e-9):
-            told = f"the film shows the first {_LONG:g} of {lasts:.3g} seconds; give seconds= for more"
+        if lasts > _DEFAULT_SECONDS * (1 + 1e-9):
+            first = f"{_DEFAULT_SECONDS:g} of {lasts:.3g} seconds"
+            told = f"the film shows the first {first}; give seconds= for more"
             warnings.warn(told, UserWarning, stacklevel=3)
     return Reel(
         view.motions,
         view.labels,
         edges,
         *how,
-        _LONG if seconds is None else seconds,
+        _DEFAULT_SECONDS if seconds is None else seconds,
         view._colours,
         view.look,
     )
@@ -64,7 +65,7 @@ def reel(
 def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> None:
     """Write the film, and tell how much of it is done."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
-    extra("matplotlib", "film")
+    optional_library("matplotlib", "film")
     program = _program() if write is _mp4 else ""
     count = what.times.size  # too long a film is refused before anything is written
 
@@ -74,10 +75,10 @@ def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> Non
             if told:
                 told(k / count)
 
-    with telling(progress, "film") as told, replaced(path) as part:
+    with reporting_progress(progress, "film") as told, writing_whole(path) as part:
         write(what, shown(), part, program)
     large = path.stat().st_size
-    if large > _LARGE:
+    if large > _LARGE_FILE:
         how = "reduce size=, fps= or seconds="
         how += "; an .mp4 is much smaller" if write is _gif else ""
         warnings.warn(f"{path}: {large / 1e6:.0f} MB; {how}", UserWarning, stacklevel=3)
@@ -85,16 +86,16 @@ def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> Non
 
 def still(what: Reel, path: Path, t: float | None) -> None:
     """Write the picture at a time, in the page's unit of time."""
-    extra("matplotlib", "film")
+    optional_library("matplotlib", "film")
     from PIL import Image
 
     spans = [sorted(span(m)) for m in what.motions]
     first, last = (of(x) * what.unit for of, x in zip((min, max), zip(*spans, strict=True), strict=True))
-    t = first if t is None else within("t", t, first, last)
+    t = first if t is None else in_range("t", t, first, last)
     what, kind = what._replace(slow=1), path.suffix.lower()[1:]
     if kind == "png":
         (picture,) = pictures(what, np.array([t / what.unit]), still=True)
-    with replaced(path) as part:
+    with writing_whole(path) as part:
         if kind == "png":
             Image.fromarray(picture).save(part, "PNG")
         else:
@@ -110,7 +111,7 @@ def _program() -> str:
     except (ImportError, RuntimeError):
         found = which("ffmpeg")
     if found is None:
-        how = installs("'spincyl[film]'")
+        how = install_command("'spincyl[film]'")
         raise ImportError(f"a film in MP4 needs ffmpeg: {how}, or the program ffmpeg on the search path")
     return found
 

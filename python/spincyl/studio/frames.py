@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, extra
+from spincyl._input.numbers import Floats, optional_library
 from spincyl._motion import Motion
-from spincyl._phases import rubs
+from spincyl._phases import has_friction
 from spincyl.studio.aloft import goes_up
 from spincyl.studio.arrows import Tip, drawings
 from spincyl.studio.artists import photo_of, surface_of
@@ -102,7 +102,7 @@ class _Stage:
     def __init__(self, what: Reel, times: Floats, *, still: bool = False, vector: bool = False) -> None:
         from matplotlib.figure import Figure
 
-        agg: Any = extra("matplotlib.backends.backend_agg", "film")
+        agg: Any = optional_library("matplotlib.backends.backend_agg", "film")
         self.what, self.times, self.opens, self.vector = what, times, still, vector
         self.panels = panels = [shown(m, times, what.upper, what.drawn) for m in what.motions]
         self.exposes, look = what.look.exposure is not None, what.look
@@ -112,7 +112,7 @@ class _Stage:
         self.canvas = agg.FigureCanvasAgg(self.figure)
         alone = max(size(m.body) for m in what.motions)
         reach = max(p.reach for p in panels)
-        far = reach > 2.5 * alone and any(rubs(m.contact) or goes_up(m) for m in what.motions)
+        far = reach > 2.5 * alone and any(has_friction(m.contact) or goes_up(m) for m in what.motions)
         self.follows = far if look.follow is None else look.follow
         self.lamp = lamps(MANY if any(map(goes_up, what.motions)) else LAMPS)
         half = max(p.half for p in panels)

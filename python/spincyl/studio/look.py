@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, flag, number, words
+from spincyl._input.numbers import Floats, flag, known_words, number
 
 _AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
 _SPREAD = math.tan(0.3)  # tangent of half the angle of view
@@ -26,7 +26,7 @@ class Look(NamedTuple):
 
 def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
     """The look of a view from its arguments; an error names a wrong argument."""
-    drawn = None if drawn is None else words("drawn", drawn, DRAWN)
+    drawn = None if drawn is None else known_words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
         exposure = number("exposure", exposure)

@@ -18,9 +18,9 @@ from spincyl.studio.look import Camera
 from spincyl.studio.shape import Letter, Part, Profile, kind, lathe, marks, profiles
 
 _SUN = np.array([-0.45, -0.5, 0.75]) / math.sqrt(0.45**2 + 0.5**2 + 0.75**2)
-_SAME = 1e-9  # heights closer than this, in R, are one
+_SAME_HEIGHT = 1e-9  # heights closer than this, in R, are one
 _LEAST, _MOST = 32, 128  # flat pieces round the axis
-_BENT = 0.01  # how far a normal between two corners may be from the true one
+_NORMAL_TOLERANCE = 0.01  # how far a normal between two corners may be from the true one
 #: Corners (n, 3, 2) in the picture and colours (n, 3, 3) of triangles, in the order of drawing.
 Painted = tuple[Floats, Floats]
 
@@ -47,14 +47,14 @@ def turned(body: Body | Ellipsoid, off: float) -> list[Part]:
     wide = max(r * _stretched(profile) for profile in drawn for r, _ in profile.corners)
     around = math.pi / math.acos(max(1 - off / wide, 0.0))
     count = 8 * math.ceil(min(max(around, _LEAST), _MOST) / 8)
-    return [lathe(_fewer(profile, off / _stretched(profile)), count) for profile in drawn]
+    return [lathe(_without_flat_corners(profile, off / _stretched(profile)), count) for profile in drawn]
 
 
 def _stretched(profile: Profile) -> float:
     return 1.0 if profile.stretch is None else max(profile.stretch.axes)
 
 
-def _fewer(profile: Profile, off: float) -> Profile:
+def _without_flat_corners(profile: Profile, off: float) -> Profile:
     """The profile without the corners that lie within `off` of a line whose normals are almost theirs."""
     if profile.normals is None:
         return profile
@@ -67,7 +67,7 @@ def _fewer(profile: Profile, off: float) -> Profile:
         share = (away @ line / long**2)[:, np.newaxis]
         bent = normals[first] + share * (normals[last] - normals[first]) - normals[rows]
         aside = np.abs(away[:, 0] * line[1] - away[:, 1] * line[0]) / long
-        return bool((aside <= off).all() and (np.abs(bent) <= _BENT).all())
+        return bool((aside <= off).all() and (np.abs(bent) <= _NORMAL_TOLERANCE).all())
 
     kept = [0]
     while (last := kept[-1] + 1) < len(corners):
@@ -95,12 +95,12 @@ def _slabs(piece: Piece, heights: Floats) -> list[Piece]:
         piece = _cut(piece, float(height))
     corners, normals = piece.corners, piece.normals
     z = corners[..., 2]
-    flat = np.ptp(z, axis=1) < _SAME
+    flat = np.ptp(z, axis=1) < _SAME_HEIGHT
     below = np.searchsorted(heights, z.mean(axis=1))
     within = np.append(np.append(-np.inf, heights), np.inf)
     low = np.where(flat, z[:, 0], within[below])
     high = np.where(flat, z[:, 0], within[below + 1])
-    inside = (corners[..., :2] * normals[..., :2]).sum(-1).mean(-1) < -_SAME
+    inside = (corners[..., :2] * normals[..., :2]).sum(-1).mean(-1) < -_SAME_HEIGHT
     radius = np.hypot(corners[..., 0], corners[..., 1]).max(axis=1)
     found = []
     for key in np.unique(np.column_stack([low, high, inside]), axis=0):
@@ -114,7 +114,7 @@ def _slabs(piece: Piece, heights: Floats) -> list[Piece]:
 def _cut(piece: Piece, height: float) -> Piece:
     """The same triangles; those that contain a height are cut there."""
     off = piece.corners[..., 2] - height
-    sides = np.where(np.abs(off) < _SAME, 0, np.sign(off)).astype(int)
+    sides = np.where(np.abs(off) < _SAME_HEIGHT, 0, np.sign(off)).astype(int)
     through = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0)
     if not through.any():
         return piece

@@ -12,8 +12,8 @@ from spincyl._input.numbers import Floats
 from spincyl.studio.surface import BLUE, IVORY, ORANGE, SHADE, Part, Profile, arc, joined, strip
 
 _QUARTER = 32  # pieces of a quarter of a circle
-_WIRE = 0.03  # radius of the wire of a ring, in R
-_CUT = 1e-6  # a ball whose cut is narrower than this share of its radius is whole
+_WIRE_RADIUS = 0.03  # radius of the wire of a ring, in R
+_NARROWEST_CUT = 1e-6  # a ball whose cut is narrower than this share of its radius is whole
 # half the width of a stripe, and its height above the surface, as shares of the largest radius
 _STRIPE, _LIFT = 0.08, 0.004
 
@@ -58,7 +58,7 @@ def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Co
         if form == 3:
             return [*skin, (corners[::-1], [(-x, -z) for x, z in normals[::-1]])]
         cuts: list[_Corners] = [[(0.0, low), corners[0]], [corners[-1], (0.0, high)]]
-        return skin + [(cut, None) for cut in cuts if max(r for r, _ in cut) > _CUT * radius]
+        return skin + [(cut, None) for cut in cuts if max(r for r, _ in cut) > _NARROWEST_CUT * radius]
     if form == 2:
         r, s, low, high = numbers
         return [([(r, low), (s, high)], None), ([(s, high), (r, low)], None)]
@@ -68,7 +68,7 @@ def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Co
     angle = np.linspace(-np.pi, np.pi, 2 * _QUARTER)
     around = list(zip(np.cos(angle).tolist(), np.sin(angle).tolist(), strict=True))
     # the wire lies inside its circle
-    return [([(r - _WIRE + _WIRE * x, z + _WIRE * up) for x, up in around], around)]
+    return [([(r - _WIRE_RADIUS + _WIRE_RADIUS * x, z + _WIRE_RADIUS * up) for x, up in around], around)]
 
 
 def _wall_of_bore(b: float, c: float, low: float, high: float) -> list[tuple[_Corners, None]]:

@@ -23,8 +23,8 @@ from spincyl._asked import Want
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
-from spincyl._phases import rubs
-from spincyl._slip import lever
+from spincyl._phases import has_friction
+from spincyl._slip import lever_of_stone
 from spincyl._state import State
 from spincyl._swing import swing
 from spincyl.studio.aloft import Aloft, aloft, goes_up, parts_of_flight
@@ -33,7 +33,7 @@ from spincyl.studio.surface import rotations
 if TYPE_CHECKING:
     from spincyl._motion import Motion
 
-_MOST, _LONGEST, _LOOKS = 200_000, 3000, 65
+_MOST, _LONGEST, _SAMPLES = 200_000, 3000, 65
 # largest difference between a slope and its prediction that leaves 2e-4 to the others: see `packed`
 _STEEPEST = 8.0
 # per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
@@ -109,10 +109,10 @@ def pace(m: "Motion") -> float:
 def _mean_pace(m: "Motion") -> float:
     """The shown time divided by the number of nutations in it."""
     first, last = span(m)
-    t = np.linspace(first, last, _LOOKS)
+    t = np.linspace(first, last, _SAMPLES)
     theta, w = seen(m, t, "theta", "w")
     rolls = np.full(t.shape, m.contact != "smooth")
-    if rubs(m.contact):
+    if has_friction(m.contact):
         rolls = seen(m, t, "phase")[0] == 0
     found = np.zeros(t.shape)
     for k, (tilt, turning, rolling) in enumerate(zip(theta, w, rolls, strict=True)):
@@ -186,13 +186,13 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
         share = 1 - (1 - share) ** 3  # a body that comes to rest is fastest at the end
     t = first + (last - first) * share
     up = aloft(m, first, last) if goes_up(m) else None
-    t = t if up is None else _between(m, up, first, last)
+    t = t if up is None else _first_knots(m, up, first, last)
     open_ = ~_kinks(t, up)
     smallest = 1e-8 * (last - first)
     while True:
         found = _poses(m, t, up)
         left, right = found[:-1][open_], found[1:][open_]
-        missed = (_missed(m, left, right, up) > tolerance) & (right[:, 0] - left[:, 0] > smallest)
+        missed = (_largest_error(m, left, right, up) > tolerance) & (right[:, 0] - left[:, 0] > smallest)
         if not missed.any():
             break
         if len(t) + missed.sum() > _MOST:
@@ -211,15 +211,17 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
             break
         left, right = found[dropped - 1], found[dropped + 1]
         kept = found[dropped]
-        ends = _apart(m.body, _cubic(left, right, kept[:, 0]), kept[:, 1 : _wide(found)])
-        fits = np.maximum(ends, _missed(m, left, right, up)) < tolerance / 2
+        ends = _distance_of_poses(
+            m.body, _cubic(left, right, kept[:, 0]), kept[:, 1 : _columns_of_knot(found)]
+        )
+        fits = np.maximum(ends, _largest_error(m, left, right, up)) < tolerance / 2
         if not fits.any():
             break
         found = np.delete(found, dropped[fits], axis=0)
-    return found if up is None else _graded(m, found, up)
+    return found if up is None else _with_graded_intervals(m, found, up)
 
 
-def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
+def _with_graded_intervals(m: "Motion", found: Floats, up: Aloft) -> Floats:
     """Add knots so that no long interval is next to a very short one in which the body turns, as near a pole.
 
     Slopes there would be far from the prediction of `packed`, and all other slopes would lose digits.
@@ -237,7 +239,7 @@ def _graded(m: "Motion", found: Floats, up: Aloft) -> Floats:
     return found
 
 
-def _between(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
+def _first_knots(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
     """First times for knots of a motion with kinks: both sides of kinks, begins of phases, times between."""
     times = [np.array([first, last]), up.edges.ravel(), up.begins]
     for begin, end, often, _ in parts_of_flight(m, first, last):
@@ -255,17 +257,17 @@ def _kinks(t: Floats, up: Aloft | None) -> np.ndarray:
     return np.zeros(len(t) - 1, bool) if up is None else np.isin(t[:-1], up.edges[:, 0])
 
 
-def _missed(m: "Motion", left: Floats, right: Floats, up: Aloft | None) -> Floats:
+def _largest_error(m: "Motion", left: Floats, right: Floats, up: Aloft | None) -> Floats:
     """Largest error of the cubics between these knots, at points that no symmetry of a motion favours."""
     worst = np.zeros(len(left))
     for share in (0.19, 0.46, 0.77):
         t = left[:, 0] + share * (right[:, 0] - left[:, 0])
-        worst = np.maximum(worst, _apart(m.body, _cubic(left, right, t), _places(m, t, up)))
+        worst = np.maximum(worst, _distance_of_poses(m.body, _cubic(left, right, t), _places(m, t, up)))
     return worst
 
 
 @singledispatch
-def _apart(body: Any, drawn: Floats, true: Floats) -> Floats:
+def _distance_of_poses(body: Any, drawn: Floats, true: Floats) -> Floats:
     """Distance between numbers of drawn and true poses: the largest difference of an angle or a position.
 
     For a stone also of its contact point, which moves far under a small rotation where the surface is flat.
@@ -274,20 +276,20 @@ def _apart(body: Any, drawn: Floats, true: Floats) -> Floats:
     return apart
 
 
-@_apart.register
+@_distance_of_poses.register
 def _(stone: Ellipsoid, drawn: Floats, true: Floats) -> Floats:
-    (q, *at), (p, *there) = _stood(stone, drawn), _stood(stone, true)
+    (q, *at), (p, *there) = _stone_of_numbers(stone, drawn), _stone_of_numbers(stone, true)
     places = [np.abs(a - b).max(axis=1) for a, b in zip(at, there, strict=True)]
     found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.maximum(*places))
     return found
 
 
-def _stood(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
+def _stone_of_numbers(stone: Ellipsoid, numbers: Floats) -> tuple[Floats, Floats, Floats]:
     """The quaternion, the centre and the contact point of a stone for the numbers of its poses."""
     q, place = numbers[:, _TURN], numbers[:, _PLACE]
     q = q / np.linalg.norm(q, axis=1, keepdims=True)
     turned = rotations(q)
-    arm = np.einsum("nij,nj->ni", turned, lever(stone, turned[:, 2]))
+    arm = np.einsum("nij,nj->ni", turned, lever_of_stone(stone, turned[:, 2]))
     return q, place, place + arm[:, :2]
 
 
@@ -316,14 +318,14 @@ def _poses(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     return np.column_stack([t, y[:, 1], slopes])
 
 
-def _wide(found: Floats) -> int:
+def _columns_of_knot(found: Floats) -> int:
     """Number of columns of a knot before the slopes: its time, and the numbers of its pose."""
     return int(found.shape[1] + 1) // 2
 
 
 def _cubic(left: Floats, right: Floats, t: Floats) -> Floats:
     """The numbers of a pose at t between two knots, interpolated as on the page."""
-    wide = _wide(left)
+    wide = _columns_of_knot(left)
     h = (right[:, 0] - left[:, 0])[:, np.newaxis]
     s = (t[:, np.newaxis] - left[:, :1]) / h
     y0, y1, d0, d1 = left[:, 1:wide], right[:, 1:wide], h * left[:, wide:], h * right[:, wide:]
@@ -350,7 +352,7 @@ def packed(found: Floats) -> dict[str, Any]:
 
 def _slopes(found: Floats) -> tuple[tuple[Floats, Floats, Floats], Floats]:
     """Bounds and integers of the values of knots, and the scaled differences of their slopes."""
-    wide = _wide(found)
+    wide = _columns_of_knot(found)
     low, high = found[:, :wide].min(axis=0), found[:, :wide].max(axis=0)
     # the values that the page will read, to which the slopes have to fit
     whole = np.round((found[:, :wide] - low) / np.where(high > low, high - low, 1.0) * 0xFFFFFFFF)

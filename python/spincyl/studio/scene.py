@@ -12,9 +12,20 @@ from typing import Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._input.equality import compared
-from spincyl._input.files import path_of, replaced
-from spincyl._input.numbers import Floats, Reals, flag, floats, made, number, plain, reals, si, warn
+from spincyl._input.equality import compared_by_value
+from spincyl._input.files import path_of, writing_whole
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    flag,
+    floats,
+    instance_of,
+    json_value,
+    number,
+    reals,
+    si,
+    warn,
+)
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State
@@ -28,12 +39,12 @@ _PIECES, _AROUND = 4, 48
 _UNIT, _DOUBTED = 1e-3, 0.1
 #: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
 #: from the origin, above which there is a warning.
-_LONG, _AWAY = 10.0, 30.0
+_LONG, _FARTHEST = 10.0, 30.0
 #: Coefficients of the losses that act in the air.
 _IN_AIR = "b", "b2"
 
 
-@compared
+@compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Deviation:
     """Deviation of a contact engine from the known motion; returned by `Scene.compare`. All in SI.
@@ -94,13 +105,13 @@ class Scene:
     @cached_property
     def data(self) -> dict[str, Any]:
         """Body, table, initial state and known motion, as for JSON; None replaces NaN and infinity."""
-        found: dict[str, Any] = plain(scene_data(self.motion, self.scale, self._began))
+        found: dict[str, Any] = json_value(scene_data(self.motion, self.scale, self._began))
         return found
 
     @property
     def mjcf(self) -> str:
         """The scene as MJCF, with contacts as stiff and friction as steady as MuJoCo's solver allows."""
-        return mjcf(self.data, self.scale.radius * _outside(self.motion.body))
+        return mjcf(self.data, self.scale.radius * _hull_points(self.motion.body))
 
     def save(self, path: str | PathLike[str]) -> list[Path]:
         """Write the scene as JSON, as MJCF or both, and return the paths.
@@ -129,7 +140,7 @@ class Scene:
         paths = [path] if only else [path.with_name(path.name + suffix) for suffix in known]
         texts = [known[x.suffix.lower()]() for x in paths]
         with ExitStack() as all_:  # both files are written, or neither
-            for part, text in zip(map(all_.enter_context, map(replaced, paths)), texts, strict=True):
+            for part, text in zip(map(all_.enter_context, map(writing_whole, paths)), texts, strict=True):
                 part.write_text(text, encoding="utf-8")
         return paths
 
@@ -170,9 +181,9 @@ class Scene:
             milliseconds. If the first position is more than 30 times as far from the known position as that
             is from the origin; the positions may be in millimetres.
         """
-        t = _shaped("time", si("time", time, "second"), ())
-        x = _shaped("position", position, (t.size, 3))
-        q = _shaped("orientation", orientation, (t.size, 4), scalar_first)
+        t = _checked_array("time", si("time", time, "second"), ())
+        x = _checked_array("position", position, (t.size, 3))
+        q = _checked_array("orientation", orientation, (t.size, 4), scalar_first)
         if t[0] < 0 or (np.diff(t) < 0).any():
             raise ValueError("time: expected seconds since the initial state, in ascending order")
         last = self.scale.seconds(float(self.motion.t[-1]) - self._began)
@@ -194,7 +205,7 @@ class Scene:
         off, turned = found["position"], found["orientation"]
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         reach = metre * float(np.linalg.norm(m.centre[0]))
-        if away[0] > _AWAY * reach:
+        if away[0] > _FARTHEST * reach:
             told = f"position: {away[0]:.2g} m from the known one at t = {t[0]:.4g} s, which is {reach:.2g} m"
             warn(f"{told} from the origin; are the positions in millimetres?")
         theta = inclination(q[:n]) - inclination(m.orientation)
@@ -233,8 +244,8 @@ class Scene:
         ValueError, TypeError
             If an argument is invalid; the message names it.
         """
-        q = _shaped("orientation", orientation, (4,), scalar_first)
-        w = _shaped("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
+        q = _checked_array("orientation", orientation, (4,), scalar_first)
+        w = _checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
         pressed = number("normal_force", normal_force) / self.scale.newtons(1.0)
         laws = () if self.motion.losses is None else self.motion.losses.laws
         couples = [law.couple for law in laws if pressed > 0 or law._parameter in _IN_AIR]
@@ -302,7 +313,7 @@ def scene(motion: Motion, *, scale: Scale | None = None) -> Scene:
     >>> [round(x, 6) for x in scene.data["start"]["position"]]
     [-2.141397, 0.0, 1.632305]
     """
-    made("motion", motion, Motion)
+    instance_of("motion", motion, Motion)
     given = scale_of(scale, motion.body) or Scale(1.0)
     given.newtons(1.0)  # raises an error for an unknown mass
     m = motion.natural
@@ -333,7 +344,9 @@ def _lines(value: Any, begin: str = "\n ") -> str:
     return "{" + ",".join(entries) + begin[:-1] + "}"
 
 
-def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None) -> Floats:
+def _checked_array(
+    name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None
+) -> Floats:
     """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
     found = floats(reals(name, value))
     fits = found.shape == shape if shape else found.ndim == 1
@@ -353,7 +366,7 @@ def _shaped(name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool 
     return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found
 
 
-def _outside(body: Any) -> Floats:
+def _hull_points(body: Any) -> Floats:
     """Points (n, 3) on a body that MuJoCo has no shape for; MuJoCo draws their convex hull."""
     rounded = isinstance(body, Body) and 0 < body.fillet < 1
     if not (isinstance(body, Body) and (body._parts or rounded)):

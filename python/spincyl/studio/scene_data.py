@@ -18,7 +18,7 @@ from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.numbers import Floats
 from spincyl._loss import LAWS
 from spincyl._motion import Motion
-from spincyl._phases import KINDS, two_rims
+from spincyl._phases import KINDS, has_two_rims
 from spincyl._scale import Scale
 from spincyl.studio.shape import kind, landing, reach, rotations, skin, tensor
 
@@ -47,7 +47,7 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
-    known = _known(m, metre, second, joule, w=w, v=v, t0=t0)
+    known = _known_answer(m, metre, second, joule, w=w, v=v, t0=t0)
     return {
         "spincyl-scene": VERSION,
         "units": "SI: metres, kilograms, seconds, radians, newtons, joules",
@@ -130,15 +130,15 @@ def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
         "inertia_is": "about the centre of mass, along the body's axes; the origin is the centre of mass",
         "principal_moments": moments.tolist(),
         "principal_axes": (axes * np.sign(np.linalg.det(axes)) + 0.0).T.tolist(),
-        "shape": _touching(body, metre),
+        "shape": _touching_parts(body, metre),
     }
 
 
 @singledispatch
-def _touching(body: Any, metre: float) -> dict[str, Any]:
+def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
     """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
     middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
-    both = two_rims(body)
+    both = has_two_rims(body)
     heights = [-wall, wall] if both else [middle if kind(body) == "ball" else -float(body.ell) * metre]
     return {
         "type": kind(body) if both or kind(body) == "ball" else "rim",
@@ -153,7 +153,7 @@ def _touching(body: Any, metre: float) -> dict[str, Any]:
     }
 
 
-@_touching.register
+@_touching_parts.register
 def _(stone: Ellipsoid, metre: float) -> dict[str, Any]:
     end = float(stone.theta_end)
     return {
@@ -207,7 +207,7 @@ def friction_needed(m: Motion, t0: float) -> float:
     return float(m.wanting("force", t=t).friction_coefficient.max(initial=0.0))
 
 
-def _known(
+def _known_answer(
     m: Motion, metre: float, second: float, joule: float, *, w: Floats, v: Floats, t0: float
 ) -> dict[str, Any]:
     """The known answer; NaN where the contact has no single point or force."""

@@ -70,13 +70,13 @@ def shadows(of: Caster, rotation: Floats, centre: Floats, lamp: Floats) -> list[
     found = []
     for far in lamp:
         sees = np.append(flat @ np.array([*-far, 1.0]) > 0, False)
-        rims = _closed(edges[sees[:-1, np.newaxis] & ~sees[of.mates]])
+        rims = _closed_lines(edges[sees[:-1, np.newaxis] & ~sees[of.mates]])
         fallen = np.column_stack([places[:, :2] + places[:, 2:] * far, np.zeros(len(places))])
         found.append([fallen[rim] for rim in rims])
     return found
 
 
-def _closed(edges: np.ndarray) -> list[np.ndarray]:
+def _closed_lines(edges: np.ndarray) -> list[np.ndarray]:
     """Closed lines assembled from directed edges (n, 2)."""
     begin, end = edges.T
     # at each corner as many edges end as begin: in the order of their corners they follow each other

@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl._phases import rubs
+from spincyl._phases import has_friction
 from spincyl.studio.aloft import FLIES, SLIPS, aloft, goes_up, tops
 from spincyl.studio.arrows import Vectors, usual, vectors
 from spincyl.studio.look import held
@@ -15,7 +15,7 @@ from spincyl.studio.poses import seen, span
 from spincyl.studio.shape import Letter, Part, marks, rotations, size
 from spincyl.studio.shape import reach as farthest
 
-_PATH = 6000  # points of the contact's path
+_PATH_POINTS = 6000  # points of the contact's path
 
 
 class Shown(NamedTuple):
@@ -47,10 +47,10 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
     spin = None
     if m._turning == "spin":
         (spin,) = seen(m, np.clip(times, first, last), "spin")
-    along = np.linspace(first, last, _PATH)
+    along = np.linspace(first, last, _PATH_POINTS)
     contact, way = seen(m, along, "contact_point", "centre")
     turned = _turns(m, along)
-    slips = seen(m, along, "phase")[0] == 1 if rubs(m.contact) else np.zeros(along.size, bool)
+    slips = seen(m, along, "phase")[0] == 1 if has_friction(m.contact) else np.zeros(along.size, bool)
     gaps, up = np.zeros(along.size, bool), goes_up(m)
     if up:
         (phase,), other = seen(m, along, "phase"), aloft(m, first, last).on_other(along)

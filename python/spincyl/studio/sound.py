@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from spincyl._input.files import path_of, replaced
+from spincyl._input.files import path_of, writing_whole
 from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import FLIES, goes_up
@@ -34,9 +34,10 @@ if TYPE_CHECKING:
 #: Hertz, decay time in seconds, strength.
 _RESONANCES = ((1150.0, 0.030, 1.0), (2710.0, 0.020, 0.6), (4890.0, 0.012, 0.35))
 _SHARPNESS = 2.0
-_STILL = 1e-9  # in sqrt(g R): a contact point slower than this along the body is at rest up to rounding
-_LOOKS = 2000  # samples of the pose per second
-_AFTER, _LONGEST = 0.25, 180.0  # seconds
+# in sqrt(g R): a contact point slower than this along the body is at rest up to rounding
+_SPEED_ROUNDING = 1e-9
+_POSES_PER_SECOND = 2000  # samples of the pose per second
+_RINGING_AFTER, _LONGEST = 0.25, 180.0  # seconds
 #: Loudness of an impact with the impulse M sqrt(g R), that of a fall from R/2 without a bounce, as a share of
 #: the noise of a contact point that moves with sqrt(g R) for a second.
 _STRIKE = 0.4
@@ -69,8 +70,8 @@ def sound(
         lasting = wanted
     if lasting > _LONGEST:
         raise ValueError(f"motion: {lasting:.6g} s, expected at most {_LONGEST:g}; give seconds=")
-    found = _heard(m, first, unit, lasting, rate)
-    with replaced(path) as part, wave.open(str(part), "wb") as file:
+    found = _pressure(m, first, unit, lasting, rate)
+    with writing_whole(path) as part, wave.open(str(part), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(rate)
@@ -78,27 +79,27 @@ def sound(
     return path
 
 
-def _heard(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
+def _pressure(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
     """The pressure at each sample, between -1 and 1, with some ringing after the end."""
-    looks = np.linspace(0.0, lasting, max(64, math.ceil(_LOOKS * lasting)))
+    looks = np.linspace(0.0, lasting, max(64, math.ceil(_POSES_PER_SECOND * lasting)))
     strikes = [x for x in m.impacts if x.time <= first + lasting / unit] if goes_up(m) else []
     phi, speed = _contact(m, first + looks / unit, bool(strikes))
-    if not (speed.max() > _STILL or strikes):
+    if not (speed.max() > _SPEED_ROUNDING or strikes):
         why = "the contact point does not move along the body"
         raise ValueError(f"motion: there is nothing to hear, since {why}")
     speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
-    t = np.arange(math.ceil((lasting + _AFTER) * rate)) / rate
+    t = np.arange(math.ceil((lasting + _RINGING_AFTER) * rate)) / rate
     scrape = np.random.default_rng(0).standard_normal(t.size)
     scrape *= np.sqrt(np.interp(t, looks, speed)) * (t <= lasting)
-    ring: Floats = _through(scrape, rate)
-    ring *= _beat(np.interp(t, looks, phi))
+    ring: Floats = _ringing(scrape, rate)
+    ring *= _loudness(np.interp(t, looks, phi))
     if strikes:
-        ring += _through(_struck(strikes, first, unit, t.size, rate), rate)
+        ring += _ringing(_impulses(strikes, first, unit, t.size, rate), rate)
     most = float(np.abs(ring).max())
     return ring * (0.9 / most) if most > 0 else ring
 
 
-def _struck(strikes: "list[Impact]", first: float, unit: float, count: int, rate: int) -> Floats:
+def _impulses(strikes: "list[Impact]", first: float, unit: float, count: int, rate: int) -> Floats:
     """The impulses of impacts on the resonances, each in the sample nearest to its time."""
     found = np.zeros(count)
     at = np.array([round((x.time - first) * unit * rate) for x in strikes])
@@ -127,7 +128,7 @@ def _contact(m: "Motion", times: Floats, strikes: bool = False) -> tuple[Floats,
     return phi[nearest], speed[nearest]
 
 
-def _beat(phi: Floats) -> Floats:
+def _loudness(phi: Floats) -> Floats:
     """Loudness of the ringing for an azimuth of the contact point; the mean where the beat is too fast."""
     step = np.abs(np.gradient(phi)) if phi.size > 1 else np.zeros(phi.size)
     shown = np.clip(2 - step * 2 / math.pi, 0.0, 1.0)  # 0 from two samples per turn on
@@ -136,7 +137,7 @@ def _beat(phi: Floats) -> Floats:
     return found
 
 
-def _through(scrape: Floats, rate: int) -> Floats:
+def _ringing(scrape: Floats, rate: int) -> Floats:
     """The response of decaying resonances to a force."""
     t = np.arange(math.ceil(0.25 * rate)) / rate
     answer = sum(

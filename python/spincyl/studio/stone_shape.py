@@ -70,8 +70,8 @@ def turned_marks(stone: Ellipsoid, upper: str) -> list[Profile]:
     """The marks that are turned on a lathe: band and dot of a whole stone."""
     if height(stone) < 1:
         return []
-    first, second = _inks(upper)
-    beside = _stretch(stone, 1 - _long(stone))
+    first, second = _names_and_colours(upper)
+    beside = _stretch(stone, 1 - _longer_axis(stone))
     zones = ((*first, -_BAND, _BAND, 4), (*second, np.pi / 2 - _DOT, np.pi / 2, 8))
     return [
         Profile(name, colour, *_lifted(*arc((0.0, 0.0), 1.0, low, high, count)), beside)
@@ -85,9 +85,13 @@ def marks_of_stone(stone: Ellipsoid, upper: str) -> list[Part]:
     if cut == 1:
         return [lathe(profile) for profile in turned_marks(stone, upper)]
     # columns: along the longer axis, across it, up
-    turn = np.eye(3) if _long(stone) == 0 else np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    turn = (
+        np.eye(3)
+        if _longer_axis(stone) == 0
+        else np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    )
     found = []
-    for (name, colour), end in zip(_inks(upper), (1, -1), strict=True):
+    for (name, colour), end in zip(_names_and_colours(upper), (1, -1), strict=True):
         pieces = [
             (places @ turn, normals @ turn, i)
             for places, normals, i in (_needle(cut, end), _stripe_of_hull(cut, end))
@@ -117,7 +121,7 @@ def reach_of_stone(stone: Ellipsoid) -> float:
     return max(float(np.linalg.norm(lathe(p).vertices, axis=1).max()) for p in profiles_of_stone(stone))
 
 
-def _inks(
+def _names_and_colours(
     upper: str,
 ) -> tuple[tuple[str, tuple[float, float, float]], tuple[str, tuple[float, float, float]]]:
     """Name and colour of the first mark, and of the second."""
@@ -125,7 +129,7 @@ def _inks(
     return (blue, orange) if upper == "O" else (orange, blue)
 
 
-def _long(stone: Ellipsoid) -> int:
+def _longer_axis(stone: Ellipsoid) -> int:
     """Index of the longer of the first two axes."""
     return int(np.argmax(np.asarray(stone.axes)[:2]))
 

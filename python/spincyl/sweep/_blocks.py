@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._input.numbers import extra, number, reals
+from spincyl._input.numbers import number, optional_library, reals
 from spincyl.sweep import _records
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def block_size(
         return begun
     if not callable(job):
         raise TypeError(f"job: expected a function, not {type(job).__name__}")
-    dask, array = extra("dask", "sweep"), extra("dask.array", "sweep")
+    dask, array = optional_library("dask", "sweep"), optional_library("dask.array", "sweep")
     blocks = [_one_block(x, array) for x in sample]
     found = job(*blocks)
     if not hasattr(found, "chunksizes") or not found.chunksizes:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from spincyl._input.numbers import Floats
-from spincyl._scale import Scale, si_of
+from spincyl._scale import Scale, si_factor
 
 #: Begin of the hash of an array, or of another input, in the record of a sweep.
 CONTENT = "content "
@@ -89,7 +89,7 @@ def in_si(found: Any, scale: Scale | None) -> Any:
 
 def to_si(name: str, attrs: dict[str, Any], scale: Scale | None) -> tuple[float | None, dict[str, Any]]:
     """The factor that converts a variable to SI, None without a conversion, and its attributes after it."""
-    factor, said = si_of(attrs.get("units", "1"), scale)
+    factor, said = si_factor(attrs.get("units", "1"), scale)
     factor = scale._worst if scale is not None and name == "error" else factor
     return (None, attrs) if factor is None else (factor, attrs | {"units": said})
 

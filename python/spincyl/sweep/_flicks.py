@@ -8,7 +8,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import Reals, extra, floats, is_scalar, made, reals
+from spincyl._input.numbers import Reals, floats, instance_of, is_scalar, optional_library, reals
 from spincyl._phases import KINDS
 from spincyl._single import one_body
 from spincyl._throw import flicked
@@ -139,10 +139,10 @@ def flicks(
     >>> found["outcome"].dims, found["outcome"].values.tolist()
     (('hertz', 'launch'), [[2, 2, 3], [1, 1, 3]])
     """
-    lib = extra("xarray", "sweep")
+    lib = optional_library("xarray", "sweep")
     body = one_body(body)
     if not isinstance(contact, Coulomb | Viscous):
-        made("contact", contact, Coulomb)
+        instance_of("contact", contact, Coulomb)
     given = {"w1": w1, "hertz": hertz, "launch": launch, "spin_hertz": spin_hertz, "centre": centre}
     axes = {name: x for name, x in given.items() if x is not None}
     start = flicked(body, **{name: _axis_of_flicks(lib, name, x) for name, x in axes.items()})

@@ -7,8 +7,8 @@ import numpy as np
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import Floats, Reals, components, extra, floats, made
-from spincyl._loss import LAWS, Loss, Sum, sized
+from spincyl._input.numbers import Floats, Reals, components, floats, instance_of, optional_library
+from spincyl._loss import LAWS, Loss, Sum, marked_as_si
 from spincyl._repr import FIELDS
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -98,7 +98,7 @@ def plain_inputs(
     named: dict[str, Reals], shape: tuple[int, ...], dims: list[str], length: str
 ) -> dict[str, Any]:
     """The coordinates of `with_inputs` for arrays without names, which broadcast to `shape`."""
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     found: dict[str, Any] = {}
     for name, given in named.items():
         data = floats(given)
@@ -165,7 +165,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     >>> bool(sc.sweep.roll(**given)["w3"] == row["w3"])
     True
     """
-    made("rows", rows, extra("xarray", "sweep").Dataset)
+    instance_of("rows", rows, optional_library("xarray", "sweep").Dataset)
     at, stones = rows.attrs, "body_a1" in rows.coords
     missing = [name for name in ("start_w3", "body_a1" if stones else "body_ell") if name not in rows.coords]
     missing += [name for name in ("contact", "t", "tol") if name not in at]
@@ -189,7 +189,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     else:
         found["contact"] = at["contact"]
     laws = [
-        sized(law(given[f"loss_{name}"]), known) for name, law in KINDS.items() if f"loss_{name}" in given
+        marked_as_si(law(given[f"loss_{name}"]), known)
+        for name, law in KINDS.items()
+        if f"loss_{name}" in given
     ]
     return found | ({"losses": Sum(laws) if len(laws) > 1 else laws[0]} if laws else {})
 
@@ -215,7 +217,7 @@ def _stones(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
     # broadcast by name, since stones and their states have no named dimensions
     names = [f"body_{name}" for name in _AXES] + [f"start_{name}" for name in (*_NORMAL, *_W)]
     names += [name for name in ("start_slip_x", "start_slip_y") if name in given]
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     arrays = lib.broadcast(*(lib.DataArray(given.get(name, np.nan)) for name in names))
     columns: list[Floats] = [array.data for array in arrays]
     inertia: list[Any] = [[None] * 3 for _ in range(3)]

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._ending import DOUBTFUL, ErrorWarning
-from spincyl._input.numbers import Floats, Reals, extra, warn
+from spincyl._ending import LARGE_ERROR, ErrorWarning
+from spincyl._input.numbers import Floats, Reals, optional_library, warn
 from spincyl._loss import LAWS
 from spincyl.sweep._common import many_blocks
 
@@ -102,9 +102,9 @@ def uncertain(asked: dict[str, Any], error: np.ndarray, status: np.ndarray) -> N
     if asked.get("step") is not None or "restitution" in asked or not asked.get("errors", True):
         return
     known = ~np.isin(status, [Status.INVALID, Status.PAINLEVE, Status.LANDING, Status.BOUNDED])
-    large = known & ~(error <= DOUBTFUL)
+    large = known & ~(error <= LARGE_ERROR)
     if large.any():
-        told = f"{np.count_nonzero(large)} of {status.size} motions have estimated errors above {DOUBTFUL}"
+        told = f"{np.count_nonzero(large)} of {status.size} motions have estimated errors above {LARGE_ERROR}"
         warn(f"{told}, in natural units, up to {error[large].max():.2g}", ErrorWarning)
 
 
@@ -123,7 +123,7 @@ def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any
 
     Plain fields are arrays without names: their broadcast dimensions are "motion", or "motion_0" and so on.
     """
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     shape, dims = broadcast(fields)
     rank = len(shape)
 
@@ -164,7 +164,7 @@ def applied(
     times: Floats,
 ) -> dict[str, Any]:
     """The output arrays of `run`, by name; those that are `spread` have a dimension of times."""
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     with many_blocks():
         found = lib.apply_ufunc(
             run,
@@ -184,10 +184,10 @@ def dataset(data: dict[str, Any], coords: dict[str, Any], attrs: dict[str, objec
     The public constructor compares and copies all of them, which takes longer than a small sweep. xarray's
     own methods avoid that with a constructor that is not public; without it we take the public one.
     """
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     axes = [name for name, x in coords.items() if x.dims == (name,)]
     # an index of pandas is not searched for an array of dask, which xarray would import first
-    frames: Any = extra("pandas", "sweep")
+    frames: Any = optional_library("pandas", "sweep")
     indexes = {name: lib.indexes.PandasIndex(frames.Index(coords[name].data), name) for name in axes}
     variables = data | coords
     for name, axis in indexes.items():

@@ -12,16 +12,16 @@ from spincyl._body import Body
 from spincyl._input.numbers import (
     Floats,
     Reals,
-    extra,
-    fitting,
+    common_shape,
     floats,
     in_columns,
     is_scalar,
+    known_words,
+    optional_library,
     radians,
     reals,
-    words,
 )
-from spincyl._input.progress import Progress, telling
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl._input.threads import thread_count
 from spincyl._laws import Region
 from spincyl.sweep._common import apart, cells, in_si, is_lazy, many_blocks, signature, target, targets
@@ -113,7 +113,7 @@ def portrait(
     >>> found["rate"].dims, found["rate"].shape
     (('theta', 'ell'), (400, 300))
     """
-    lib = extra("xarray", "sweep")
+    lib = optional_library("xarray", "sweep")
     body = ell if isinstance(ell, Body) else None
     if body is not None:
         ell, bore, fillet = _tube(body, bore, fillet)
@@ -128,7 +128,7 @@ def portrait(
             raise ValueError("out: expected None for dask-backed inputs; a lazy result has no arrays to fill")
         labelled = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
         cores = 1 if threads is None else thread_count(threads)
-        with many_blocks(), telling(progress, "map", by_default=False) as told:
+        with many_blocks(), reporting_progress(progress, "map", by_default=False) as told:
             found = lib.apply_ufunc(
                 partial(_block_of_map, threads=cores, progress=told, **kinds),
                 *labelled,
@@ -142,7 +142,7 @@ def portrait(
         shape = tuple(x.size for x in axes.values())
         given = targets(out, want)
         kinds |= {"threads": thread_count(threads), "shape": shape, "given": given}
-        with telling(progress, "map") as told:
+        with reporting_progress(progress, "map") as told:
             filled = _grid(*axes.values(), progress=told, **kinds)
         inner = tuple(x.size for x in axes.values() if x.ndim)
         data = {name: (dims, x.reshape(inner)) for name, x in zip(want, filled, strict=True)}
@@ -209,7 +209,7 @@ def points(
     want = _wanted_of_map(want)
     cell = _cell(dtype)
     given = [floats(reals(name, x)) for name, x in zip(_AXES, (theta, ell, bore, fillet), strict=True)]
-    fitting(dict(zip(_AXES, given, strict=True)))
+    common_shape(dict(zip(_AXES, given, strict=True)))
     many = given[0].reshape(-1)
     radians("theta", many[:: max(1, many.size // 10_000)] if given[0].ndim else theta)
     shape = np.broadcast_shapes(*(x.shape for x in given))
@@ -217,7 +217,7 @@ def points(
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, into[name]) for name in want}
     flat = dict(zip(_AXES, in_columns(given, shape), strict=True))
     apart(arrays, flat)
-    with telling(progress, "map") as told:
+    with reporting_progress(progress, "map") as told:
         _core.portrait(flat, _flat(arrays), True, thread_count(threads), told)
     return arrays
 
@@ -294,7 +294,7 @@ def survey(
     names = list(_UNITS)[:4]
     wanted = [name in asked for name in names]
     if any(wanted):
-        with telling(progress, "survey") as told:
+        with reporting_progress(progress, "survey") as told:
             ends = _core.extrema(columns, wanted, cores, told)
         for name, end in zip(names, ends, strict=True):
             if name in asked:
@@ -329,7 +329,7 @@ def boundaries(ell: Reals, bore: Reals = 0.0, fillet: Reals = 0.0) -> "xarray.Da
     >>> found["theta_balance"].values.round(4)
     array([1.1071, 0.7854, 0.4636])
     """
-    lib = extra("xarray", "sweep")
+    lib = optional_library("xarray", "sweep")
     axes = {name: _axis_of_map(name, x) for name, x in (("ell", ell), ("bore", bore), ("fillet", fillet))}
     named = [lib.DataArray(x, dims=_dims(name, x)) for name, x in axes.items()]
     body = Body.tube(*named) if any(x.ndim for x in axes.values()) else Body.tube(*map(float, axes.values()))
@@ -416,7 +416,7 @@ def _tube(body: Body, bore: Reals, fillet: Reals) -> tuple[Reals, Reals, Reals]:
 
 
 def _wanted_of_map(want: str | Iterable[str]) -> tuple[str, ...]:
-    return words("want", want, tuple(_UNITS))
+    return known_words("want", want, tuple(_UNITS))
 
 
 def _cell(dtype: Any) -> np.dtype[Any]:

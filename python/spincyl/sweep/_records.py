@@ -15,7 +15,7 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from spincyl._input.files import path_of, replaced
+from spincyl._input.files import path_of, writing_whole
 from spincyl.sweep._common import CONTENT
 
 #: Names of the record in each array's folder, where zarr ignores it, and of its copy in the folder of marks.
@@ -261,14 +261,14 @@ def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
         raw = with_added(there, raw) if file.name == META else raw
         if there != raw:
             file.parent.mkdir(parents=True, exist_ok=True)
-            with replaced(file) as part:
+            with writing_whole(file) as part:
                 part.write_bytes(raw)
 
 
 def settle(store: Store, record: Record) -> None:
     """Write the record into the folder of marks if it is missing there."""
     if read(store.marks / BESIDE) != (seal := sealed(record)):
-        with replaced(store.marks / BESIDE) as part:
+        with writing_whole(store.marks / BESIDE) as part:
             part.write_bytes(seal)
 
 

@@ -7,33 +7,41 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, evaluations
+from spincyl._asked import Asked, checked_max_nfev
 from spincyl._body import Body
-from spincyl._contact import TABLES, AnyContact, Coulomb, Viscous, code, fitting, law
+from spincyl._contact import (
+    TABLES,
+    AnyContact,
+    Coulomb,
+    Viscous,
+    check_contact_scale,
+    code_of,
+    code_of_friction,
+)
 from spincyl._ending import RestsOn
 from spincyl._input.numbers import (
     Floats,
     Reals,
-    extra,
     flag,
     floats,
+    in_range,
+    instance_of,
     is_scalar,
-    made,
+    known_words,
     number,
     one_of,
+    optional_library,
     reals,
     si,
-    within,
-    words,
 )
 from spincyl._input.progress import Progress
-from spincyl._input.threads import is_roomy
-from spincyl._loss import LAWS, Loss, made_law
-from spincyl._lossy import narrow
-from spincyl._measured import natural_time, speaking
-from spincyl._phases import rubs, struck
+from spincyl._input.threads import has_large_stack
+from spincyl._loss import LAWS, Loss, checked_law
+from spincyl._lossy import warn_of_long_arm
+from spincyl._measured import errors_in_seconds, natural_time
+from spincyl._phases import has_friction, refuse_impacts_on_patch
 from spincyl._roll import is_stone
-from spincyl._state import State, gripping, landed
+from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_bodies, kept_contact
 from spincyl.sweep._labels import flags, given_up, refused, uncertain
@@ -245,12 +253,12 @@ def roll(
     >>> found["theta_max"].dims, bool((found["error"] < 1e-10).all())
     (('motion',), True)
     """
-    extra("xarray", "sweep")
+    optional_library("xarray", "sweep")
     if is_stone(bodies):
-        from spincyl._ellipsoid_motion import unstruck
+        from spincyl._ellipsoid_motion import refuse_impacts
         from spincyl.sweep import _stones
 
-        unstruck(restitution)
+        refuse_impacts(restitution)
         if step is not None or beyond or stop_at is not None or not errors:
             raise ValueError(
                 "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
@@ -271,28 +279,30 @@ def roll(
         if losses is not None:
             found.attrs["losses"] = repr(losses)
         return found
-    bodies, states = made("bodies", bodies, Body), made("states", states, State)
+    bodies, states = instance_of("bodies", bodies, Body), instance_of("states", states, State)
     scale, seconds, pace = bodies.scale, t, step
     if scale is not None:
-        fitting(contact, scale)
+        check_contact_scale(contact, scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
         pace = si("step", step, "second")
         step = None if step is None else natural_time("step", step, scale)
         if losses is not None:
-            made_law(losses, bodies)
-    with speaking(scale):
+            checked_law(losses, bodies)
+    with errors_in_seconds(scale):
         at, several = _times(t)
     asked = Asked(at, step=step, contact=contact, beyond=flag("beyond", beyond), mu=number("mu", mu))
     asked = _checked(asked._replace(restitution=restitution, stop_at=stop_at), losses)
     asked = asked._replace(
-        tol=number("tol", tol), max_nfev=evaluations(max_nfev), errors=flag("errors", errors)
+        tol=number("tol", tol), max_nfev=checked_max_nfev(max_nfev), errors=flag("errors", errors)
     )
     if restitution is None:
-        landed(states, "give restitution=, the coefficient of restitution, 0 to 1")
-    if not rubs(contact) and (restitution is None or states.height is None):
-        gripping(states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)")
-    of = TABLES[contact] if isinstance(contact, str) else law(contact)
+        refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
+    if not has_friction(contact) and (restitution is None or states.height is None):
+        numbers_without_slip(
+            states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
+        )
+    of = TABLES[contact] if isinstance(contact, str) else code_of_friction(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
     wanted = _wanted_of_motions(
         want, several, tuple(summaries), (of, losses is not None, restitution is not None)
@@ -305,7 +315,7 @@ def roll(
         asked = asked._replace(contact=contact._natural(scale))
     for name, own in (("contact", contact), ("losses", losses)):
         in_memory(name, own, fields)
-    slips = rubs(contact) or restitution is not None
+    slips = has_friction(contact) or restitution is not None
     shown = (*_STATE, *(_SLIP if slips else ()), *(_RIM if restitution is not None else ()))
     names = [*shown] if {"final", "states"} & {*wanted} else []
     spread = frozenset(names if asked.spread else ())
@@ -326,24 +336,24 @@ def roll(
 def _checked(asked: Asked, losses: Loss | None) -> Asked:
     """Check the arguments for all motions; an error names the argument."""
     contact, step = asked.contact, asked.step
-    if not rubs(contact):
-        code(contact, rubs=True)
+    if not has_friction(contact):
+        code_of(contact, rubs=True)
     if losses is not None:
-        made_law(losses)
-        narrow(losses, contact)
-    if not rubs(contact) and asked.stop_at is not None:
+        checked_law(losses)
+        warn_of_long_arm(losses, contact)
+    if not has_friction(contact) and asked.stop_at is not None:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
         number("restitution", asked.restitution)  # its range is known to the core
-    struck(asked.restitution, contact)
+    refuse_impacts_on_patch(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
-    if rubs(contact) or losses is not None or asked.restitution is not None:
+    if has_friction(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:
             raise ValueError(
                 f"t = {float(asked.times[-1])!r}: expected at least 0; a motion with friction, losses or a"
                 " restitution cannot go backward in time"
             )
-        if step is not None or asked.beyond or (rubs(contact) and asked.mu != np.inf):
+        if step is not None or asked.beyond or (has_friction(contact) and asked.mu != np.inf):
             given = f"contact={contact!r}, losses={losses!r}, restitution={asked.restitution!r}"
             raise ValueError(f"step, mu, beyond: cannot be combined with {given}")
     return asked._replace(step=None if step is None else number("step", step))
@@ -371,7 +381,7 @@ def _times(t: Reals) -> tuple[Floats, bool]:
     given = reals("t", t)
     if is_scalar(given):
         # adding 0.0 turns -0.0 into 0.0
-        return np.array([within("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
+        return np.array([in_range("t", given, -1e15, 1e15, "sqrt(R/g)") + 0.0]), False
     at = floats(given) + 0.0
     if at.ndim != 1 or at.size == 0:
         like = "a number (time of the final state) or a one-dimensional array of at least one time"
@@ -403,7 +413,7 @@ def _wanted_of_motions(
                 return f"; this output needs {argument}"
         return ""
 
-    asked = words("want", ("states" if several else "final") if want is None else want, kinds, needs)
+    asked = known_words("want", ("states" if several else "final") if want is None else want, kinds, needs)
     if "states" in asked and ("final" in asked or not several):
         raise ValueError('want: "states" needs an array of times t, and cannot be combined with "final"')
     return tuple(name for name in kinds if name in asked)
@@ -418,7 +428,7 @@ def _fill(
     progress: Progress | None,
 ) -> None:
     """Fill the columns of a block of motions."""
-    _core.ensemble(columns, times, asked, out, (threads, is_roomy()), progress)
+    _core.ensemble(columns, times, asked, out, (threads, has_large_stack()), progress)
     given_up(out["status"])
     refused(columns, asked, out["status"])
     uncertain(asked, out["error"], out["status"])

@@ -16,9 +16,9 @@ from uuid import uuid4
 
 import numpy as np
 
-from spincyl._input.files import replaced
-from spincyl._input.numbers import extra
-from spincyl._input.progress import Progress, telling
+from spincyl._input.files import writing_whole
+from spincyl._input.numbers import optional_library
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl.sweep import _records
 from spincyl.sweep._records import Record, Store, checksum, naming
 
@@ -98,8 +98,8 @@ def save(
     >>> stored["region"].dims, stored["region"].size
     (('ell',), 1000)
     """
-    xr = extra("xarray", "sweep")
-    extra("dask", "sweep"), extra("zarr", "sweep")
+    xr = optional_library("xarray", "sweep")
+    optional_library("dask", "sweep"), optional_library("zarr", "sweep")
     lazy = "expected a lazy Dataset of spincyl.sweep, computed from inputs backed by dask"
     if not isinstance(result, xr.Dataset) or not result.data_vars:
         raise TypeError(f"result: {lazy}")
@@ -108,7 +108,7 @@ def save(
         raise TypeError(f"result: {lazy}; this one is in memory, so save it with result.to_zarr(path){back}")
     if not isinstance(result.attrs.get("spincyl_sweep"), dict):
         raise TypeError(f"result: {lazy}")
-    with telling(progress, "save") as told:
+    with reporting_progress(progress, "save") as told:
         store = _stored(result, path, told)
     opened: xarray.Dataset = xr.open_zarr(_zarr(store.folder))
     opened.encoding["source"] = os.fspath(store.folder)
@@ -117,7 +117,7 @@ def save(
 
 def _stored(result: "xarray.Dataset", path: str | os.PathLike[str], progress: Progress | None) -> Any:
     """The store, after the blocks that it lacked are computed."""
-    dask = extra("dask", "sweep")
+    dask = optional_library("dask", "sweep")
     store = _records.place(path)
     record = _record(result)
     blocks = list(_blocks(_chunks(result)))
@@ -217,7 +217,7 @@ def _written(result: "xarray.Dataset", store: Store, record: Record) -> Any:
     Only this number returns to the caller. All blocks are in one graph of dask, since building a graph for
     each block would take the client longer than a worker needs for the block.
     """
-    array = extra("dask.array", "sweep")
+    array = optional_library("dask.array", "sweep")
     chunks, arguments = record["chunks"], list[Any]()
     for dim, (size, length) in chunks.items():
         arguments += [array.arange(max(1, -(-length // max(1, size))), chunks=1), (dim,)]
@@ -311,7 +311,7 @@ def _layout(result: "xarray.Dataset", record: Record) -> dict[str, bytes]:
     import zarr
     from zarr.storage import MemoryStore
 
-    array = extra("dask.array", "sweep")
+    array = optional_library("dask.array", "sweep")
     chunks, columns = record["chunks"], record["columns"]
     layout = result.drop_vars(columns).load()
     for name in columns:
@@ -398,7 +398,7 @@ def _write(
         for name, dims in _own(columns, block).items():
             array = zarr.open_array(_zarr(store.folder), path=name, mode="r+", zarr_format=3)
             array[tuple(slice(*block[dim]) if dim in block else slice(None) for dim in dims)] = computed[name]
-        with replaced(_marker(store, block)) as part:
+        with writing_whole(_marker(store, block)) as part:
             part.write_bytes(_mark(store, block, chunks, columns, sweep))
     except OSError as e:
         why = f"{e.strerror or e}; a later call of save resumes from the blocks that are written"

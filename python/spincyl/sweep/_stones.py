@@ -6,15 +6,25 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
-from spincyl._asked import Asked, evaluations
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, fitting
+from spincyl._asked import Asked, checked_max_nfev
+from spincyl._contact import AnyContact, Coulomb, Viscous, check_contact_scale, code_of
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import ErrorWarning
-from spincyl._input.numbers import Floats, Reals, components, made, number, si, warn, within, words
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    components,
+    in_range,
+    instance_of,
+    known_words,
+    number,
+    si,
+    warn,
+)
 from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
-from spincyl._lossy import narrow, of_stone
+from spincyl._lossy import losses_of_stone, warn_of_long_arm
 from spincyl._measured import natural_time
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_contact, kept_stones
@@ -40,16 +50,16 @@ def question(
     max_nfev: int | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
-    states, scale, seconds = made("states", states, EllipsoidState), stones.scale, t
+    states, scale, seconds = instance_of("states", states, EllipsoidState), stones.scale, t
     if scale is not None:
-        fitting(contact, scale)
+        check_contact_scale(contact, scale)
         seconds = si("t", t, "second")
         t = natural_time("t", t, scale)
-    end = within("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
+    end = in_range("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
     default = ("spin", "reversals", "first_reversal")
-    wanted = words("want", default if want is None else want, ("final", *_TOLD))
+    wanted = known_words("want", default if want is None else want, ("final", *_TOLD))
     if not isinstance(contact, Coulomb | Viscous):
-        code(contact, rubs=True)
+        code_of(contact, rubs=True)
         if states._slips:
             why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
             raise ValueError(f"states: the stones slip, and {why}")
@@ -63,10 +73,10 @@ def question(
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
         contact = contact._natural(scale)
     if losses is not None:
-        narrow(of_stone(losses, stones), contact)
+        warn_of_long_arm(losses_of_stone(losses, stones), contact)
         fields |= zip(LAWS, losses._coefficients, strict=True)
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
-    asked = asked._replace(max_nfev=evaluations(max_nfev))
+    asked = asked._replace(max_nfev=checked_max_nfev(max_nfev))
     told = kept_stones(stones, states) | kept_contact(contact)
     in_memory("contact", contact, fields)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from spincyl._asked import Asked, crossing
-from spincyl._contact import kind, named
-from spincyl._input.numbers import Floats, Reals, extra, floats, in_columns
-from spincyl._input.progress import Progress, telling
+from spincyl._asked import Asked, options_for_core
+from spincyl._contact import contact_in_words, without_coefficient
+from spincyl._input.numbers import Floats, Reals, floats, in_columns, optional_library
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl._input.threads import thread_count
-from spincyl._measured import speaking
-from spincyl._phases import rubs
+from spincyl._measured import errors_in_seconds
+from spincyl._phases import has_friction
 from spincyl._scale import Scale
 from spincyl.sweep._common import in_si, is_lazy, signature, sizes, to_si
 from spincyl.sweep._inputs import plain_inputs, with_inputs
@@ -50,16 +50,20 @@ def swept(
     length: str = "R",
 ) -> "xarray.Dataset":
     """The Dataset of a sweep. `law` fills the columns of a block; `labels` has their units and meanings."""
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
-    options = crossing(asked._replace(contact=kind(asked.contact)))
+    options = options_for_core(asked._replace(contact=without_coefficient(asked.contact)))
     share = 1 if lazy and threads is None else thread_count(threads)
     fill = partial(
         _block_of_motions, law=law, given=tuple(fields), names=names, spread=spread, times=at, asked=options
     )
-    attrs: dict[str, object] = {"contact": named(asked.contact), "t": float(at[-1]), "tol": asked.tol}
-    if not rubs(asked.contact):
+    attrs: dict[str, object] = {
+        "contact": contact_in_words(asked.contact),
+        "t": float(at[-1]),
+        "tol": asked.tol,
+    }
+    if not has_friction(asked.contact):
         attrs["mu"] = asked.mu
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
     attrs |= {} if asked.errors else {"errors": 0}
@@ -72,7 +76,10 @@ def swept(
     coords = {"t": lib.Variable(("t",), told, {"units": unit}, fastpath=True)} if spread else {}
     if not any(hasattr(x, "dims") or is_lazy(x) for x in (*fields.values(), *kept.values())):
         shape, dims = broadcast(fields)
-        with speaking(scale, length), telling(progress, "sweep", by_default=True) as tells:
+        with (
+            errors_in_seconds(scale, length),
+            reporting_progress(progress, "sweep", by_default=True) as tells,
+        ):
             arrays = fill(*fields.values(), threads=share, progress=tells)
         columns: dict[str, Any] = {}
         for name, array in zip(names, arrays, strict=True):
@@ -86,12 +93,12 @@ def swept(
         plain: xarray.Dataset = dataset(columns, coords | plain_inputs(kept, shape, dims, length), attrs)
         return plain
     # an empty block, run first, raises errors about the arguments before any work
-    with speaking(scale, length):
+    with errors_in_seconds(scale, length):
         fill(*(np.empty(0) for _ in fields), threads=1, progress=None)
     given, dims = labelled(fields, kept)
     free(given, names, spread)
     wanted = given[: len(fields)], names, [*map(_dtype, names)], [name in spread for name in names], at
-    with telling(progress, "sweep", by_default=not lazy) as tells:
+    with reporting_progress(progress, "sweep", by_default=not lazy) as tells:
         data = applied(partial(fill, threads=share, progress=tells), *wanted)
     data = {name: in_order(array, dims) for name, array in data.items()}
     for name, array in data.items():

@@ -17,7 +17,7 @@
 use super::reduced::{Coefficients, Rates, Reduced};
 use super::{Contact, rolling};
 use crate::laws::body::Body;
-use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, UnderCouple, still_needs};
+use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, UnderCouple, rolling_couple_needed};
 use crate::laws::newton;
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::{Dual, Real};
@@ -60,7 +60,7 @@ pub(crate) struct Acted<T> {
 impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
     #[inline(always)]
-    fn yielding(of: &Coefficients<T>, (s, c): (T, T)) -> T {
+    fn spin_response(of: &Coefficients<T>, (s, c): (T, T)) -> T {
         of.al * s * s - (of.k + of.k) * s * c + of.b * c * c
     }
 
@@ -68,7 +68,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     #[inline(always)]
     pub fn stiffness(&self, angle: (T, T), slope: T) -> T {
         let of = self.rates.reduced().at(angle);
-        slope * Self::yielding(&of, angle) * of.per_d / (angle.0 * angle.0)
+        slope * Self::spin_response(&of, angle) * of.per_d / (angle.0 * angle.0)
     }
 
     /// The longest time step for which psi' stays damped ([`DAMPED`]). Near the table the couples along the
@@ -105,7 +105,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
 
     /// w1' and w3' under the couple m1 and m3, from their values without it.
     #[inline(always)]
-    fn turned(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
+    fn add_couple(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
         [(of.b * m1 + of.k * m3).mac(of.per_d, d1), (of.k * m1 + of.al * m3).mac(of.per_d, d3)]
     }
 
@@ -114,7 +114,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
         let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
         if matches!(held, Held::Rolling) {
-            return self.stays(angle, precession, w);
+            return self.pivoting_response(angle, precession, w);
         }
         let (shape, of) = (&reduced.shape, reduced.at(angle));
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
@@ -130,7 +130,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 );
         }
         let carried = slope * w2 * w2;
-        let couple = self.losses.joined(
+        let couple = self.losses.total_couple(
             &seen,
             #[inline(always)]
             |couple| Self::normal(couple, tilts, [lever, per_inertia, d2, carried]),
@@ -140,7 +140,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let pressing = normal.max(s.splat(0.0));
         let [mut m1, m2, mut m3] = couple.under(pressing);
         let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
-        let [mut r1, mut r3] = Self::turned(&of, [d1, d3], m1, m3);
+        let [mut r1, mut r3] = Self::add_couple(&of, [d1, d3], m1, m3);
         let mut stays = [s.splat(0.0), one];
         let radius = seen.radius;
         match held {
@@ -148,9 +148,9 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
             Held::Contour(rate) => {
                 // `off` is s^2 (psi'' - rate) without the couple that holds psi'.
                 let off = s * (s * r3 - c * r1 - precession * w2 - s * rate);
-                let push = off / (Self::yielding(&of, angle) * of.per_d);
+                let push = off / (Self::spin_response(&of, angle) * of.per_d);
                 (m1, m3) = (m1 + c / s * push, m3 - push);
-                [r1, r3] = Self::turned(&of, [d1, d3], m1, m3);
+                [r1, r3] = Self::add_couple(&of, [d1, d3], m1, m3);
                 stays = [push, self.losses.coefficient(Law::DryContour) * pressing * radius];
             }
             Held::Drilling => {
@@ -158,7 +158,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 let give = of.b * s * s + (of.k + of.k) * s * c + of.al * c * c;
                 let push = -(off / (give * of.per_d));
                 (m1, m3) = (m1 + s * push, m3 + c * push);
-                [r1, r3] = Self::turned(&of, [d1, d3], m1, m3);
+                [r1, r3] = Self::add_couple(&of, [d1, d3], m1, m3);
                 stays = [push, self.losses.coefficient(Law::Drilling) * pressing];
             }
         }
@@ -179,14 +179,14 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// The response of a body that only turns about the vertical, with N = 1, and the couple of rolling resistance that
     /// this needs, with its limit. A rolling contact point is at rest, so that the centre moves on a circle.
     #[inline(always)]
-    fn stays(&self, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
+    fn pivoting_response(&self, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
         let ((s, c), [w1, _, w3], reduced) = (angle, w, self.rates.reduced());
         let (rim, i1, i3) = (&reduced.shape.rim, reduced.shape.i1, reduced.shape.i3);
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let seen = self.losses.seen(rim, angle, precession, w);
         let [m1, m2, m3] = self
             .losses
-            .joined(
+            .total_couple(
                 &seen,
                 #[inline(always)]
                 |_| one,
@@ -204,7 +204,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let more3 = i3 * c * turn + rim.radius(angle) * along - m3;
         let more2 = rim.lever(angle) + rim.height(angle) * across - gyration - m2;
         let contour = self.losses.coefficient(Law::DryContour) * rim.radius(angle) / s;
-        let needs = still_needs([c * more1 - s * more3, more2], contour);
+        let needs = rolling_couple_needed([c * more1 - s * more3, more2], contour);
         let held = [needs, self.losses.coefficient(Law::RollingResistance)];
         let power = self.losses.power(&seen, one);
         Acted { w: [s * turn, zero, c * turn], force: [one, along, across], power, held }

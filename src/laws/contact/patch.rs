@@ -23,7 +23,7 @@ use core::f64::consts::PI;
 
 /// f and g/q for k >= 1 as polynomials in 2 s - 1, Chebyshev series of 22 terms; the terms left out sum up to 7e-17.
 #[rustfmt::skip]
-const FORCE: [f64; 22] = [
+const FORCE_SERIES: [f64; 22] = [
     0.9170997880780726, 0.06250000000000006, 0.02423336865365803, -0.004396221731178827, 0.0005630649993088711,
     5.1977435348625734e-05, -8.421605991664845e-05, 4.737191552267095e-05, -2.149243474358282e-05, 8.878440359798234e-06,
     -3.4818024687496186e-06, 1.3214778184610843e-06, -4.907065649171647e-07, 1.7923606862631192e-07, -6.422445412549951e-08,
@@ -31,7 +31,7 @@ const FORCE: [f64; 22] = [
     -2.455572174691065e-10, 8.757480422285951e-11,
 ];
 #[rustfmt::skip]
-const COUPLE: [f64; 22] = [
+const COUPLE_SERIES: [f64; 22] = [
     0.2136499470195182, -0.012116684326827498, -0.0027611758650455463, 0.0016350458661592653, -0.00048727054312168786,
     7.43466573642344e-05, 2.2369215163436505e-05, -2.8073034067640355e-05, 1.7635322965623147e-05, -9.052197968058282e-06,
     4.199779658321693e-06, -1.8321912749560303e-06, 7.674395167823674e-07, -3.1157912920483703e-07, 1.2201420751195448e-07,
@@ -41,7 +41,7 @@ const COUPLE: [f64; 22] = [
 
 /// f/S and g, where S = |u| and R = eps |w_z|. Both must not be zero.
 #[inline(always)]
-fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
+fn friction_and_couple<T: Real>(slip: T, turn: T) -> [T; 2] {
     let number = |x: f64| slip.splat(x);
     let one = number(1.0);
     // Lanes compute both sides, each with arguments that are valid for it.
@@ -58,7 +58,7 @@ fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
     let share = slow / fast;
     let side = number(2.0) * ((one - share) * (one + share)).sqrt() - one;
     let sum = |terms: &[f64; 22]| terms.iter().rev().fold(number(0.0), |sum, x| sum.mac(side, number(*x)));
-    let outside = [sum(&FORCE) / fast, share * sum(&COUPLE)];
+    let outside = [sum(&FORCE_SERIES) / fast, share * sum(&COUPLE_SERIES)];
     [0, 1].map(|i| turn.select_lt(slip, outside[i], within[i]))
 }
 
@@ -67,7 +67,7 @@ fn shares<T: Real>(slip: T, turn: T) -> [T; 2] {
 #[inline(always)]
 pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
     let turn = radius * drilling.abs();
-    let [share, couple] = shares(slip, turn);
+    let [share, couple] = friction_and_couple(slip, turn);
     let (zero, against) = (slip.splat(0.0), radius * couple);
     [share, drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero)), slip + turn]
 }
@@ -77,7 +77,7 @@ pub fn of(k: f64) -> [f64; 2] {
     if k.is_infinite() {
         return [1.0, 0.0];
     }
-    let [force, couple] = shares(k, 1.0);
+    let [force, couple] = friction_and_couple(k, 1.0);
     [k * force, couple]
 }
 
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn without_a_radius_friction_is_that_of_a_point() {
         for slip in [1e-300, 0.3, 1e10] {
-            let [force, couple] = shares(slip, 0.0);
+            let [force, couple] = friction_and_couple(slip, 0.0);
             assert!((force * slip - 1.0).abs() < 3e-16 && couple == 0.0);
         }
         assert_eq!(of(f64::INFINITY), [1.0, 0.0]);

@@ -115,7 +115,7 @@ impl<T: Real> Reduced<T> {
 
     /// Twice the energy without the energy of the tilting: the rotation by w1 and w3, and the height of the centre.
     #[inline(always)]
-    pub fn untilted(&self, angle: (T, T), w1: T, w3: T) -> T {
+    pub fn energy_without_tilting(&self, angle: (T, T), w1: T, w3: T) -> T {
         let of = self.at(angle);
         let height = self.shape.rim.height(angle);
         let turning = of.al * w1 * w1 + of.b * w3 * w3 - (of.k * w1 * w3 + of.k * w1 * w3);
@@ -188,12 +188,12 @@ impl<T: Real> Rates<T> {
     /// The rates w1', w2' and w3'.
     #[inline(always)]
     pub fn at(&self, s: T, c: T, w: [T; 3]) -> [T; 3] {
-        if self.of.round { self.at_on::<true>(s, c, w) } else { self.at_on::<false>(s, c, w) }
+        if self.of.round { self.at_rim_kind::<true>(s, c, w) } else { self.at_rim_kind::<false>(s, c, w) }
     }
 
     /// The rates w1', w2' and w3'; ROUND tells the compiler whether the rim is rounded and rolls.
     #[inline(always)]
-    pub fn at_on<const ROUND: bool>(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
+    pub fn at_rim_kind<const ROUND: bool>(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
         let (ct, rim) = (c / s, &self.of.shape.rim);
         let of = if ROUND { self.of.at((s, c)) } else { self.scaled };
         let [out, up] = self.lever;

@@ -25,13 +25,13 @@ use super::JAMMED;
 use super::patch::rubs;
 use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
-use crate::laws::loss::{Couple, Couples, Holds, Law, Losses, OwnCouple, still_needs};
+use crate::laws::loss::{Couple, Couples, Holds, Law, Losses, OwnCouple, rolling_couple_needed};
 use crate::laws::newton::{self, Force};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::{Real, here};
 
 /// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
-const POINT: f64 = 1e-16;
+const LARGEST_POINT_RADIUS: f64 = 1e-16;
 
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl Friction {
     /// The radius of the patch of contact; 0 for a point, and for a patch that differs from a point only by rounding.
     pub(crate) fn patch(&self) -> f64 {
         match *self {
-            Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > POINT => patch,
+            Self::Coulomb { mu, patch, .. } if mu > 0.0 && patch > LARGEST_POINT_RADIUS => patch,
             _ => 0.0,
         }
     }
@@ -260,7 +260,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         let couple = self.losses.as_ref().map(
             #[inline(always)]
             |losses| {
-                losses.joined(
+                losses.total_couple(
                     &losses.seen(rim, angle, w1 / s, w),
                     // Only a user-defined law asks for it.
                     |couple| free_of(Some(couple), c * (w1 / s)) * size / left_of(Some(couple))[0],
@@ -301,7 +301,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
                     [most(Law::DryContour), most(Law::RollingResistance)],
                 );
             } else {
-                (dw, held[0], kept[0]) = self.kept_still(angle, (w, precession), (dw, turned), holds);
+                (dw, held[0], kept[0]) = self.with_motions_held(angle, (w, precession), (dw, turned), holds);
                 kept[1] = if holds.contour { most(Law::DryContour) * radius } else { kept[1] };
             }
             held[1] = if holds.drilling { most(Law::Drilling) } else { held[1] };
@@ -319,7 +319,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
     /// torque; also the couple about the vertical, and the couple h/s. Neither the normal force nor friction depends on
     /// these couples.
     #[inline(always)]
-    fn kept_still(
+    fn with_motions_held(
         &self,
         (s, c): (T, T),
         ([w1, w2, w3], precession): ([T; 3], T),
@@ -362,7 +362,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         let twist = s * t1 + c * t3;
         let turn = if drilling { s.splat(0.0) } else { twist / (*i1 * s * s + *i3 * c * c) };
         let (m1, m3) = (*i1 * (s * turn) - t1, *i3 * (c * turn) - t3);
-        let needs = still_needs([c * m1 - s * m3, -t2], contour * rim.radius((s, c)) / s);
+        let needs = rolling_couple_needed([c * m1 - s * m3, -t2], contour * rim.radius((s, c)) / s);
         ([s * turn, s.splat(0.0), c * turn], if drilling { -twist } else { s.splat(0.0) }, [needs, most])
     }
 
@@ -452,7 +452,7 @@ impl Slipping<f64> {
     }
 
     /// The equations of slipping of a body on a table with this friction and these losses.
-    pub fn on_losing(body: &Body, friction: &Friction, losses: &Losses) -> Self {
+    pub fn with_losses_on(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         Self::on(body, friction).with_losses(Couples::some(losses))
     }
 }
@@ -543,7 +543,7 @@ pub fn derivative(
     friction: &Friction,
     losses: &Losses,
 ) -> (State, [f64; 2], Force) {
-    let slipping = Slipping::on_losing(body, friction, losses);
+    let slipping = Slipping::with_losses_on(body, friction, losses);
     let (at, ..) = slipping.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
     let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
     (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })

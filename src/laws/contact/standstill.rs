@@ -32,11 +32,11 @@ use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.
-const DOUBTFUL: f64 = 0.9;
+const DOUBTFUL_SHARE_OF_PAINLEVE: f64 = 0.9;
 /// A slip whose speed grows more slowly than this counts as not growing, since that is a rounding error.
-const STILL: f64 = 1e-11;
+const GROWTH_ROUNDING: f64 = 1e-11;
 /// The limit if static friction has just ceased to hold, at a time that is rounded.
-const JUST: f64 = 1e-8;
+const GROWTH_ROUNDING_AT_RELEASE: f64 = 1e-8;
 
 /// The forces at a contact point at rest, which decide whether it sticks.
 pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
@@ -58,7 +58,7 @@ pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
 
 impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
     /// Directions in which the contact point may slip off, each with the growth rate of its speed.
-    fn ways(&self) -> Vec<(f64, f64)> {
+    fn slip_directions(&self) -> Vec<(f64, f64)> {
         let all = self.onset.directions().into_iter();
         all.filter_map(|alpha| (self.growth)(alpha).map(|growth| (alpha, growth))).collect()
     }
@@ -75,15 +75,16 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         if !doubtful && free <= 0.0 {
             return Standstill::LiftsOff;
         }
-        let mut ways = self.ways();
+        let mut ways = self.slip_directions();
         if !doubtful {
             // Rounding may split one direction into several; that of the fastest growth is used.
             let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-            return best.filter(|way| way.1 > -STILL).map_or(Standstill::Undefined, |(alpha, growth)| {
-                Standstill::Slips { alpha, growth: growth.max(0.0) }
-            });
+            return best.filter(|way| way.1 > -GROWTH_ROUNDING).map_or(
+                Standstill::Undefined,
+                |(alpha, growth)| Standstill::Slips { alpha, growth: growth.max(0.0) },
+            );
         }
-        ways.retain(|way| way.1 > STILL);
+        ways.retain(|way| way.1 > GROWTH_ROUNDING);
         let lifts = usize::from(free <= 0.0);
         if holds(fixed) {
             // A contact point that only static friction can hold may also slip off in one direction: it
@@ -104,7 +105,9 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         if fixed == mu {
             // The two coefficients agree: the slip begins against the friction, and the growth of its speed
             // starts from zero.
-            let another = self.doubtful && (self.free <= 0.0 || self.ways().iter().any(|way| way.1 > JUST));
+            let another = self.doubtful
+                && (self.free <= 0.0
+                    || self.slip_directions().iter().any(|way| way.1 > GROWTH_ROUNDING_AT_RELEASE));
             let slips = Standstill::Slips { alpha: self.against, growth: 0.0 };
             return if another { Standstill::Undefined } else { slips };
         }
@@ -125,13 +128,13 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
 pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
     let (slipping, angle) = (Slipping::of(shape, mu, true), y.theta.sin_cos());
     let limit = slipping.painleve(angle);
-    if mu < DOUBTFUL * limit {
+    if mu < DOUBTFUL_SHARE_OF_PAINLEVE * limit {
         return true;
     }
     let free = slipping.towards(angle, [y.w1, y.w2, y.w3], [0.0; 2], [0.0; 2]).force[0];
     let rates = Rates::of(Contact::Rolling, shape, shape.rim.rho != 0.0);
     let held = force_at(rates.reduced(), y, &rates.derivative(y, angle), angle).friction();
-    held * (1.0 + mu / limit) < (1.0 - JUST) * mu * free
+    held * (1.0 + mu / limit) < (1.0 - GROWTH_ROUNDING_AT_RELEASE) * mu * free
 }
 
 /// The motions at rest of a body whose slip is zero, if dry losses resist others than the slip, and whether more than
@@ -139,7 +142,7 @@ pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
 fn together(body: &Body, y: &State, mu: f64, of: Option<&UnderCouple>) -> Option<(Together, bool)> {
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let found = Together::of_body(&body.shape(), of?, (angle, w), [0.0; 2], Rubs::Rests)?;
-    Some((found, mu >= DOUBTFUL * painleve(body, y.theta)))
+    Some((found, mu >= DOUBTFUL_SHARE_OF_PAINLEVE * painleve(body, y.theta)))
 }
 
 /// These losses with a couple that is linear in the normal force.
@@ -158,7 +161,7 @@ pub(crate) fn standstill<G: OwnCouple<f64>>(
     let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.standstill([mu, fixed], doubtful),
-        None => rest(body, y, (friction, [mu, fixed]), of).decides(),
+        None => forces_at_rest(body, y, (friction, [mu, fixed]), of).decides(),
     }
 }
 
@@ -173,12 +176,12 @@ pub(crate) fn let_go<G: OwnCouple<f64>>(
     let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.lets_go([mu, fixed], doubtful),
-        None => rest(body, y, (friction, [mu, fixed]), of).lets_go(),
+        None => forces_at_rest(body, y, (friction, [mu, fixed]), of).lets_go(),
     }
 }
 
 /// The forces at the contact point of a rim at rest.
-fn rest(
+fn forces_at_rest(
     body: &Body,
     y: &State,
     (friction, mu): (&Friction, [f64; 2]),
@@ -186,14 +189,14 @@ fn rest(
 ) -> HeldContact<impl Fn(f64) -> Option<f64>> {
     let slipping = Slipping::on(body, friction).with_losses(losses);
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-    let rolling = rolling(body, y, losses);
+    let rolling = sticking_force(body, y, losses);
     let free = slipping.towards(angle, w, [0.0; 2], [0.0; 2]).force[0];
     HeldContact {
         mu,
         free,
         held: [rolling.normal, rolling.friction()],
         against: f64::atan2(-rolling.along, -rolling.across),
-        doubtful: mu[0] >= DOUBTFUL * slipping.painleve(angle),
+        doubtful: mu[0] >= DOUBTFUL_SHARE_OF_PAINLEVE * slipping.painleve(angle),
         onset: onset(&slipping, angle, w, free),
         growth: move |alpha| {
             let [cos, sin] = towards(alpha);
@@ -204,7 +207,7 @@ fn rest(
 }
 
 /// The force that keeps the contact point at rest.
-fn rolling(body: &Body, y: &State, losses: Option<UnderCouple>) -> Force {
+fn sticking_force(body: &Body, y: &State, losses: Option<UnderCouple>) -> Force {
     let Some(losses) = losses else { return force(Contact::Rolling, body, y) };
     Lossy { rates: Contact::Rolling.rates(body), losses }.moves(y).1
 }

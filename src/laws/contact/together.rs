@@ -86,22 +86,22 @@ pub(crate) struct Together {
 }
 
 /// A reaction with which the response is probed; the response is linear, so that its size matters little.
-const PROBE: f64 = 0.125;
+const PROBE_REACTION: f64 = 0.125;
 /// Sweeps of the projection before Newton's method, and if Newton's method has not converged.
-const PROJECTIONS: [usize; 2] = [100, 5000];
-const NEWTON: usize = 25;
+const PROJECTION_SWEEPS: [usize; 2] = [100, 5000];
+const NEWTON_STEPS: usize = 25;
 /// Size of an error of the reactions that counts as rounding.
 const CONVERGED: f64 = 1e-13;
 /// A part whose reaction is so close to its limit is held, since friction holds up to its limit.
-const HELD: f64 = 1e-11;
+const LIMIT_ROUNDING: f64 = 1e-11;
 /// Components of a direction below this are roundings of zero.
-const ROUNDED_AWAY: f64 = 1e-15;
+const DIRECTION_ROUNDING: f64 = 1e-15;
 /// Number of directions of the slip from which other solutions are searched for.
-const STARTS: usize = 24;
+const START_DIRECTIONS: usize = 24;
 /// A slip whose speed grows more slowly counts as not growing.
-const GROWS: f64 = 1e-11;
+const SLIP_GROWTH_ROUNDING: f64 = 1e-11;
 /// Directions that differ by less than this are the same.
-const SAME_WAY: f64 = 1e-6;
+const SAME_DIRECTION: f64 = 1e-6;
 
 impl Together {
     /// The motions with these limits, and the normal force and x' for reactions per normal force. None where no normal
@@ -121,7 +121,7 @@ impl Together {
             ALL_RESTING.into_iter().filter(|p| limits[*p as usize].is_some()).map(Resting::place)
         {
             for i in first..first + count {
-                let mut size = PROBE;
+                let mut size = PROBE_REACTION;
                 let (pressed, at) = loop {
                     let mut reactions = [0.0; REACTIONS];
                     reactions[i] = size;
@@ -162,12 +162,12 @@ impl Together {
         if size <= limit { (z, true) } else { (z.map(|x| x * (limit / size)), false) }
     }
 
-    fn of_part(part: Resting, all: &Reactions) -> [f64; 2] {
+    fn reaction_of(part: Resting, all: &Reactions) -> [f64; 2] {
         let (first, count) = part.place();
         [all[first], if count == 2 { all[first + 1] } else { 0.0 }]
     }
 
-    fn parts(&self) -> impl Iterator<Item = Resting> + '_ {
+    fn parts_at_rest(&self) -> impl Iterator<Item = Resting> + '_ {
         ALL_RESTING.into_iter().filter(|part| self.has(*part))
     }
 
@@ -183,31 +183,31 @@ impl Together {
     }
 
     /// r - rho (q + B r) of a part.
-    fn pushed(&self, part: Resting, r: &Reactions) -> [f64; 2] {
+    fn before_projection(&self, part: Resting, r: &Reactions) -> [f64; 2] {
         let (first, count) = part.place();
         let rho = self.rho(part);
         let mut z = [0.0; 2];
         for k in 0..count {
-            let rate = self.q[first + k] + self.used(first + k, r);
+            let rate = self.q[first + k] + self.response_to_reactions(first + k, r);
             z[k] = r[first + k] - rho * rate;
         }
         z
     }
 
     /// B r of the parts at rest, in one component.
-    fn used(&self, i: usize, r: &Reactions) -> f64 {
+    fn response_to_reactions(&self, i: usize, r: &Reactions) -> f64 {
         let mut sum = 0.0;
-        for (first, count) in self.parts().map(Resting::place) {
+        for (first, count) in self.parts_at_rest().map(Resting::place) {
             (first..first + count).for_each(|j| sum += self.b[(i, j)] * r[j]);
         }
         sum
     }
 
-    fn projects(&self, r: &mut Reactions, sweeps: usize) {
+    fn project_repeatedly(&self, r: &mut Reactions, sweeps: usize) {
         for _ in 0..sweeps {
             let mut moved = 0f64;
-            for part in self.parts() {
-                let (nearest, _) = self.nearest(part, self.pushed(part, r));
+            for part in self.parts_at_rest() {
+                let (nearest, _) = self.nearest(part, self.before_projection(part, r));
                 let (first, count) = part.place();
                 for k in 0..count {
                     moved = moved.max((nearest[k] - r[first + k]).abs());
@@ -221,18 +221,18 @@ impl Together {
     }
 
     /// The error r - P(r - rho x'), and its derivative.
-    fn off(&self, r: &Reactions) -> (Reactions, SMatrix<f64, REACTIONS, REACTIONS>) {
+    fn projection_error(&self, r: &Reactions) -> (Reactions, SMatrix<f64, REACTIONS, REACTIONS>) {
         let mut slope = SMatrix::<f64, REACTIONS, REACTIONS>::identity();
         let mut off = Reactions::zeros();
-        for part in self.parts() {
+        for part in self.parts_at_rest() {
             let (first, count) = part.place();
-            let (z, rho) = (self.pushed(part, r), self.rho(part));
+            let (z, rho) = (self.before_projection(part, r), self.rho(part));
             let (nearest, within) = self.nearest(part, z);
             let size = z[0].hypot(z[1]);
             let limit = self.limits[part as usize].unwrap_or(0.0);
             for i in 0..count {
                 off[first + i] = r[first + i] - nearest[i];
-                for (from, n) in self.parts().map(Resting::place) {
+                for (from, n) in self.parts_at_rest().map(Resting::place) {
                     for j in from..from + n {
                         // The derivative of z, seen through that of the projection.
                         let mut seen = 0.0;
@@ -258,18 +258,18 @@ impl Together {
 
     /// The reactions, from a first guess.
     fn reactions(&self, mut r: Reactions) -> Reactions {
-        for sweeps in PROJECTIONS {
-            self.projects(&mut r, sweeps);
-            for _ in 0..NEWTON {
-                let (off, slope) = self.off(&r);
+        for sweeps in PROJECTION_SWEEPS {
+            self.project_repeatedly(&mut r, sweeps);
+            for _ in 0..NEWTON_STEPS {
+                let (off, slope) = self.projection_error(&r);
                 let Ok(step) = slope.svd(true, true).solve(&off, 1e-10) else { break };
                 let next = r - step;
-                if self.off(&next).0.amax() >= off.amax() {
+                if self.projection_error(&next).0.amax() >= off.amax() {
                     break;
                 }
                 r = next;
             }
-            if self.off(&r).0.amax() <= CONVERGED {
+            if self.projection_error(&r).0.amax() <= CONVERGED {
                 break;
             }
         }
@@ -285,18 +285,18 @@ impl Together {
         let r = self.reactions(guess);
         let pressed = self.normal / (1.0 - self.lean.dot(&r));
         let mut all = [Fate::default(); 4];
-        for part in self.parts() {
-            let z = self.pushed(part, &r);
+        for part in self.parts_at_rest() {
+            let z = self.before_projection(part, &r);
             let limit = self.limits[part as usize].unwrap_or(0.0);
             let size = z[0].hypot(z[1]);
             let fate = &mut all[part as usize];
-            fate.reaction = Self::of_part(part, &r);
+            fate.reaction = Self::reaction_of(part, &r);
             let begins = match self.known {
                 Some((known, begins)) if known == part => begins && size > 0.0,
-                _ => size > limit * (1.0 + HELD),
+                _ => size > limit * (1.0 + LIMIT_ROUNDING),
             };
             if begins {
-                let way = z.map(|x| if x.abs() < ROUNDED_AWAY * size { 0.0 } else { 0.0 - x / size });
+                let way = z.map(|x| if x.abs() < DIRECTION_ROUNDING * size { 0.0 } else { 0.0 - x / size });
                 fate.way = way;
                 fate.growth = (size - limit).max(0.0) / self.rho(part) * pressed;
             }
@@ -320,9 +320,9 @@ impl Together {
             let fate = slip(&sliding.fates());
             return if fate.begins() { slips(fate) } else { Standstill::Sticks };
         }
-        let holds = |of: &Self| of.all().iter().any(|fate| !fate.begins());
-        let mut found: Vec<Fate> = sliding.all();
-        found.retain(|fate| fate.begins() && fate.growth > GROWS);
+        let holds = |of: &Self| of.consistent_slips().iter().any(|fate| !fate.begins());
+        let mut found: Vec<Fate> = sliding.consistent_slips();
+        found.retain(|fate| fate.begins() && fate.growth > SLIP_GROWTH_ROUNDING);
         if holds(&fixed) {
             let allowed = usize::from(!holds(&sliding));
             return if found.len() > allowed { Standstill::Undefined } else { Standstill::Sticks };
@@ -340,25 +340,27 @@ impl Together {
         }
         let [across, along] = self.with_slip(f64::INFINITY).fates()[Resting::Slip as usize].reaction;
         let slips = Standstill::Slips { alpha: f64::atan2(0.0 - along, 0.0 - across), growth: 0.0 };
-        let another = doubtful && self.with_slip(mu).all().iter().any(|fate| fate.growth > SAME_WAY);
+        let another =
+            doubtful && self.with_slip(mu).consistent_slips().iter().any(|fate| fate.growth > SAME_DIRECTION);
         if another { Standstill::Undefined } else { slips }
     }
 
     /// The fates of the slip in all consistent solutions that are found.
-    fn all(&self) -> Vec<Fate> {
+    fn consistent_slips(&self) -> Vec<Fate> {
         let mut found: Vec<Fate> = Vec::new();
         let limit = self.limits[Resting::Slip as usize].unwrap_or(0.0).min(1e6);
-        for k in 0..=STARTS {
+        for k in 0..=START_DIRECTIONS {
             let mut guess = Reactions::zeros();
             if k > 0 {
-                let (sin, cos) = (core::f64::consts::TAU * k as f64 / STARTS as f64).sin_cos();
+                let (sin, cos) = (core::f64::consts::TAU * k as f64 / START_DIRECTIONS as f64).sin_cos();
                 (guess[0], guess[1]) = (limit * cos, limit * sin);
             }
             let r = self.reactions(guess);
             let fate = self.fates_from(guess)[Resting::Slip as usize];
-            let sound = self.off(&r).0.amax() <= 1e-9 && 1.0 - self.lean.dot(&r) > 0.0;
-            let same =
-                |other: &Fate| (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME_WAY;
+            let sound = self.projection_error(&r).0.amax() <= 1e-9 && 1.0 - self.lean.dot(&r) > 0.0;
+            let same = |other: &Fate| {
+                (other.way[0] - fate.way[0]).hypot(other.way[1] - fate.way[1]) < SAME_DIRECTION
+            };
             if sound && !found.iter().any(same) {
                 found.push(fate);
             }
@@ -404,7 +406,7 @@ impl Together {
             return None;
         }
         let way = |rests: bool, speed: f64| if rests { 0.0 } else { speed.signum() };
-        let mut base = losses.with_more([0.0; 3]);
+        let mut base = losses.with_pressed_couple([0.0; 3]);
         base.ways = Some(Ways {
             contour: way(limits[2].is_some(), spin),
             drilling: way(limits[3].is_some(), drilling),
@@ -421,7 +423,7 @@ impl Together {
         let respond = |r: &[f64; REACTIONS]| {
             let ([a, b, across, tilt, contour], turn) = ([r[0], r[1], r[2], r[3], r[4]], r[5] + twist);
             let couple = [c * (across + contour) + s * turn, tilt, c * turn - s * (across + contour)];
-            let law = slipping.with_losses(Some(base.with_more(couple)));
+            let law = slipping.with_losses(Some(base.with_pressed_couple(couple)));
             let at = law.towards(angle, w, u, [pulled[0] - a, pulled[1] - b]);
             let [d1, d2, d3] = at.w;
             let rolls = rolling_of((s, c), d1, d3) + w2 * drilling;
@@ -450,11 +452,12 @@ mod tests {
             let rests =
                 Together::of([Some(limits), Some(0.5 * limits), None, Some(limits)], respond).unwrap();
             let r = Reactions::from([0.1, -0.2, 0.15, 0.05, 0.0, 0.3]);
-            let slope = rests.off(&r).1;
+            let slope = rests.projection_error(&r).1;
             for j in [0, 1, 2, 3, 5] {
                 let mut by = Reactions::zeros();
                 by[j] = 1e-6;
-                let differs = (rests.off(&(r + by)).0 - rests.off(&(r - by)).0) / 2e-6;
+                let differs =
+                    (rests.projection_error(&(r + by)).0 - rests.projection_error(&(r - by)).0) / 2e-6;
                 let off = (slope.column(j) - differs).amax();
                 assert!(off < 1e-8, "{limits}, {j}: {off:e}");
             }

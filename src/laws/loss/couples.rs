@@ -117,13 +117,13 @@ pub(crate) trait OwnCouple<T: Real>: Copy {
 
     /// The couple of a user-defined law, linear in the normal force about the one that `normal` gives for such a couple.
     #[inline(always)]
-    fn solved(&self, _seen: &Kinematics<T>, _normal: impl Fn(&Couple<T>) -> T) -> Option<Couple<T>> {
+    fn solved_couple(&self, _seen: &Kinematics<T>, _normal: impl Fn(&Couple<T>) -> T) -> Option<Couple<T>> {
         None
     }
 
     /// The power that a user-defined law takes under a normal force.
     #[inline(always)]
-    fn takes(&self, _seen: &Kinematics<T>, _normal: T) -> Option<T> {
+    fn power_taken(&self, _seen: &Kinematics<T>, _normal: T) -> Option<T> {
         None
     }
 }
@@ -185,7 +185,7 @@ pub(crate) struct Couples<T, G = ()> {
 }
 
 /// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.
-const NEARER: f64 = 0.5;
+const SPEED_CHANGE_SHARE: f64 = 0.5;
 pub(crate) const NEAR: f64 = 1e-9;
 /// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
 pub(crate) const SLACK: f64 = 4e-15;
@@ -202,7 +202,7 @@ impl<T: Real, G: OwnCouple<Dual<T>>> Couples<Dual<T>, G> {
             let x = square.value.sqrt();
             let twice = square.slope.abs() / x;
             // Where both x and its slope are zero the quotient is NaN and limits nothing.
-            most = ((number(2.0 * NEARER) * x).max(number(2.0 * NEAR)) / twice).min(most);
+            most = ((number(2.0 * SPEED_CHANGE_SHARE) * x).max(number(2.0 * NEAR)) / twice).min(most);
         }
         most
     }
@@ -214,7 +214,7 @@ pub(crate) const GRACE: f64 = 1e-11;
 /// The couple of rolling resistance that keeps a body from rolling and rocking, from the whole horizontal couple, along
 /// h and e2, that this needs; dry friction along the contour exerts as much of the former as it can.
 #[inline(always)]
-pub(crate) fn still_needs<T: Real>([across, along]: [T; 2], contour: T) -> T {
+pub(crate) fn rolling_couple_needed<T: Real>([across, along]: [T; 2], contour: T) -> T {
     let zero = across.splat(0.0);
     let left = (across.abs() - contour).max(zero);
     // The small number keeps the slope of the root finite at zero.
@@ -255,7 +255,7 @@ pub(crate) type UnderCouple = Couples<f64, Option<Couple<f64>>>;
 impl<G> Couples<f64, G> {
     /// These losses without the laws that act along the contour.
     pub fn off_the_contour(mut self) -> Self {
-        for law in Law::ALL.iter().copied().filter(|law| law.is_along()) {
+        for law in Law::ALL.iter().copied().filter(|law| law.is_along_contour()) {
             (self.coefficients[law as usize], self.present[law as usize]) = (0.0, false);
         }
         self
@@ -286,7 +286,7 @@ impl<G: OwnCouple<f64>> Couples<f64, G> {
     /// user-defined law in this state.
     pub fn linear(&self, seen: &Kinematics<f64>, normal: impl Fn(&Couple<f64>) -> f64) -> UnderCouple {
         let losses = self.at(seen);
-        let own = self.given.solved(seen, |own| normal(&losses.plus(own)));
+        let own = self.given.solved_couple(seen, |own| normal(&losses.plus(own)));
         self.beside(own.or(self.given.couple().copied()))
     }
 }
@@ -352,9 +352,9 @@ impl<T: Real> Couples<T> {
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// The couple of all laws and of the user, linear in the normal force about the one that `normal` gives.
     #[inline(always)]
-    pub fn joined(&self, seen: &Kinematics<T>, normal: impl Fn(&Couple<T>) -> T) -> Couple<T> {
+    pub fn total_couple(&self, seen: &Kinematics<T>, normal: impl Fn(&Couple<T>) -> T) -> Couple<T> {
         let losses = self.at(seen);
-        let own = self.given.solved(
+        let own = self.given.solved_couple(
             seen,
             #[inline(always)]
             |own| normal(&losses.plus(own)),
@@ -367,7 +367,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     }
 
     /// These losses with another couple, per normal force.
-    pub fn with_more(&self, pressed: [T; 3]) -> Couples<T, Option<Couple<T>>> {
+    pub fn with_pressed_couple(&self, pressed: [T; 3]) -> Couples<T, Option<Couple<T>>> {
         let zero = pressed[0].splat(0.0);
         let given = self.given.couple().copied().unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
         let [a, b, c] = given.pressed;

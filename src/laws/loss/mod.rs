@@ -38,7 +38,7 @@ use crate::numbers::codes::coded;
 use core::ops::Add;
 pub(crate) use couples::{
     Couple, Couples, GRACE, Holds, Kinematics, NEAR, OwnCouple, SLACK, UnderCouple, Ways, going,
-    reversed_turns, rolling_growth, rounded, still_needs,
+    reversed_turns, rolling_couple_needed, rolling_growth, rounded,
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed, Unit};
 
@@ -153,7 +153,7 @@ macro_rules! laws {
                         power = power - m * w;
                     }
                 }
-                if let Some(own) = self.given.takes(seen, normal) {
+                if let Some(own) = self.given.power_taken(seen, normal) {
                     power = power + own;
                 }
                 power
@@ -221,7 +221,7 @@ impl Law {
 
     /// Whether the couple acts along the contour.
     #[inline(always)]
-    pub(crate) const fn is_along(self) -> bool {
+    pub(crate) const fn is_along_contour(self) -> bool {
         matches!(self.resists(), Resists::Contour)
     }
 
@@ -233,7 +233,7 @@ impl Law {
     /// Whether the couple grows with the speed of the contact along the rim.
     #[inline(always)]
     pub(crate) const fn is_soft(self) -> bool {
-        self.is_along() && !self.presses()
+        self.is_along_contour() && !self.presses()
     }
 
     /// Whether the couple acts about the axis of the rocking.
@@ -245,7 +245,7 @@ impl Law {
     /// Whether a face comes down by infinitely many turns under this law, if no law along the contour stops the contact.
     #[inline(always)]
     pub(crate) const fn turns_endlessly(self) -> bool {
-        self.presses() && !self.is_along()
+        self.presses() && !self.is_along_contour()
     }
 }
 
@@ -323,7 +323,7 @@ impl Losses {
     /// have.
     pub fn check_for_stone(&self) -> Result<(), Error> {
         self.check()?;
-        let Some((law, value)) = self.iter().find(|(law, _)| law.is_along()) else { return Ok(()) };
+        let Some((law, value)) = self.iter().find(|(law, _)| law.is_along_contour()) else { return Ok(()) };
         let name = law.parameter();
         Err(Error::OutOfRange {
             name,
@@ -351,7 +351,7 @@ impl Losses {
 
     /// Whether some law along the contour stops the contact there.
     pub(crate) fn stop_the_contour(&self) -> bool {
-        self.any(Law::is_along)
+        self.any(Law::is_along_contour)
     }
 
     fn any(&self, of: fn(Law) -> bool) -> bool {

@@ -209,12 +209,18 @@ impl<T: Real> StoneLaw<T> {
     /// The response to the friction force -strength N `pull`, where `pull` is horizontal.
     #[inline(always)]
     pub fn pulled(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3]) -> StoneResponse<T> {
-        self.twisted(at, w, pull, None)
+        self.response_to_pull_and_twist(at, w, pull, None)
     }
 
     /// The response to the friction force -strength N `pull` and to a couple `twist` N about the vertical.
     #[inline(always)]
-    fn twisted(&self, at: &Touching<T>, w: [T; 3], pull: [T; 3], twist: Option<T>) -> StoneResponse<T> {
+    fn response_to_pull_and_twist(
+        &self,
+        at: &Touching<T>,
+        w: [T; 3],
+        pull: [T; 3],
+        twist: Option<T>,
+    ) -> StoneResponse<T> {
         if at.holds.rolling {
             return self.stays(at, w, Some(pull), twist, !at.holds.drilling);
         }
@@ -321,7 +327,7 @@ impl<T: Real> StoneLaw<T> {
     #[inline(never)]
     fn on_patch(&self, at: &Touching<T>, w: [T; 3], u: [T; 3], patch: T) -> (StoneResponse<T>, T) {
         let [share, twist, size] = rubs(dot(u, u).sqrt(), dot(w, at.n), patch);
-        let to = self.twisted(at, w, u.map(|x| x * share), Some(self.strength * twist));
+        let to = self.response_to_pull_and_twist(at, w, u.map(|x| x * share), Some(self.strength * twist));
         (to, size / (size + self.soft))
     }
 

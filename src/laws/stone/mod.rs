@@ -43,7 +43,7 @@ pub struct Ellipsoid {
 /// Allowed lengths of the semi-axes.
 const AXES: (f64, f64) = (1e-30, 1e30);
 /// Allowed excess of a principal moment over the sum of the two others, from rounding.
-const ROUNDED: f64 = 1e-12;
+const MOMENT_ROUNDING: f64 = 1e-12;
 
 impl Ellipsoid {
     /// Makes an ellipsoid from its semi-axes, its tensor of inertia about the centre of mass, per mass, and the offset of
@@ -78,7 +78,7 @@ impl Ellipsoid {
         let i = inertia.map(|row| row.map(|x| x / square));
         let largest = i[0][0].max(i[1][1]).max(i[2][2]);
         for (a, b) in [(i[1][2], i[2][1]), (i[0][2], i[2][0]), (i[0][1], i[1][0])] {
-            let most = ROUNDED * largest.abs();
+            let most = MOMENT_ROUNDING * largest.abs();
             within(
                 "inertia",
                 (a - b).abs(),
@@ -94,7 +94,7 @@ impl Ellipsoid {
     fn checked(self, moments: [f64; 3]) -> Result<Self, Error> {
         let [a, b, c] = moments;
         let (least, most, square) = (a.min(b).min(c), a.max(b).max(c), self.unit * self.unit);
-        let real = least >= 1e-15 && most <= 1e15 && 2.0 * most <= (a + b + c) * (1.0 + ROUNDED);
+        let real = least >= 1e-15 && most <= 1e15 && 2.0 * most <= (a + b + c) * (1.0 + MOMENT_ROUNDING);
         if real { Ok(self) } else { Err(Error::Inertia { moments: moments.map(|x| x * square) }) }
     }
 

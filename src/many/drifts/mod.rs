@@ -34,11 +34,11 @@ pub fn stops(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    all(starts, out, threads, &mut go_on)
+    stops_compiled_once(starts, out, threads, &mut go_on)
 }
 
 /// The function [`stops`] without a generic parameter, so that it is compiled only once.
-fn all(
+fn stops_compiled_once(
     starts: &DriftStarts<'_>,
     out: DriftOutput<'_>,
     threads: usize,
@@ -122,11 +122,11 @@ pub fn ask(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    answers(starts, question, (of, x), out, threads, &mut go_on)
+    ask_compiled_once(starts, question, (of, x), out, threads, &mut go_on)
 }
 
 /// The function [`ask`] without a generic parameter, so that it is compiled only once.
-fn answers(
+fn ask_compiled_once(
     starts: &DriftStarts<'_>,
     question: Question,
     (of, x): (&[usize], &[f64]),

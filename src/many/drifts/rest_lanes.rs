@@ -26,9 +26,9 @@ type GaussNode = ([f64; 3], [f64; 3], usize);
 /// The nodes of the rules of 16 and 12 nodes, and those of 32 and 24 for drifts on which the first two disagree; each
 /// set also has the start as a node without a weight. They are not arrays, because the compiler would unroll a loop
 /// over an array of known length.
-static NODES: LazyLock<[Vec<GaussNode>; 2]> = LazyLock::new(|| [rules(16, 12), rules(32, 24)]);
+static NODES: LazyLock<[Vec<GaussNode>; 2]> = LazyLock::new(|| [gauss_rules(16, 12), gauss_rules(32, 24)]);
 
-fn rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
+fn gauss_rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
     let node = |w: f64, weight: f64, rule: usize| {
         let square = w * w;
         ([w, square, square * square], [weight, 2.0 * w * weight, 4.0 * square * w * weight], rule)
@@ -43,10 +43,10 @@ fn rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
 }
 
 /// Fraction of their terms below which n, m and E' count as small, and the lanes give no result.
-const SMALL: f64 = 0.02;
+const SMALL_TERM_SHARE: f64 = 0.02;
 
 /// Relative difference up to which the two rules agree; the fine rule then has 4/3 as many digits as the coarse one.
-const AGREE: f64 = 2e-11;
+const RULE_DIFFERENCE: f64 = 2e-11;
 
 /// The goal of a row: its end and inclination, the exponent p, and whether the time to the end is finite.
 #[derive(Debug, Clone, Copy)]
@@ -73,7 +73,7 @@ pub(crate) fn stops<const ROUND: bool>(
             level,
             simd => {
                 let mut found = [f64::NAN; LANES];
-                self::times::<_, ROUND>(zero(simd), &packed, nodes).spill(&mut found);
+                self::end_times::<_, ROUND>(zero(simd), &packed, nodes).spill(&mut found);
                 found
             },
             else [f64::NAN; LANES]
@@ -118,14 +118,14 @@ fn task(row: &DriftRow) -> Option<DriftGoal> {
     let (s, c) = theta.sin_cos();
     let lever = crate::laws::body::Rim { ell, a: 1.0 - rho, rho }.lever((s, c));
     if lever < 0.0 {
-        return Some(down(&row.losses, ell + rho));
+        return Some(goal_at_face(&row.losses, ell + rho));
     }
     let side = DriftGoal { end: End::Side, goal: most, power: 1.0, finite: true };
     (most < PI && theta < most).then_some(side)
 }
 
 /// The goal of a drift to the face, for a body with ell + rho = `height`.
-fn down(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
+fn goal_at_face(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
     let powers = || {
         let some = Law::ALL.iter().copied().filter(|law| coefficients[*law as usize] > 0.0);
         some.map(|law| law.powers().face[usize::from(height > 0.0)])
@@ -147,7 +147,7 @@ struct Packed {
     theta: [f64; LANES],
     goal: [f64; LANES],
     power: [f64; LANES],
-    agree: [f64; LANES],
+    allowed_difference: [f64; LANES],
 }
 
 impl Packed {
@@ -165,19 +165,19 @@ impl Packed {
             goal: task(&|t| t.goal, 0.0),
             power: task(&|t| t.power, 1.0),
             // The time of a drift that never stops is infinite, and the rules need not agree on it.
-            agree: task(&|t| if t.finite { AGREE } else { f64::MAX }, 0.0),
+            allowed_difference: task(&|t| if t.finite { RULE_DIFFERENCE } else { f64::MAX }, 0.0),
         }
     }
 }
 
 /// The times to the ends; NaN where the lanes have no result, and any number in lanes without a goal.
 #[inline(always)]
-fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
+fn end_times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
     let shape = Shape::of(packed.shape.each_ref().map(|x| like.load(x)));
     let losses = Couples::among(packed.laws.each_ref().map(|x| like.load(x)), packed.present, None);
     let branch = Branch { shape, excess: (shape.i1 - shape.i3) / shape.i3, losses };
     let (theta, goal) = (like.load(&packed.theta), like.load(&packed.goal));
-    let (power, agree) = (like.load(&packed.power), like.load(&packed.agree));
+    let (power, allowed_difference) = (like.load(&packed.power), like.load(&packed.allowed_difference));
     let number = |x: f64| theta.splat(x);
     let (zero, one, nan) = (number(0.0), number(1.0), number(f64::NAN));
     let pick = |[linear, square, fourth]: &[f64; 3]| {
@@ -190,20 +190,20 @@ fn times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[Ga
     let mut least = one;
     let mut sum = [zero; 2];
     for (w, weight, rule) in nodes {
-        let place = branch.plain(sin_cos(pick(w).mac(reach, goal)));
+        let place = branch.angle_in_doubles(sin_cos(pick(w).mac(reach, goal)));
         let local = branch.at::<ROUND>(place);
         sum[*rule] = pick(weight).mac(local.slope / local.power, sum[*rule]);
-        let clear = (way * local.slope - number(SMALL) * local.size).select_lt(zero, -one, one);
+        let clear = (way * local.slope - number(SMALL_TERM_SHARE) * local.size).select_lt(zero, -one, one);
         least = least.min(clear);
     }
     let angle = sin_cos(theta);
-    let start = branch.plain(angle);
+    let start = branch.angle_in_doubles(angle);
     let (lever, more) = (shape.rim.slope(angle), start.m - start.n);
-    let small = number(SMALL);
+    let small = number(SMALL_TERM_SHARE);
     let same = start.n * start.m;
     for rest in [same, start.n.abs() - small * lever, start.m.abs() - small * (start.n.abs() + more.abs())] {
         least = least.min(zero.select_lt(rest, one, -one));
     }
-    let off = (sum[0] - sum[1]).abs() - agree * sum[0].abs();
+    let off = (sum[0] - sum[1]).abs() - allowed_difference * sum[0].abs();
     off.select_lt(zero, zero.select_lt(least, (reach * sum[0]).abs(), nan), nan)
 }

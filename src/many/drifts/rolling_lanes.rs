@@ -14,7 +14,8 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::rk8;
 use crate::motions::drift::circular::{CirclePoint, Circular, Numbers};
 use crate::motions::drift::rolling::{
-    self, DRIFT_NUMBERS, FROM_ABOVE, MOST, Margins, Rolling, STEPS, before_tail, counted, error,
+    self, COUNTED_FROM_PI_ABOVE, DRIFT_NUMBERS, MOST_DRIFT_STEPS, Margins, Rolling, STEPS, counted, error,
+    until_tail,
 };
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
@@ -84,9 +85,9 @@ impl<T: SideBySide> Flows<T, 4, DRIFT_MARGINS> for DriftLanes<T> {
     #[inline(always)]
     fn margins(&self, y: &Numbers<T>, seen: &CirclePoint<T>) -> [T; DRIFT_MARGINS] {
         let [kappa, side, runs, drills] = self.margins.all(seen, counted(y[0], self.far));
-        let goes_on =
-            before_tail(y, &seen.rates, self.margins.last).min(self.margins.turns_on(y, &seen.rates));
-        [kappa, side, runs, drills, goes_on, y[0].splat(FROM_ABOVE) - y[0]]
+        let goes_on = until_tail(y, &seen.rates, self.margins.last)
+            .min(self.margins.until_turning_stops(y, &seen.rates));
+        [kappa, side, runs, drills, goes_on, y[0].splat(COUNTED_FROM_PI_ABOVE) - y[0]]
     }
 
     #[inline(always)]
@@ -136,8 +137,8 @@ struct Drifts<'a, 'b, 'c> {
     /// The index of the first start of the block.
     first: usize,
     out: &'a mut DriftOutput<'c>,
-    again: Vec<DriftTask>,
-    inside: [Option<DriftTask>; LANES],
+    unfinished: Vec<DriftTask>,
+    in_lanes_now: [Option<DriftTask>; LANES],
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
@@ -146,21 +147,21 @@ impl Drifts<'_, '_, '_> {
         loop {
             let i = *self.rows.next()?;
             match begin(&self.starts.row(i)) {
-                Ok((of, y)) => return Some(DriftTask { i, of, y, step: STEPS[0], left: MOST }),
+                Ok((of, y)) => return Some(DriftTask { i, of, y, step: STEPS[0], left: MOST_DRIFT_STEPS }),
                 Err(_) => self.out.refuse(i - self.first),
             }
         }
     }
 
     /// Computes a drift for some steps without lanes; a drift without an end after these waits for a lane again.
-    fn alone(&mut self, mut task: DriftTask, most: u64) {
+    fn compute_without_lanes(&mut self, mut task: DriftTask, most: u64) {
         let i = task.i - self.first;
         match task.of.follow(task.y, Some(task.step), most.min(task.left)) {
             Ok(flown) => match task.of.ended(&flown) {
                 Some((end, _)) => self.out.put(i, end),
                 None if task.left > most => {
                     (task.y, task.step, task.left) = (flown.y, flown.step, task.left - most);
-                    self.again.push(task);
+                    self.unfinished.push(task);
                 }
                 None => self.out.refuse(i),
             },
@@ -171,7 +172,7 @@ impl Drifts<'_, '_, '_> {
 
 impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
     fn enter(&mut self, k: usize) -> Option<Entry<4, DRIFT_MARGINS>> {
-        let task = self.again.pop().or_else(|| self.next())?;
+        let task = self.unfinished.pop().or_else(|| self.next())?;
         let row = self.starts.row(task.i);
         let [ell, i1, i3, _, fillet, _] = row.body;
         let mut numbers = [0.0; NUMBERS];
@@ -179,13 +180,13 @@ impl Waiting<4, DRIFT_MARGINS> for Drifts<'_, '_, '_> {
         numbers[4..4 + COUNT].copy_from_slice(&row.losses.coefficients);
         numbers[4 + COUNT..][..DRIFT_NUMBERS].copy_from_slice(&task.of.numbers());
         let (y, step, patience) = (task.y, task.step, task.left);
-        self.inside[k] = Some(task);
+        self.in_lanes_now[k] = Some(task);
         Some(Entry { y, step, numbers, tol: 1.0, until: f64::INFINITY, patience, made: 0 })
     }
 
     fn leave(&mut self, k: usize, _: LaneStatus, (y, step): (Numbers<f64>, f64), spent: Spent) {
-        if let Some(task) = self.inside[k].take() {
-            self.alone(DriftTask { y, step, left: spent.patience, ..task }, STEPS_ALONE);
+        if let Some(task) = self.in_lanes_now[k].take() {
+            self.compute_without_lanes(DriftTask { y, step, left: spent.patience, ..task }, STEPS_ALONE);
         }
     }
 
@@ -219,8 +220,8 @@ pub(crate) fn rolling_stops(
         }
     }
     for (kind, rows) in kinds {
-        let (inside, again) = ([const { None }; LANES], Vec::new());
-        let mut all = Drifts { starts, rows: rows.iter(), first, out, again, inside, go_on };
+        let (in_lanes_now, unfinished) = ([const { None }; LANES], Vec::new());
+        let mut all = Drifts { starts, rows: rows.iter(), first, out, unfinished, in_lanes_now, go_on };
         in_lanes!(
             level,
             simd => {
@@ -231,7 +232,7 @@ pub(crate) fn rolling_stops(
                 if !all.go_on() {
                     return;
                 }
-                all.alone(task, MOST);
+                all.compute_without_lanes(task, MOST_DRIFT_STEPS);
             }
         );
     }

@@ -42,7 +42,7 @@ pub fn areas<const SETS: usize>(
     let grid = Grid { theta, sums: &sums, first: asked.start, tangents: &tangents };
     let mut areas = room(bodies.len())?;
     areas.resize(bodies.len(), [[0.0; 8]; SETS]);
-    let parts = bodies.chunks(SURVEYED).zip(areas.chunks_mut(SURVEYED));
+    let parts = bodies.chunks(BODIES_PER_AREA_BLOCK).zip(areas.chunks_mut(BODIES_PER_AREA_BLOCK));
     let mut blocks = room(parts.len())?;
     blocks.extend(parts);
     let all = share(blocks, threads, &mut go_on, |(bodies, areas), _| {
@@ -65,10 +65,10 @@ struct Grid<'a, const SETS: usize> {
 
 /// Number of bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of
 /// a map.
-const SURVEYED: usize = 256;
+const BODIES_PER_AREA_BLOCK: usize = 256;
 
 /// Number of inclinations that are evaluated one by one on each side of a computed change of region.
-const AROUND: usize = 2;
+const POINTS_AROUND_CHANGE: usize = 2;
 
 /// The areas of one body; `asked` is a buffer for the ranges of evaluated inclinations.
 fn areas_of<const SETS: usize>(
@@ -107,8 +107,9 @@ fn areas_of<const SETS: usize>(
     changes.sort_unstable();
     let mut from = 0;
     asked.clear();
-    for change in changes.into_iter().chain([theta.len() + AROUND]) {
-        let near = change.saturating_sub(AROUND).max(from)..(change + AROUND).min(theta.len()).max(from);
+    for change in changes.into_iter().chain([theta.len() + POINTS_AROUND_CHANGE]) {
+        let near = change.saturating_sub(POINTS_AROUND_CHANGE).max(from)
+            ..(change + POINTS_AROUND_CHANGE).min(theta.len()).max(from);
         if from < near.start {
             asked.push((from, near.start));
         }

@@ -9,9 +9,9 @@ pub type Extrema = Option<[(f64, usize, usize); 2]>;
 /// The minimum of x and of -x in each lane, each with its place: the index of the group of lanes, counted row
 /// by row.
 #[derive(Clone, Copy)]
-pub(super) struct Best<T>([(T, T); 2]);
+pub(super) struct ExtremaInLanes<T>([(T, T); 2]);
 
-impl<T: SideBySide> Best<T> {
+impl<T: SideBySide> ExtremaInLanes<T> {
     #[inline(always)]
     pub fn nothing(like: T) -> Self {
         Self([(like.splat(f64::INFINITY), like.splat(0.0)); 2])
@@ -19,7 +19,7 @@ impl<T: SideBySide> Best<T> {
 
     /// Compares the numbers in lanes with the extrema so far; a NaN is ignored.
     #[inline(always)]
-    pub fn keep(&mut self, x: T, place: f64) {
+    pub fn include(&mut self, x: T, place: f64) {
         let place = x.splat(place);
         let [least, greatest] = &mut self.0;
         *least = (x.select_lt(least.0, x, least.0), x.select_lt(least.0, place, least.1));

@@ -20,7 +20,7 @@ use crate::numbers::{LANES, Narrow, in_lanes, level};
 use crate::states::stability::{AtRest, Column, Moments, Rounded, Stored};
 use block::Block;
 use fearless_simd::{Level, Simd, f64x8};
-use rates::Lean;
+use rates::RateNumbers;
 
 pub use areas::areas;
 pub use best::Extrema;
@@ -116,15 +116,15 @@ fn portrait_of(
     let only_rate = out.is_rate();
     let Some(columns) = body_columns(bodies, only_rate, go_on)? else { return Ok(false) };
     let (count, level) = (bodies.len(), level());
-    let mixed = columns.sharp.is_some() || columns.lean.is_some();
-    let (mut rest, mut blocks) = (out, room(tiles(theta, count).count())?);
-    for (_, theta, first, width) in tiles(theta, count) {
+    let mixed = columns.sharp.is_some() || columns.rate_numbers.is_some();
+    let (mut rest, mut blocks) = (out, room(blocks_of_map(theta, count).count())?);
+    for (_, theta, first, width) in blocks_of_map(theta, count) {
         let (block, after) = rest.split(theta.len() * width);
         blocks.push((theta, first / LANES, width, block));
         rest = after;
     }
     Ok(share(blocks, threads, go_on, |(theta, first, width, mut block), _| {
-        if let (Some(columns), [Some(out), ..]) = (&columns.lean, &mut block.numbers) {
+        if let (Some(columns), [Some(out), ..]) = (&columns.rate_numbers, &mut block.numbers) {
             let here = &columns[first..][..width.div_ceil(LANES)];
             rates::rows_at(level, theta, here, width, out);
         }
@@ -141,7 +141,7 @@ fn portrait_of(
 /// Many bodies in columns of eight: those on sharp rims (with all their numbers, or only those of the rate) and those
 /// on rounded rims. A body is NaN in the columns of the other kind.
 pub(super) struct Columns {
-    pub lean: Option<Vec<Lean>>,
+    pub rate_numbers: Option<Vec<RateNumbers>>,
     pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
@@ -155,22 +155,22 @@ fn body_columns(
     spare()?;
     let rounded = bodies.iter().flatten().any(|body| !body.is_plain());
     let sharp = !rounded || bodies.iter().flatten().any(Body::is_plain);
-    let mut columns = Columns { lean: None, sharp: None, rounded: None };
+    let mut columns = Columns { rate_numbers: None, sharp: None, rounded: None };
     if sharp && only_rate && level().is_some() {
-        let Some(found) = gathered_by(bodies, go_on, Lean::gather)? else { return Ok(None) };
-        columns.lean = Some(found);
+        let Some(found) = gather_with(bodies, go_on, RateNumbers::gather)? else { return Ok(None) };
+        columns.rate_numbers = Some(found);
     } else if sharp {
-        let Some(found) = gathered_by(bodies, go_on, Column::sharp)? else { return Ok(None) };
+        let Some(found) = gather_with(bodies, go_on, Column::sharp)? else { return Ok(None) };
         columns.sharp = Some(found);
     }
     if rounded {
-        let Some(found) = gathered_by(bodies, go_on, Column::rounded)? else { return Ok(None) };
+        let Some(found) = gather_with(bodies, go_on, Column::rounded)? else { return Ok(None) };
         columns.rounded = Some(found);
     }
     Ok(Some(columns))
 }
 
-fn gathered_by<C>(
+fn gather_with<C>(
     bodies: &[Option<Body>],
     go_on: &mut dyn FnMut(f64) -> bool,
     gather: impl Fn(&[Option<Body>]) -> C,
@@ -187,7 +187,7 @@ fn gathered_by<C>(
 
 /// The blocks of a map, each with its first row, its inclinations, its first body and its number of bodies. A block has
 /// several whole rows or, on a wide map, a part of one row.
-fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
+fn blocks_of_map(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], usize, usize)> {
     let (rows, part) = ((POINTS_PER_BLOCK / width.max(1)).max(1), width.clamp(1, POINTS_PER_BLOCK));
     theta.chunks(rows).enumerate().flat_map(move |(i, theta)| {
         (0..width).step_by(part).map(move |first| (i * rows, theta, first, part.min(width - first)))
@@ -195,11 +195,11 @@ fn tiles(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[f64], us
 }
 
 /// Bytes of body numbers that stay in the nearest cache while row after row is filled.
-const NEAR: usize = 1 << 14;
+const CACHE_BYTES: usize = 1 << 14;
 
 /// The columns in groups that stay in the nearest cache, each with the index of its first body.
-fn near<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
-    let group = NEAR / size_of::<C>();
+fn groups_in_cache<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
+    let group = CACHE_BYTES / size_of::<C>();
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
@@ -229,7 +229,7 @@ fn fill<T: Narrow, C: Stored>(
     gaps: bool,
 ) {
     let wanted = block.wanted();
-    for (from, columns) in near(&columns[..width.div_ceil(LANES)]) {
+    for (from, columns) in groups_in_cache(&columns[..width.div_ceil(LANES)]) {
         let count = (columns.len() * LANES).min(width - from);
         for (row, &theta) in theta.iter().enumerate() {
             let theta = like.splat(theta);
@@ -304,10 +304,10 @@ fn scatter_lanes<S: Simd>(like: f64x8<S>, columns: [&[f64]; 4], count: usize, mu
 fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Block<'_>) {
     let [theta, ell, bore, fillet] = columns;
     let fixed = [ell, bore, fillet].iter().all(|x| x.len() == 1);
-    let mut of = tubes(like, [ell, bore, fillet], 0);
+    let mut of = load_tubes(like, [ell, bore, fillet], 0);
     for start in (0..count).step_by(T::COUNT) {
         if !fixed {
-            of = tubes(like, [ell, bore, fillet], start);
+            of = load_tubes(like, [ell, bore, fillet], start);
         }
         let found = of.found(load(like, theta, start), block.wanted());
         block.put(start, T::COUNT.min(count - start), &found, false);
@@ -317,7 +317,7 @@ fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Bl
 /// The tubes from `start` on. Those with rounded edges have their own function, because moments with twice
 /// the digits are much code.
 #[inline(always)]
-fn tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
+fn load_tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
     if of[2] == [0.0] {
         return Column::tube(load(like, of[0], start), load(like, of[1], start));
     }

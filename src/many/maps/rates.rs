@@ -1,27 +1,28 @@
 //! Maps of the rate alone, which needs three numbers of a body on a sharp rim.
 
-use super::best::{Best, Extrema};
+use super::best::{Extrema, ExtremaInLanes};
 use super::block::Slot;
-use super::near;
+use super::groups_in_cache;
 use crate::laws::body::{Body, Wall, tube_or_nan};
 use crate::numbers::side_by_side::{SideBySide, load, zero};
 use crate::numbers::{LANES, Pair, Real, Short, Sum, in_lanes};
 use crate::states::steady::{
-    TINY, may_pass, may_pass_between, quick_angle, rare_rate, rate_lanes, single_rate, square_lanes, widened,
+    TINY, bounds_beyond_error, may_exceed, may_exceed_between, quick_angle, rare_rate, rate_lanes,
+    single_rate, square_lanes,
 };
 use core::f64::consts::FRAC_PI_2;
 use fearless_simd::{Level, Simd, SimdBase, f32x16, f64x8};
 
 /// The message of an unreachable branch: without SIMD lanes there are no columns for the rate alone.
-const ALONE: &str = "columns of the rate need lanes";
+const LANES_ARE_NEEDED: &str = "columns of the rate need lanes";
 
 /// The numbers of eight bodies that enter the rate: ell, and the inertia excess as a sum.
-pub(crate) struct Lean {
+pub(crate) struct RateNumbers {
     ell: [f64; LANES],
     excess: Sum<[f64; LANES]>,
 }
 
-impl Lean {
+impl RateNumbers {
     /// The numbers of at most eight bodies; a lane without a body, or with one that is not plain, is NaN.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
         let none = [f64::NAN; LANES];
@@ -54,10 +55,11 @@ fn single_of<S: Simd>(
     like: f64x8<S>,
     theta: Pair<f64x8<S>>,
     angle: &Short<Pair<f64x8<S>>>,
-    of: [&Lean; 2],
+    of: [&RateNumbers; 2],
 ) -> f32x16<S> {
     let [one, other] = of;
-    let (ell, excess) = (both(like, [&one.ell, &other.ell]), both(like, [&one.excess.hi, &other.excess.hi]));
+    let (ell, excess) =
+        (pair_of(like, [&one.ell, &other.ell]), pair_of(like, [&one.excess.hi, &other.excess.hi]));
     single_rate(
         angle,
         ell,
@@ -65,30 +67,36 @@ fn single_of<S: Simd>(
         // The low part of the excess is loaded here, because only this closure needs it.
         #[inline(always)]
         || {
-            let lo = both(like, [&one.excess.lo, &other.excess.lo]);
+            let lo = pair_of(like, [&one.excess.lo, &other.excess.lo]);
             rare_rate(theta, ell, Sum { hi: excess, lo })
         },
     )
 }
 
 #[inline(always)]
-fn both<S: Simd>(like: f64x8<S>, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8<S>> {
+fn pair_of<S: Simd>(like: f64x8<S>, [one, other]: [&[f64; LANES]; 2]) -> Pair<f64x8<S>> {
     Pair(like.load(one), like.load(other))
 }
 
 pub(super) fn rows_at(
     level: Option<Level>,
     theta: &[f64],
-    columns: &[Lean],
+    columns: &[RateNumbers],
     width: usize,
     out: &mut Slot<'_>,
 ) {
-    in_lanes!(level, simd => rate_rows(zero(simd), theta, columns, width, out), else unreachable!("{ALONE}"));
+    in_lanes!(level, simd => rate_rows(zero(simd), theta, columns, width, out), else unreachable!("{LANES_ARE_NEEDED}"));
 }
 
 #[inline(always)]
-fn rate_rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize, out: &mut Slot<'_>) {
-    for (from, columns) in near(columns) {
+fn rate_rows<S: Simd>(
+    like: f64x8<S>,
+    theta: &[f64],
+    columns: &[RateNumbers],
+    width: usize,
+    out: &mut Slot<'_>,
+) {
+    for (from, columns) in groups_in_cache(columns) {
         let part = from..(from + columns.len() * LANES).min(width);
         for (row, &theta) in theta.iter().enumerate() {
             let theta = like.splat(theta);
@@ -125,22 +133,28 @@ fn rate_rows<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: us
 
 /// The minimum and the maximum of the squared rate in some rows of a map. Points that can be neither are excluded
 /// without a division, and many rows at once.
-pub(super) fn extremes_at(level: Option<Level>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
-    in_lanes!(level, simd => rate_extremes(zero(simd), theta, columns, width), else unreachable!("{ALONE}"))
+pub(super) fn extremes_at(
+    level: Option<Level>,
+    theta: &[f64],
+    columns: &[RateNumbers],
+    width: usize,
+) -> Extrema {
+    in_lanes!(level, simd => rate_extremes(zero(simd), theta, columns, width), else unreachable!("{LANES_ARE_NEEDED}"))
 }
 
 /// Number of rows whose columns are examined together: a column is skipped if no inclination between the
 /// first and the last row can be extreme.
-const RUN: usize = 16;
+const ROWS_PER_RUN: usize = 16;
 
 #[inline(always)]
-fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width: usize) -> Extrema {
-    let mut best = Best::nothing(like);
+fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[RateNumbers], width: usize) -> Extrema {
+    let mut best = ExtremaInLanes::nothing(like);
     let mut bounds = [like.splat(f64::INFINITY), like.splat(f64::NEG_INFINITY)];
     let mut passing = Vec::with_capacity(columns.len());
     // The first row has no bounds yet; its extrema are the first bounds for the other rows.
     let (first, rest) = theta.split_at(theta.len().min(1));
-    let runs = rest.chunks(RUN).scan(1, |row, run| Some((core::mem::replace(row, *row + run.len()), run)));
+    let runs =
+        rest.chunks(ROWS_PER_RUN).scan(1, |row, run| Some((core::mem::replace(row, *row + run.len()), run)));
     for (before, run) in core::iter::once((0, first)).chain(runs) {
         let (low, high) =
             run.iter().fold((f64::INFINITY, 0f64), |(low, high), x| (low.min(*x), high.max(*x)));
@@ -149,7 +163,7 @@ fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width
         passing.clear();
         for (chunk, column) in columns.iter().enumerate() {
             let (ell, excess) = column.load(like);
-            if !inside || may_pass_between([&ends[0], &ends[1]], ell, excess.hi, bounds) {
+            if !inside || may_exceed_between([&ends[0], &ends[1]], ell, excess.hi, bounds) {
                 passing.push(chunk);
             }
         }
@@ -158,10 +172,10 @@ fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[Lean], width
             let angle = quick_angle(theta);
             for &chunk in &passing {
                 let (ell, excess) = columns[chunk].load(like);
-                if may_pass(&angle, ell, excess.hi, bounds) {
+                if may_exceed(&angle, ell, excess.hi, bounds) {
                     let square = square_lanes(theta, &angle, ell, excess);
-                    best.keep(square, (row * columns.len() + chunk) as f64);
-                    let [least, greatest] = widened(best.ends());
+                    best.include(square, (row * columns.len() + chunk) as f64);
+                    let [least, greatest] = bounds_beyond_error(best.ends());
                     bounds = [like.splat(least), like.splat(greatest)];
                 }
             }
@@ -183,7 +197,7 @@ pub(super) fn scatter<S: Simd>(like: f64x8<S>, columns: [&[f64]; 3], count: usiz
         Slot::Double(out) if bore.len() == 1 && theta.len() == count => {
             let (out, bore) = (out.as_chunks_mut::<LANES>().0, like.splat(bore[0]));
             let wall = Wall::of(bore);
-            let both = groups(theta).iter().zip(&mut *out);
+            let both = groups_of_eight(theta).iter().zip(&mut *out);
             if ell.len() == 1 {
                 let ell = like.splat(ell[0]);
                 let (ell, excess) = (tube_or_nan(ell, bore), wall.excess(ell));
@@ -192,7 +206,7 @@ pub(super) fn scatter<S: Simd>(like: f64x8<S>, columns: [&[f64]; 3], count: usiz
                     *out = *rate_lanes(theta, &quick_angle(theta), ell, excess);
                 }
             } else {
-                for ((theta, out), ell) in both.zip(groups(ell)) {
+                for ((theta, out), ell) in both.zip(groups_of_eight(ell)) {
                     let (theta, ell) = (like.load(theta), like.load(ell));
                     *out = *rate_lanes(theta, &quick_angle(theta), tube_or_nan(ell, bore), wall.excess(ell));
                 }
@@ -227,6 +241,6 @@ fn scatter_single<S: Simd>(pair: Pair<f64x8<S>>, [theta, ell, bore]: [&[f64]; 3]
 }
 
 /// The numbers in groups of eight, without an incomplete last group.
-fn groups(x: &[f64]) -> &[[f64; LANES]] {
+fn groups_of_eight(x: &[f64]) -> &[[f64; LANES]] {
     x.as_chunks().0
 }

@@ -1,9 +1,9 @@
 //! The extrema of the quantities of a map, kept block by block, so that no array as large as a map is ever
 //! stored.
 
-use super::best::{Best, Extrema};
-use super::rates::{Lean, extremes_at};
-use super::{body_columns, tiles};
+use super::best::{Extrema, ExtremaInLanes};
+use super::rates::{RateNumbers, extremes_at};
+use super::{blocks_of_map, body_columns};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::many::threads::share;
@@ -23,11 +23,11 @@ pub fn extrema(
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    found(theta, bodies, wanted, threads, &mut go_on)
+    extrema_compiled_once(theta, bodies, wanted, threads, &mut go_on)
 }
 
 /// The work of [`extrema`], compiled once for all callers.
-fn found(
+fn extrema_compiled_once(
     theta: &[f64],
     bodies: &[Option<Body>],
     wanted: [bool; 4],
@@ -38,8 +38,8 @@ fn found(
     let Some(columns) = body_columns(bodies, only_rate, go_on)? else { return Ok(None) };
     let mut whole = [None; 4];
     let level = crate::numbers::level();
-    if let Some(columns) = &columns.lean {
-        let block = |theta: &[f64], columns: &[Lean], width: usize| {
+    if let Some(columns) = &columns.rate_numbers {
+        let block = |theta: &[f64], columns: &[RateNumbers], width: usize| {
             [extremes_at(level, theta, columns, width), None, None, None]
         };
         let Some(found) = extrema_of(theta, bodies.len(), columns, threads, go_on, block)? else {
@@ -58,14 +58,14 @@ fn found(
             return Ok(None);
         };
         for (whole, part) in whole.iter_mut().zip(found) {
-            *whole = better(*whole, part);
+            *whole = outer_extrema(*whole, part);
         }
     }
     Ok(Some(whole))
 }
 
 /// The smaller minimum and the larger maximum; of equal values the first in row-major order.
-fn better(a: Extrema, b: Extrema) -> Extrema {
+fn outer_extrema(a: Extrema, b: Extrema) -> Extrema {
     let place = |end: &(f64, usize, usize)| (end.1, end.2);
     match (a, b) {
         (Some([low, high]), Some([lower, higher])) => {
@@ -90,8 +90,8 @@ fn all_extrema_of(
     extrema_of(theta, bodies, columns, threads, go_on, |theta, columns, width| {
         in_lanes!(
             level,
-            simd => extremes(zero(simd), theta, columns, width, wanted),
-            else extremes(0.0, theta, columns, width, wanted)
+            simd => extrema_of_block(zero(simd), theta, columns, width, wanted),
+            else extrema_of_block(0.0, theta, columns, width, wanted)
         )
     })
 }
@@ -105,10 +105,10 @@ fn extrema_of<C: Sync>(
     go_on: &mut dyn FnMut(f64) -> bool,
     block: impl Fn(&[f64], &[C], usize) -> [Extrema; 4] + Sync,
 ) -> Result<Option<[Extrema; 4]>, Error> {
-    let count = tiles(theta, bodies).count();
+    let count = blocks_of_map(theta, bodies).count();
     let (mut found, mut blocks) = (room(count)?, room(count)?);
     found.resize(count, [None; 4]);
-    blocks.extend(tiles(theta, bodies).zip(&mut found));
+    blocks.extend(blocks_of_map(theta, bodies).zip(&mut found));
     let all = share(blocks, threads, go_on, |((row, theta, first, width), found), _| {
         let columns = &columns[first / LANES..(first + width).div_ceil(LANES)];
         *found = block(theta, columns, width);
@@ -120,7 +120,7 @@ fn extrema_of<C: Sync>(
         let mut whole = [None; 4];
         for block in found {
             for (sum, part) in whole.iter_mut().zip(block) {
-                *sum = better(*sum, part);
+                *sum = outer_extrema(*sum, part);
             }
         }
         whole
@@ -128,14 +128,14 @@ fn extrema_of<C: Sync>(
 }
 
 #[inline(always)]
-fn extremes<T: Narrow, C: Stored>(
+fn extrema_of_block<T: Narrow, C: Stored>(
     like: T,
     theta: &[f64],
     columns: &[C],
     width: usize,
     wanted: [bool; 4],
 ) -> [Extrema; 4] {
-    let mut best = [Best::nothing(like); 4];
+    let mut best = [ExtremaInLanes::nothing(like); 4];
     // The extrema of the rate are found from its square, without a root at every point.
     let [squared, rolling, smooth, energy] = wanted;
     let asked = Wanted { squared, rolling, smooth, energy, ..Wanted::default() };
@@ -148,7 +148,7 @@ fn extremes<T: Narrow, C: Stored>(
             let found = columns[first / LANES].load(like, first % LANES).found(theta, &angle, asked);
             for (i, x) in [found.rate, found.rolling, found.smooth, found.energy].into_iter().enumerate() {
                 if wanted[i] {
-                    best[i].keep(x, (row * chunks + chunk) as f64);
+                    best[i].include(x, (row * chunks + chunk) as f64);
                 }
             }
         }

@@ -4,21 +4,21 @@ use super::columns::TimedOutput;
 use super::{Job, MotionBlock, MotionOutput, MotionStarts, RowBlock, blocks};
 use crate::error::{Error, spare};
 use crate::laws::custom::Custom;
-use crate::many::threads::share_aside;
+use crate::many::threads::share_with_large_stacks;
 use crate::methods::beat::Beat;
 use crate::motions::Start;
 use crate::motions::custom::{check_options, followed};
 use std::sync::OnceLock;
 
 /// Number of such motions in a block.
-const CUSTOMS: usize = 16;
+const CUSTOM_MOTIONS_PER_BLOCK: usize = 16;
 
 /// The user-defined laws of many motions.
 pub(crate) enum CustomLaws<'a> {
     /// Laws for the calling thread alone, such as functions of Python.
-    Here(Custom<'a>),
+    ThisThread(Custom<'a>),
     /// Laws for any thread.
-    Anywhere(&'a (dyn Fn() -> Custom<'a> + Sync)),
+    AnyThread(&'a (dyn Fn() -> Custom<'a> + Sync)),
 }
 
 /// Computes all motions under these laws, as [`roll_among`](super::roll_among) does without them. The errors are those
@@ -35,33 +35,39 @@ pub(crate) fn roll_custom(
     assert!(out.fits(count, times), "an array does not fit");
     job.check(true, starts.coefficients.is_some())?;
     let custom = match laws {
-        CustomLaws::Here(custom) => *custom,
-        CustomLaws::Anywhere(of) => of(),
+        CustomLaws::ThisThread(custom) => *custom,
+        CustomLaws::AnyThread(of) => of(),
     };
     check_options(&job.ask, &custom)?;
     spare()?;
     let mut out = TimedOutput { out, times };
     match laws {
-        CustomLaws::Here(custom) => {
+        CustomLaws::ThisThread(custom) => {
             let (mut beat, mut all) = (Beat::new(), true);
             let work = MotionBlock { starts, job, first: 0, since: None };
             let mut still = |done: usize| {
                 all = all && (!beat.is_due() || go_on(done as f64 / count as f64));
                 all
             };
-            work.customs(count, &mut out.out, *custom, &mut still)?;
+            work.roll_block_with_custom_laws(count, &mut out.out, *custom, &mut still)?;
             Ok(all)
         }
-        CustomLaws::Anywhere(of) => {
+        CustomLaws::AnyThread(of) => {
             let failed = OnceLock::new();
             let mut go_on = |share| failed.get().is_none() && go_on(share);
-            let blocks = blocks(out, count, CUSTOMS)?;
-            let all = share_aside(blocks, threads, &mut go_on, |RowBlock { first, count, out }, still| {
-                let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
-                if let Err(e) = work.customs(count, &mut out, of(), &mut |_| still()) {
-                    let _ = failed.set(e);
-                }
-            });
+            let blocks = blocks(out, count, CUSTOM_MOTIONS_PER_BLOCK)?;
+            let all = share_with_large_stacks(
+                blocks,
+                threads,
+                &mut go_on,
+                |RowBlock { first, count, out }, still| {
+                    let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
+                    if let Err(e) = work.roll_block_with_custom_laws(count, &mut out, of(), &mut |_| still())
+                    {
+                        let _ = failed.set(e);
+                    }
+                },
+            );
             failed.into_inner().map_or(Ok(all), Err)
         }
     }
@@ -69,7 +75,7 @@ pub(crate) fn roll_custom(
 
 impl MotionBlock<'_> {
     /// Computes the motions of the block; `go_on` is called with the number of motions that are done.
-    fn customs(
+    fn roll_block_with_custom_laws(
         &self,
         count: usize,
         out: &mut MotionOutput<'_>,
@@ -99,7 +105,7 @@ impl MotionBlock<'_> {
             if custom.has_failed() || !go_on(k) {
                 return Ok(());
             }
-            self.puts(out, k, found)?;
+            self.put_result(out, k, found)?;
         }
         Ok(())
     }

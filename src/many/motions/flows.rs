@@ -10,9 +10,9 @@
 //! SIMD width. [`motion::path`](crate::motions::body) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
-use super::rolls::can_roll_among;
+use super::rolls::can_roll_in_lanes;
 use super::slip_lanes::Slips;
-use super::walks::{Among, Walks, lanes};
+use super::walks::{FlowKind, Walks, lanes};
 use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room, spare_for};
 use crate::laws::body::Body;
@@ -109,26 +109,28 @@ impl<'a> MotionBlock<'a> {
                 }
                 let walk = BodyWalk::<N>::of_body(&body, &ask, self.job.tol, times, &starts.start(i));
                 let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
-                    found.knows_itself(self.job.tol);
+                    found.complete_known_errors(self.job.tol);
                     if !self.job.errors {
                         found.motion.error = f64::NAN;
                     }
                     (body, found)
                 });
-                self.puts(out, k, found)?;
+                self.put_result(out, k, found)?;
                 continue;
             }
             walked.push(k);
             for &tol in tols {
                 let walk = body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i)));
-                all.walks.push(walk.map(|walk| walk.rolling_among(wide && can_roll_among(&ask.table))));
+                all.walks.push(
+                    walk.map(|walk| walk.leaving_rolling_to_caller(wide && can_roll_in_lanes(&ask.table))),
+                );
             }
         }
         for i in 0..all.walks.len() {
             if !go_on() {
                 return Ok(());
             }
-            all.lead(i, Ok(Pause::No), go_on);
+            all.continue_walk(i, Ok(Pause::No), go_on);
         }
         loop {
             if !go_on() {
@@ -138,7 +140,7 @@ impl<'a> MotionBlock<'a> {
                 if all.rolls.is_empty() {
                     break;
                 }
-                self.roll_among(level, &mut all, go_on)?;
+                self.roll_phases_in_lanes(level, &mut all, go_on)?;
                 continue;
             };
             match level {
@@ -164,13 +166,13 @@ impl<'a> MotionBlock<'a> {
                 }
                 Ok((self.starts.body(self.first + i)?, found))
             });
-            self.puts(out, i, both)?;
+            self.put_result(out, i, both)?;
         }
         Ok(())
     }
 
     /// Writes the results of motion `i` of the block, or why it has none; the memory may not suffice for any.
-    pub(super) fn puts(
+    pub(super) fn put_result(
         &self,
         out: &mut MotionOutput<'_>,
         i: usize,
@@ -195,8 +197,8 @@ impl<'a> MotionBlock<'a> {
         go_on: &mut dyn FnMut() -> bool,
     ) {
         match all.queues[queue].0 {
-            Among::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
-            Among::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
+            FlowKind::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
+            FlowKind::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
         }
     }
 }

@@ -1,27 +1,27 @@
 //! Motions in SIMD lanes: the choice of the series for each motion, and the results from the series.
 
-use super::ends::{Marches, can};
-use super::rows::{StartLanes, in_a_row};
+use super::ends::{Marches, can_march};
+use super::rows::{StartLanes, first_of_consecutive};
 use super::steps::FixedSteps;
-use super::swung::Swung;
+use super::swung::SwingsInLanes;
 use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::laws::contact::Contact;
 use crate::laws::contact::reduced::Reduced;
 use crate::motions::exact::lanes::{Grip, Midpoints, Swings, width};
 use crate::numbers::side_by_side::{MOST, SideBySide, apart, zero};
-use crate::numbers::{Pair, larger};
+use crate::numbers::{Pair, larger_or_nan};
 use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
 /// The midpoints that the series need.
-struct Tools {
+struct SeriesMidpoints {
     short: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
     long: [Midpoints<MOST_PARTS>; 3],
 }
 
 /// The midpoints are computed once, because they contain thousands of cosines.
-static TOOLS: LazyLock<Tools> = LazyLock::new(|| Tools {
+static SERIES_MIDPOINTS: LazyLock<SeriesMidpoints> = LazyLock::new(|| SeriesMidpoints {
     short: (Midpoints::new(6), Midpoints::new(8), Midpoints::new(16)),
     long: [28, 40, MOST_PARTS].map(Midpoints::new),
 });
@@ -31,11 +31,11 @@ const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
 const MOST_PARTS: usize = 56;
 
 /// Number of series that are tried for a motion that may end: a march to its end is faster than the longer series.
-const SHORT: usize = 3;
+const SHORT_SERIES: usize = 3;
 
 /// The index in `TERMS` of the shortest series that may have an error below `tol` for a swing of this width
 /// (the larger |y| of its ends); None for a swing that is too wide for one series.
-fn room(width: f64, tol: f64) -> Option<usize> {
+fn index_of_series(width: f64, tol: f64) -> Option<usize> {
     TERMS.iter().position(|terms| 1e4 * width.powi(*terms as i32 - 1) < tol)
 }
 
@@ -81,7 +81,7 @@ impl MotionBlock<'_> {
         };
         let mut left = Vec::new();
         for (some, round) in [(&sharp, false), (&round, true)] {
-            let rest = self.answered(like, some, round, out, go_on);
+            let rest = self.roll_by_series(like, some, round, out, go_on);
             left.extend(Marches { work: self, round }.run(like, &rest, out, go_on));
         }
         left.sort_unstable();
@@ -90,7 +90,7 @@ impl MotionBlock<'_> {
 
     /// Computes motions by one series each, all on sharp rims or all on rounded ones; returns the other
     /// motions.
-    pub(super) fn answered<T: SideBySide>(
+    pub(super) fn roll_by_series<T: SideBySide>(
         &self,
         like: T,
         all: &[usize],
@@ -98,7 +98,7 @@ impl MotionBlock<'_> {
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
-        let (mut kernels, mut left) = self.sorted(like, all, round);
+        let (mut kernels, mut left) = self.sort_by_series(like, all, round);
         let contact = self.job.contact();
         macro_rules! answer {
             ($N:literal, $K:literal, $ROUND:literal, $index:expr, $points:expr) => {{
@@ -114,23 +114,26 @@ impl MotionBlock<'_> {
                         #[inline(always)]
                         || {
                             let law = Reduced::of(contact, &row.shape, $ROUND);
-                            Swings::<T, $N, $K>::near($points, TERMS[$index], law, row.state)
+                            Swings::<T, $N, $K>::about_start($points, TERMS[$index], law, row.state)
                         },
                     );
-                    let next =
-                        if $index + 1 < self.series(round) { kernels.get_mut($index + 1) } else { None };
-                    self.take(&(swings, $points), &row, some, (next, &mut left), out, go_on);
+                    let next = if $index + 1 < self.series_tried(round) {
+                        kernels.get_mut($index + 1)
+                    } else {
+                        None
+                    };
+                    self.write_precise_motions(&(swings, $points), &row, some, (next, &mut left), out, go_on);
                 }
             }};
         }
-        let Tools { short, long } = &*TOOLS;
+        let SeriesMidpoints { short, long } = &*SERIES_MIDPOINTS;
         macro_rules! answer_all {
             ($ROUND:literal) => {
                 answer!(8, 6, $ROUND, 0, &short.0);
                 answer!(12, 8, $ROUND, 1, &short.1);
                 answer!(20, 16, $ROUND, 2, &short.2);
                 for (k, points) in long.iter().enumerate() {
-                    answer!(72, 56, $ROUND, SHORT + k, points);
+                    answer!(72, 56, $ROUND, SHORT_SERIES + k, points);
                 }
             };
         }
@@ -143,13 +146,13 @@ impl MotionBlock<'_> {
     }
 
     /// The number of series in `TERMS` that are tried for the motions of this job.
-    fn series(&self, round: bool) -> usize {
-        if !self.job.ask.beyond && can(self, round) { SHORT } else { TERMS.len() }
+    fn series_tried(&self, round: bool) -> usize {
+        if !self.job.ask.beyond && can_march(self, round) { SHORT_SERIES } else { TERMS.len() }
     }
 
     /// The motions sorted by the shortest series that may be precise enough, and the motions that are too
     /// wide for any.
-    fn sorted<T: SideBySide>(
+    fn sort_by_series<T: SideBySide>(
         &self,
         like: T,
         all: &[usize],
@@ -162,11 +165,18 @@ impl MotionBlock<'_> {
             let (widths, fit) = apart(
                 like,
                 #[inline(always)]
-                || (width(&Reduced::of(self.job.contact(), &row.shape, round), row.state), row.fits()),
+                || {
+                    (
+                        width(&Reduced::of(self.job.contact(), &row.shape, round), row.state),
+                        row.in_range_mask(),
+                    )
+                },
             );
             for (k, i) in some.iter().enumerate() {
                 let fits = fit.lane(k) > 0.0;
-                match room(widths.lane(k), self.job.tol).filter(|room| fits && *room < self.series(round)) {
+                match index_of_series(widths.lane(k), self.job.tol)
+                    .filter(|room| fits && *room < self.series_tried(round))
+                {
                     Some(room) => kernels[room].push(*i),
                     None => refused.push(*i),
                 }
@@ -178,9 +188,9 @@ impl MotionBlock<'_> {
     /// Writes the results of the motions for which the series is precise enough. A motion with too large an error goes
     /// to `next`, the motions of the next longer series, if there is one. The other motions, which may leave the model,
     /// go to `left`, since a longer series does not decide whether they do.
-    fn take<T: SideBySide>(
+    fn write_precise_motions<T: SideBySide>(
         &self,
-        swings: &dyn Swung<T>,
+        swings: &dyn SwingsInLanes<T>,
         row: &StartLanes<T>,
         some: &[usize],
         (mut next, left): (Option<&mut Vec<usize>>, &mut Vec<usize>),
@@ -189,9 +199,11 @@ impl MotionBlock<'_> {
     ) {
         let Some(mut worst) = self.write_states(swings, row, some, out, go_on) else { return };
         self.write_periods(swings, some, &mut worst, out);
-        let sure = self.sure(swings, row, some, &worst[..some.len()], out);
+        let sure = self.write_other_summaries(swings, row, some, &worst[..some.len()], out);
         let answer = if self.job.step().is_some() { Answer::Step } else { Answer::Lanes };
-        if let Some(first) = in_a_row(some).filter(|_| sure[..some.len()].iter().all(|sure| *sure)) {
+        if let Some(first) =
+            first_of_consecutive(some).filter(|_| sure[..some.len()].iter().all(|sure| *sure))
+        {
             let here = first..first + some.len();
             out.error[here.clone()].copy_from_slice(&worst[..some.len()]);
             out.method[here.clone()].fill(answer as u8);
@@ -211,7 +223,7 @@ impl MotionBlock<'_> {
 
     /// The time `t` since the beginning of each of these motions, or 0 if it is before that.
     #[inline(always)]
-    fn after<T: SideBySide>(&self, like: T, some: &[usize], t: f64) -> T {
+    fn times_since_start<T: SideBySide>(&self, like: T, some: &[usize], t: f64) -> T {
         if self.since.is_none() {
             return like.splat(t);
         }
@@ -224,14 +236,14 @@ impl MotionBlock<'_> {
     /// lane, NaN where the series is not precise enough; None if `go_on` returns false.
     fn write_states<T: SideBySide>(
         &self,
-        swings: &dyn Swung<T>,
+        swings: &dyn SwingsInLanes<T>,
         row: &StartLanes<T>,
         some: &[usize],
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Option<[f64; MOST]> {
         let (job, like, times) = (self.job, row.theta_end, self.job.times.len());
-        let row_at = in_a_row(some);
+        let row_at = first_of_consecutive(some);
         let mut walk = job.step().map(|step| {
             apart(
                 like,
@@ -247,13 +259,13 @@ impl MotionBlock<'_> {
             if self.since.is_some() && some.iter().all(|i| self.since(*i) > *t) {
                 continue;
             }
-            let (mut y, error, least) = swings.state(self.after(like, some, *t));
+            let (mut y, error, least) = swings.state(self.times_since_start(like, some, *t));
             let mut off = [0f64; MOST];
             if let Some(walk) = &mut walk {
                 let stepped = apart(
                     like,
                     #[inline(always)]
-                    || walk.to(*t, go_on),
+                    || walk.advance_to(*t, go_on),
                 );
                 let stepped = stepped?;
                 for (k, off) in off[..some.len()].iter_mut().enumerate() {
@@ -265,7 +277,7 @@ impl MotionBlock<'_> {
             error.spill(&mut errors);
             least.spill(&mut roundings);
             for k in 0..some.len() {
-                worst[k] = larger(worst[k], promised(job.tol, errors[k], roundings[k]) + off[k]);
+                worst[k] = larger_or_nan(worst[k], accepted_error(job.tol, errors[k], roundings[k]) + off[k]);
             }
             let last = out.last.as_mut().filter(|_| j + 1 == times);
             for (columns, step, offset) in [(out.states.as_mut(), times, j), (last, 1, 0)] {
@@ -288,7 +300,7 @@ impl MotionBlock<'_> {
     /// keeps the greatest error of each lane, NaN where the series is not precise enough.
     fn write_periods<T: SideBySide>(
         &self,
-        swings: &dyn Swung<T>,
+        swings: &dyn SwingsInLanes<T>,
         some: &[usize],
         worst: &mut [f64; MOST],
         out: &mut MotionOutput<'_>,
@@ -298,7 +310,8 @@ impl MotionBlock<'_> {
             let [value, error, least] = of();
             for (k, i) in some.iter().enumerate() {
                 column[*i] = value.lane(k);
-                worst[k] = larger(worst[k], promised(self.job.tol, error.lane(k), least.lane(k)));
+                worst[k] =
+                    larger_or_nan(worst[k], accepted_error(self.job.tol, error.lane(k), least.lane(k)));
             }
         };
         put(Summary::Period, &|| swings.period());
@@ -307,15 +320,15 @@ impl MotionBlock<'_> {
 
     /// Writes the other summaries, and returns which lanes have a finite error and certainly stay in the
     /// model up to the last time.
-    fn sure<T: SideBySide>(
+    fn write_other_summaries<T: SideBySide>(
         &self,
-        swings: &dyn Swung<T>,
+        swings: &dyn SwingsInLanes<T>,
         row: &StartLanes<T>,
         some: &[usize],
         worst: &[f64],
         out: &mut MotionOutput<'_>,
     ) -> [bool; MOST] {
-        let (job, span) = (self.job, self.after(row.theta_end, some, self.job.span()));
+        let (job, span) = (self.job, self.times_since_start(row.theta_end, some, self.job.span()));
         let mut sure = [false; MOST];
         for (sure, worst) in sure.iter_mut().zip(worst) {
             *sure = worst.is_finite();
@@ -323,7 +336,7 @@ impl MotionBlock<'_> {
         if let Some(step) = job.step() {
             let fastest_turn = swings.fastest_turn();
             for (k, sure) in sure[..some.len()].iter_mut().enumerate() {
-                *sure &= fastest_turn.lane(k) * step.abs() < CAREFUL;
+                *sure &= fastest_turn.lane(k) * step.abs() < UNWARNED_TURN;
             }
         }
         let inclined = !job.ask.beyond || out.wants(Summary::ThetaMin) || out.wants(Summary::ThetaMax);
@@ -357,17 +370,17 @@ impl MotionBlock<'_> {
 }
 
 /// Greatest error above the tolerance that is accepted of a series, if at least half of the error is rounding.
-const PROMISE: f64 = 1e-9;
+const ACCEPTED_ROUNDING: f64 = 1e-9;
 
 /// The error of a series if it is small enough, else NaN. Where rounding, `least`, is most of the error, no
 /// other method would be more precise.
-fn promised(tol: f64, error: f64, least: f64) -> f64 {
-    if error < tol || error < (2.0 * least).min(PROMISE) { error } else { f64::NAN }
+fn accepted_error(tol: f64, error: f64, least: f64) -> f64 {
+    if error < tol || error < (2.0 * least).min(ACCEPTED_ROUNDING) { error } else { f64::NAN }
 }
 
 /// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is small
 /// enough to be neither an error nor worth a warning.
-const CAREFUL: f64 = 0.25;
+const UNWARNED_TURN: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {
@@ -424,12 +437,8 @@ mod tests {
     #[test]
     fn every_width_gives_the_same_bits() {
         let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
-        let level = crate::numbers::level();
-        if level.is_none() {
-            // Without lanes there is no width.
-            return;
-        }
         for kind in kinds {
+            let level = crate::numbers::level();
             let best =
                 bits(|work, count, out| work.run(level, (0..count).collect(), out, &mut || true), kind);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

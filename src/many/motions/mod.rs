@@ -30,7 +30,7 @@ mod walks;
 
 pub use super::columns::LossColumns;
 use super::columns::{RowBlock, blocks};
-use super::threads::share_aside;
+use super::threads::share_with_large_stacks;
 use crate::error::{Error, spare, spare_for, within};
 use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Losses;
@@ -152,7 +152,7 @@ coded! {
 const MOTIONS_PER_BLOCK: usize = 2048;
 /// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
 /// filled.
-const FLOWS: usize = 1024;
+const FLOWS_PER_BLOCK: usize = 1024;
 
 /// Computes all motions and fills `out`, on `threads` threads with stacks that are large enough. The calling thread
 /// calls `go_on` about fifty times a second with the finished share of the work, and stops if it returns false. Returns
@@ -190,9 +190,9 @@ pub(crate) fn roll_among(
     let flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
     job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
-        let workers = threads.min(count.div_ceil(FLOWS));
-        spare_for(workers.saturating_mul(flows::size_of_block(FLOWS.min(count), times)))?;
-        FLOWS
+        let workers = threads.min(count.div_ceil(FLOWS_PER_BLOCK));
+        spare_for(workers.saturating_mul(flows::size_of_block(FLOWS_PER_BLOCK.min(count), times)))?;
+        FLOWS_PER_BLOCK
     } else {
         spare()?;
         (MOTIONS_PER_BLOCK * 8 / times.max(1)).clamp(16, MOTIONS_PER_BLOCK)
@@ -201,19 +201,24 @@ pub(crate) fn roll_among(
     let level = crate::numbers::level();
     let failed = OnceLock::new();
     let mut go_on = |share| failed.get().is_none() && go_on(share);
-    let all = share_aside(blocks, (threads, roomy), &mut go_on, |RowBlock { first, count, out }, still| {
-        let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
-        let loses = starts.losses.is_some() || starts.has_patch();
-        let done = match (flows, loses) {
-            (true, true) => work.flow::<10>(level, count, &mut out, still),
-            (true, false) => work.flow::<9>(level, count, &mut out, still),
-            _ => conserved(&work, level, (count, &mut out), still),
-        };
-        if let Err(e) = done {
-            // The first error is reported, and later errors are dropped.
-            let _ = failed.set(e);
-        }
-    });
+    let all = share_with_large_stacks(
+        blocks,
+        (threads, roomy),
+        &mut go_on,
+        |RowBlock { first, count, out }, still| {
+            let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
+            let loses = starts.losses.is_some() || starts.has_patch();
+            let done = match (flows, loses) {
+                (true, true) => work.flow::<10>(level, count, &mut out, still),
+                (true, false) => work.flow::<9>(level, count, &mut out, still),
+                _ => conserved(&work, level, (count, &mut out), still),
+            };
+            if let Err(e) = done {
+                // The first error is reported, and later errors are dropped.
+                let _ = failed.set(e);
+            }
+        },
+    );
     failed.into_inner().map_or(Ok(all), Err)
 }
 

@@ -28,15 +28,15 @@ use crate::motions::walk::numbers::TIME;
 use crate::motions::{Ending, Event, Kind, Motion};
 use fearless_simd::Level;
 
-/// The error of a phase of rolling among other phases is below this share of the tolerance, and below `PRECISE`, since
+/// The error of a phase of rolling among other phases is below this share of the tolerance, and below `ROLLING_ERROR`, since
 /// later phases may make it grow.
-const SHARE: f64 = 0.01;
-const PRECISE: f64 = 2e-12;
+const ROLLING_ERROR_SHARE: f64 = 0.01;
+const ROLLING_ERROR: f64 = 2e-12;
 /// The ends of a phase of rolling whose digits are good enough for the phase that follows.
 const ENDINGS: [Ending; 3] = [Ending::Done, Ending::Slip, Ending::Side];
 
 /// Whether phases of rolling on this table may be computed in lanes, where the coefficient of static friction is squared.
-pub(super) fn can_roll_among(table: &Table) -> bool {
+pub(super) fn can_roll_in_lanes(table: &Table) -> bool {
     table.contact() == Contact::Rolling && (!table.rubs() || (table.mu() * table.mu()).is_finite())
 }
 
@@ -60,7 +60,7 @@ impl MotionBlock<'_> {
         out.last = out.last.or(Some(ends.each_mut().map(Vec::as_mut_slice)));
         let mut unsolved = work.run(level, rolling.clone(), &mut out, go_on).into_iter().peekable();
         for i in rolling {
-            if unsolved.next_if_eq(&i).is_some() || !work.rolled(i, &mut out) {
+            if unsolved.next_if_eq(&i).is_some() || !work.add_single_phase(i, &mut out) {
                 others.push(i);
             }
         }
@@ -90,7 +90,7 @@ impl MotionBlock<'_> {
     }
 
     /// Adds the results of a path of one phase to those of a solved motion; returns whether the motion is such a path.
-    fn rolled(&self, i: usize, out: &mut MotionOutput<'_>) -> bool {
+    fn add_single_phase(&self, i: usize, out: &mut MotionOutput<'_>) -> bool {
         let ending = if out.status[i] == Ending::Side as u8 { Ending::Side } else { Ending::Done };
         if out.status[i] != ending as u8 || ending == Ending::Side && self.job.ask.restitution.is_some() {
             return false;
@@ -119,7 +119,7 @@ impl MotionBlock<'_> {
     }
 
     /// Computes the phases of rolling for which walks wait, side by side, and continues these walks.
-    pub(super) fn roll_among<const N: usize>(
+    pub(super) fn roll_phases_in_lanes<const N: usize>(
         &self,
         level: Option<Level>,
         all: &mut Walks<'_, N>,
@@ -139,7 +139,7 @@ impl MotionBlock<'_> {
             coefficients: Some([&grip, &grip, &[0.0]]),
             ..MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice))
         };
-        let tol = (SHARE * self.job.tol).clamp(1e-15, PRECISE);
+        let tol = (ROLLING_ERROR_SHARE * self.job.tol).clamp(1e-15, ROLLING_ERROR);
         let job = Job { tol, ..self.job.of_rolling() };
         let work = MotionBlock { starts: &starts, job: &job, first: 0, since: Some(&since) };
 
@@ -160,7 +160,7 @@ impl MotionBlock<'_> {
             let ending = ENDINGS.into_iter().find(|ending| solved && *ending as u8 == status[k]);
             let Ok(walk) = &mut all.walks[i] else { continue };
             let found = match ending {
-                None => walk.rolls_alone(mu, go_on),
+                None => walk.roll_by_first_integrals(mu, go_on),
                 Some(ending) => {
                     let row = |of: &[Vec<f64>; 4], row: usize| State::from(of.each_ref().map(|x| x[row]));
                     let (mut rolled, over) = (Motion::empty(times, false)?, ending != Ending::Done);
@@ -173,13 +173,13 @@ impl MotionBlock<'_> {
                     }
                     let event = Event { ending, time: end[k], state: row(&last, k), rim: 0 };
                     (rolled.event, rolled.error) = (over.then_some(event), error[k]);
-                    walk.has_rolled(rolled, mu, go_on)
+                    walk.continue_after_rolling(rolled, mu, go_on)
                 }
             };
             if let Err(e) = found {
                 all.walks[i] = Err(e);
             }
-            all.lead(i, Ok(Pause::No), go_on);
+            all.continue_walk(i, Ok(Pause::No), go_on);
         }
         Ok(())
     }

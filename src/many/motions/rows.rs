@@ -7,7 +7,7 @@ use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 use core::f64::consts::PI;
 
 /// The index of the first of these motions, if their indices are consecutive.
-pub(super) fn in_a_row(some: &[usize]) -> Option<usize> {
+pub(super) fn first_of_consecutive(some: &[usize]) -> Option<usize> {
     let first = *some.first()?;
     some.iter().enumerate().all(|(k, i)| *i == first + k).then_some(first)
 }
@@ -41,7 +41,7 @@ impl<T: Real> StartLanes<T> {
 
     /// 1 where body and state are certainly in the range in which motions are computed, else 0.
     #[inline(always)]
-    pub fn fits(&self) -> T {
+    pub fn in_range_mask(&self) -> T {
         let Shape { rim: Rim { ell, rho, .. }, i1, i3 } = self.shape;
         let [theta, w1, w2, w3] = self.state;
         let number = |x: f64| ell.splat(x);
@@ -70,7 +70,7 @@ impl MotionBlock<'_> {
     /// The bodies and states of these motions in lanes; unused lanes repeat the last motion.
     pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> StartLanes<T> {
         let last = some.len() - 1;
-        if let Some(first) = in_a_row(some).filter(|_| some.len() == T::COUNT) {
+        if let Some(first) = first_of_consecutive(some).filter(|_| some.len() == T::COUNT) {
             let first = self.first + first;
             return apart(
                 like,

@@ -46,7 +46,7 @@ fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]>
     let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
     let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
     let (level, all) = (crate::numbers::level(), (0..COUNT).collect::<Vec<_>>());
-    let marched = work.answered(zero(level?.as_avx2()?), &all, false, &mut out, &mut || true);
+    let marched = work.roll_by_series(zero(level?.as_avx2()?), &all, false, &mut out, &mut || true);
     Some([marched.len(), work.run(level, all, &mut out, &mut || true).len()])
 }
 

@@ -8,10 +8,10 @@ use crate::motions::exact::Swing;
 use crate::motions::exact::extrema;
 use crate::motions::motion;
 use crate::motions::{Ending, Method};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 
 /// Number of times at which the extremes of a motion without an exact solution are sampled.
-const LOOKS: usize = 4000;
+const EXTREME_SAMPLES: usize = 4000;
 
 /// A motion up to its end or to the last time.
 struct SingleMotion {
@@ -25,7 +25,7 @@ struct SingleMotion {
 
 /// The motion by the first integrals for a job that continues past events, so that only a landing of the face ends it.
 /// None if the error is not finite, or if `go_on` returns false.
-fn unwatched(
+fn exact_without_events(
     swing: &Swing,
     start: &State,
     job: &Job<'_>,
@@ -58,13 +58,13 @@ fn unwatched(
 }
 
 /// The motion with a search for all events that can end it.
-fn watched(
+fn exact_with_events(
     body: &Body,
     start: &State,
     job: &Job<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<SingleMotion>, Error> {
-    let Some(motion) = followed(body, start, job.times, job, go_on)? else { return Ok(None) };
+    let Some(motion) = roll_or_none(body, start, job.times, job, go_on)? else { return Ok(None) };
     // A job that continues past events ends a motion only where the face lands.
     let event = motion.event.filter(|e| !job.ask.beyond || e.ending == Ending::Face);
     Ok(Some(SingleMotion {
@@ -82,7 +82,7 @@ fn watched(
 }
 
 /// The motion at these times; None if the initial state has no motion. The error is `Memory`.
-fn followed(
+fn roll_or_none(
     body: &Body,
     start: &State,
     times: &[f64],
@@ -117,8 +117,9 @@ pub(super) fn roll(
         None
     };
     let easy = swing.as_ref().filter(|_| easily);
-    let found = easy.map_or(Ok(None), |swing| unwatched(swing, &start, job, go_on))?;
-    let found = found.map_or_else(|| watched(&body, &start, job, go_on), |found| Ok(Some(found)))?;
+    let found = easy.map_or(Ok(None), |swing| exact_without_events(swing, &start, job, go_on))?;
+    let found =
+        found.map_or_else(|| exact_with_events(&body, &start, job, go_on), |found| Ok(Some(found)))?;
     let Some(found) = found else { return Ok(()) };
     let SingleMotion { states, last, end, ending, error, answer } = found;
     out.tell(i, answer, ending as u8, error);
@@ -134,15 +135,16 @@ pub(super) fn roll(
         if swing.period().is_finite() {
             let timed = if out.wants(Summary::Period) { swing.period_error() } else { 0.0 };
             let turned = if turning { swing.precession_error() } else { 0.0 };
-            out.error[i] = larger(out.error[i], larger(timed, turned));
+            out.error[i] = larger_or_nan(out.error[i], larger_or_nan(timed, turned));
         }
     }
     if extremes_wanted {
         let found = match &swing {
             Some(swing) if answer == Answer::Single => Some(extrema::extremes(swing, &body, end)),
             _ => {
-                let times: Vec<f64> = (1..=LOOKS).map(|k| end * k as f64 / LOOKS as f64).collect();
-                followed(&body, &start, &times, job, go_on)?.map(|all| {
+                let times: Vec<f64> =
+                    (1..=EXTREME_SAMPLES).map(|k| end * k as f64 / EXTREME_SAMPLES as f64).collect();
+                roll_or_none(&body, &start, &times, job, go_on)?.map(|all| {
                     extrema::extremes_of(all.states.iter().chain([&start, &last]), &body, job.contact())
                 })
             }

@@ -36,12 +36,12 @@ fn advance<T: Real>(rates: &Rates<T>, mut y: [T; 5], h: f64) -> [T; 5] {
     y
 }
 
-/// Motions after `made` whole steps from the start.
+/// Motions after `steps_taken` whole steps from the start.
 pub(super) struct FixedSteps<T> {
     rates: Rates<T>,
     y: [T; 5],
     step: f64,
-    made: u64,
+    steps_taken: u64,
 }
 
 impl<T: Real> FixedSteps<T> {
@@ -50,24 +50,29 @@ impl<T: Real> FixedSteps<T> {
         let [theta, w1, w2, w3] = row.state;
         let (s, c) = sin_cos(theta);
         let step = if job.span() < 0.0 { -step.abs() } else { step };
-        Self { rates: Rates::of(job.contact(), &row.shape, row.round), y: [s, c, w1, w2, w3], step, made: 0 }
+        Self {
+            rates: Rates::of(job.contact(), &row.shape, row.round),
+            y: [s, c, w1, w2, w3],
+            step,
+            steps_taken: 0,
+        }
     }
 
     /// The states at a time that is not before the last requested time; between two whole steps a shortened step
     /// follows the earlier one. None if `go_on` returns false.
     #[inline(always)]
-    pub fn to(&mut self, t: f64, go_on: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
+    pub fn advance_to(&mut self, t: f64, go_on: &mut dyn FnMut() -> bool) -> Option<[T; 4]> {
         let whole = (t / self.step).floor() as u64;
-        while self.made < whole {
+        while self.steps_taken < whole {
             if !go_on() {
                 return None;
             }
-            let some = (whole - self.made).min(STEPS_PER_BREATH);
+            let some = (whole - self.steps_taken).min(STEPS_PER_BREATH);
             let mut y = self.y;
             for _ in 0..some {
                 y = advance(&self.rates, y, self.step);
             }
-            (self.y, self.made) = (y, self.made + some);
+            (self.y, self.steps_taken) = (y, self.steps_taken + some);
         }
         let rest = t - whole as f64 * self.step;
         let [s, c, w1, w2, w3] = if rest == 0.0 { self.y } else { advance(&self.rates, self.y, rest) };

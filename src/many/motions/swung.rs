@@ -5,7 +5,7 @@ use crate::motions::exact::lanes::{Grip, Midpoints, Swings};
 use crate::numbers::side_by_side::{SideBySide, apart};
 
 /// Motions between their turning points; [`Swings`] documents each method.
-pub(super) trait Swung<T> {
+pub(super) trait SwingsInLanes<T> {
     fn state(&self, t: T) -> ([T; 4], T, T);
     fn fastest_turn(&self) -> T;
     fn inclinations(&self, t: T) -> [T; 2];
@@ -15,7 +15,7 @@ pub(super) trait Swung<T> {
     fn precession_per_period(&self) -> [T; 3];
 }
 
-impl<T: SideBySide, const N: usize, const K: usize> Swung<T> for (Swings<T, N, K>, &Midpoints<K>) {
+impl<T: SideBySide, const N: usize, const K: usize> SwingsInLanes<T> for (Swings<T, N, K>, &Midpoints<K>) {
     fn state(&self, t: T) -> ([T; 4], T, T) {
         apart(
             t,

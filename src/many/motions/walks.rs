@@ -6,9 +6,9 @@
 use super::lossy_lanes::LossyKind;
 use crate::error::Error;
 use crate::laws::body::landing_angle;
-use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS, counted_before};
+use crate::methods::flow::lanes::{Entry, Flows, LaneStatus, NUMBERS, evaluations_before_limit};
 use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
-use crate::methods::flow::{Spent, until_tired};
+use crate::methods::flow::{Spent, steps_to_stuck_test};
 use crate::motions::body::BodyWalk;
 use crate::motions::body::roll::lossy::LOSSY_NUMBERS;
 use crate::motions::walk::numbers::TIME;
@@ -19,7 +19,7 @@ use std::collections::VecDeque;
 
 /// A flow in a lane makes this many evaluations where a single flow takes a step before the next look at its slip: a look
 /// takes it out of its lane for some steps.
-const LOOKS_IN_LANES: u64 = 48;
+const EVALUATIONS_PER_LOOK: u64 = 48;
 
 /// A flow for a lane: the index of its walk, and its start.
 pub(super) struct FlowTask<const N: usize> {
@@ -35,7 +35,7 @@ pub(super) struct FlowTask<const N: usize> {
 
 /// The kind of a flow; the flows in lanes at one time are all of one kind.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Among {
+pub(super) enum FlowKind {
     /// Slips; `dry` means that the friction is dry and keeps a direction where the slip vanishes, unlike viscous
     /// friction or ice.
     Slips { dry: bool },
@@ -44,7 +44,7 @@ pub(super) enum Among {
 }
 
 /// The flows of one kind that wait for lanes.
-pub(super) type Queue<const N: usize> = (Among, VecDeque<FlowTask<N>>);
+pub(super) type Queue<const N: usize> = (FlowKind, VecDeque<FlowTask<N>>);
 
 /// The walks of a block: two for each motion, the second one with a larger tolerance.
 pub(super) struct Walks<'a, const N: usize> {
@@ -57,7 +57,10 @@ pub(super) struct Walks<'a, const N: usize> {
 }
 
 /// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that is computed alone.
-fn place<const N: usize>(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> Option<(Among, [f64; NUMBERS])> {
+fn kind_and_lane_numbers<const N: usize>(
+    walk: &BodyWalk<'_, N>,
+    y: &[f64; N],
+) -> Option<(FlowKind, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     // A hop that rolls and loses nothing is short.
@@ -67,19 +70,24 @@ fn place<const N: usize>(walk: &BodyWalk<'_, N>, y: &[f64; N]) -> Option<(Among,
     if let Some(lossy) = walk.lossy() {
         let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
         numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());
-        return lossy.is_free().then_some((Among::Lossy(law), numbers));
+        return lossy.is_free().then_some((FlowKind::Lossy(law), numbers));
     }
     let slide = &walk.of.slide;
     let (sine, cosine) = landing_angle(body.theta_end());
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over_in_lanes(y), sine, cosine, there]);
     (slide.law.losses.is_none() && slide.law.patch().is_none())
-        .then_some((Among::Slips { dry: slide.law.dry }, numbers))
+        .then_some((FlowKind::Slips { dry: slide.law.dry }, numbers))
 }
 
 impl<const N: usize> Walks<'_, N> {
     /// Continues a walk up to its next flow for a lane, or to its end.
-    pub fn lead(&mut self, i: usize, mut found: Result<Pause<N>, Error>, go_on: &mut dyn FnMut() -> bool) {
+    pub fn continue_walk(
+        &mut self,
+        i: usize,
+        mut found: Result<Pause<N>, Error>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) {
         loop {
             let Ok(walk) = &mut self.walks[i] else { return };
             let (y, step) = match found {
@@ -101,15 +109,15 @@ impl<const N: usize> Walks<'_, N> {
                     return;
                 }
             };
-            let place = if self.lanes { place(walk, &y) } else { None };
+            let place = if self.lanes { kind_and_lane_numbers(walk, &y) } else { None };
             let Some(((among, numbers), until)) = place.zip(walk.until()) else {
                 found = walk.flows(y, step, u64::MAX, go_on);
                 continue;
             };
-            let (tol, patience) = (walk.of.slide.tol, until_tired(walk.spent.patience));
+            let (tol, patience) = (walk.of.slide.tol, steps_to_stuck_test(walk.spent.patience));
             let step = step.unwrap_or_else(|| Phases::first(walk, &y));
-            let looks = walk.steps_to_look(&y).saturating_mul(LOOKS_IN_LANES);
-            let made = counted_before(walk.toil().min(looks));
+            let looks = walk.steps_to_look(&y).saturating_mul(EVALUATIONS_PER_LOOK);
+            let made = evaluations_before_limit(walk.toil().min(looks));
             let task = FlowTask { walk: i, y, step, numbers, tol, until, patience, made };
             match self.queues.iter_mut().find(|(of, _)| *of == among) {
                 Some((_, queue)) => queue.push_back(task),
@@ -136,7 +144,7 @@ impl<const N: usize> Walks<'_, N> {
         walk.has_spent_elsewhere(spent, task.patience);
         let found =
             walk.flows(y, Some(step), if status == LaneStatus::TimeReached { 1 } else { STEPS_ALONE }, go_on);
-        self.lead(task.walk, found, go_on);
+        self.continue_walk(task.walk, found, go_on);
     }
 }
 

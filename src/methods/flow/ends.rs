@@ -20,14 +20,14 @@ use core::cell::RefCell;
 
 /// Within a step longer than this share of the longest step that rotation and nutation allow, a margin may fall and
 /// rise again; such a step is searched for that.
-const LONG: f64 = 0.1;
+const LONG_STEP_SHARE: f64 = 0.1;
 /// Number of parts of a step at whose ends a margin that may fail within the step is evaluated.
-const PARTS: usize = 4;
+const PARTS_OF_STEP: usize = 4;
 /// Largest number of halvings of a part that is short already.
 const HALVINGS: u32 = 10;
 /// A margin counts as the cubic through both ends if it differs from that cubic in the middle by less than this share
 /// of its variation. A larger share would miss zeros, a smaller one would halve more steps.
-const CUBIC: f64 = 0.02;
+const CUBIC_DEVIATION: f64 = 0.02;
 const MARGIN_ROUNDING: f64 = 1e-15;
 
 /// A margin that rises from zero at the start of a step and falls again within this share of it has not risen.
@@ -62,14 +62,14 @@ type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
 /// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. `calms` is the
 /// longest time step that rotation and nutation allow, divided by the time of this step.
-pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
+pub(super) fn first_failing_margin<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
     stages: &Stages<f64, N>,
     calms: f64,
     both: Sides<'_, M>,
 ) -> Option<(f64, usize)> {
-    let long = LONG * calms;
+    let long = LONG_STEP_SHARE * calms;
     // A margin that rises from zero, as after an event that a flow passes, may still be negative in the
     // middle.
     let closely = F::CLOSELY && both.0.iter().all(|margin| margin.value > 0.0);
@@ -109,8 +109,10 @@ pub(super) fn failed<F: Flow<M>, const M: usize, const N: usize>(
         h,
     };
     match outlook {
-        Outlook::Unsure => parts.in_halves([0.0, 1.0], (h * long.max(LONG), HALVINGS), both),
-        _ => parts.failure([0.0, 1.0], both),
+        Outlook::Unsure => {
+            parts.failure_by_halving([0.0, 1.0], (h * long.max(LONG_STEP_SHARE), HALVINGS), both)
+        }
+        _ => parts.failure_by_cubics([0.0, 1.0], both),
     }
 }
 
@@ -126,7 +128,7 @@ fn is_least(a: Dual<f64>, b: Dual<f64>) -> bool {
 
 /// Whether a margin falls to zero in a part of length `h`, or dips below it, by the cubic through both ends.
 fn may_fail(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
-    let dips = || is_least(a, b) && lowest(a, b, h) <= 0.0;
+    let dips = || is_least(a, b) && lower_bound(a, b, h) <= 0.0;
     b.value.is_nan() || b.value <= 0.0 || dips()
 }
 
@@ -172,9 +174,9 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
         });
         for i in 0..M {
             let (a, b) = (left[i], here[i]);
-            if !fallen[i] && lowest(a, b, 2.0 * (at - share) * h) > 0.0 {
+            if !fallen[i] && lower_bound(a, b, 2.0 * (at - share) * h) > 0.0 {
                 if is_least(a, b) {
-                    flow.grazed(&last, i, lowest(a, b, (at - share) * h));
+                    flow.grazed(&last, i, lower_bound(a, b, (at - share) * h));
                 }
                 continue;
             }
@@ -191,8 +193,8 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
 
 impl<const M: usize> StepParts<'_, M> {
     /// The first margin that fails within a part of the step. The part is halved until its parts are at most `long`; these
-    /// are halved up to `halvings` times, until no margin is `Wild`.
-    fn in_halves(
+    /// are halved up to `halvings` times, until no margin is `Unresolved`.
+    fn failure_by_halving(
         &self,
         [from, to]: [f64; 2],
         (long, halvings): (f64, u32),
@@ -201,7 +203,7 @@ impl<const M: usize> StepParts<'_, M> {
         let h = (to - from) * self.h;
         if h <= long {
             if !self.closely {
-                return self.failure([from, to], (before, after));
+                return self.failure_by_cubics([from, to], (before, after));
             }
             if !(0..M).any(|i| is_near(before[i], after[i], h)) {
                 return None;
@@ -209,28 +211,28 @@ impl<const M: usize> StepParts<'_, M> {
         }
         let middle = 0.5 * (from + to);
         let between = (self.middle)(middle);
-        let bends = || (0..M).map(|i| bend(before[i], between[i], after[i], h).0);
+        let bends = || (0..M).map(|i| shape_of_part(before[i], between[i], after[i], h).0);
         if h <= long {
-            if bends().all(|bend| bend == Bend::Clear) {
+            if bends().all(|bend| bend == MarginShape::Clear) {
                 for i in (0..M).filter(|i| is_least(before[*i], after[*i])) {
-                    (self.grazed)(middle, i, bend(before[i], between[i], after[i], h).1);
+                    (self.grazed)(middle, i, shape_of_part(before[i], between[i], after[i], h).1);
                 }
                 return None;
             }
-            if halvings == 0 || bends().all(|bend| bend != Bend::Wild) {
-                return self.failure([from, to], (before, after));
+            if halvings == 0 || bends().all(|bend| bend != MarginShape::Unresolved) {
+                return self.failure_by_cubics([from, to], (before, after));
             }
         }
         let left = (long, if h <= long { halvings - 1 } else { halvings });
-        let early = self.in_halves([from, middle], left, (before, &between));
+        let early = self.failure_by_halving([from, middle], left, (before, &between));
         early.or_else(|| {
             (self.goes_on_from)(middle);
-            self.in_halves([middle, to], left, (&between, after))
+            self.failure_by_halving([middle, to], left, (&between, after))
         })
     }
 
     /// The first margin that fails within a part of the step, by the cubics through both ends.
-    fn failure(&self, [from, to]: [f64; 2], (before, after): Sides<'_, M>) -> Option<(f64, usize)> {
+    fn failure_by_cubics(&self, [from, to]: [f64; 2], (before, after): Sides<'_, M>) -> Option<(f64, usize)> {
         let (mut first, h): (Option<(f64, usize)>, f64) = (None, (to - from) * self.h);
         let share = |x: f64| from + x * (to - from);
         for i in 0..M {
@@ -260,17 +262,17 @@ impl<const M: usize> StepParts<'_, M> {
 
 /// The shape of a margin within a part of a step.
 #[derive(Clone, Copy, PartialEq)]
-enum Bend {
+enum MarginShape {
     /// It stays positive.
     Clear,
     /// It falls through zero once, or has one minimum, as its cubic does.
-    Plain,
-    Wild,
+    LikeCubic,
+    Unresolved,
 }
 
 /// The shape of a margin in a part of length `h`, from its values and slopes at the ends and in the middle;
 /// and a lower bound of the margin, which is used where it is clear.
-fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
+fn shape_of_part(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (MarginShape, f64) {
     let (rise, last, change) = (h * a.slope, h * b.slope, b.value - a.value);
     let (p, q) = (3.0 * change - 2.0 * rise - last, rise + last - 2.0 * change);
     let cubic = |x: f64| a.value + x * (rise + x * (p + x * q));
@@ -283,18 +285,18 @@ fn bend(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (Bend, f64) {
     let lowest = extrema.map(cubic).into_iter().fold(a.value.min(b.value), f64::min);
     let low = lowest - 4.0 * off;
     if low > 0.0 {
-        return (Bend::Clear, low);
+        return (MarginShape::Clear, low);
     }
     let count = extrema.into_iter().filter(|x| *x > 0.0).count();
     let once = count == 0 || count == 1 && !(a.slope < 0.0 && b.slope < 0.0);
     // Halving the part does not help if the difference is NaN or a rounding error.
-    let cubic = off.is_nan() || off <= CUBIC * variation(a, b, h) + MARGIN_ROUNDING;
-    (if cubic && (once || off.is_nan()) { Bend::Plain } else { Bend::Wild }, low)
+    let cubic = off.is_nan() || off <= CUBIC_DEVIATION * variation(a, b, h) + MARGIN_ROUNDING;
+    (if cubic && (once || off.is_nan()) { MarginShape::LikeCubic } else { MarginShape::Unresolved }, low)
 }
 
 /// A lower bound of a margin between the ends of a step of `h`, as far as the margin is the cubic through
 /// both ends: each slope lowers that cubic by at most 4/27 of `h` times the slope.
-fn lowest(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
+fn lower_bound(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     let least = a.value.min(b.value);
     if !is_least(a, b) {
         return least;
@@ -331,7 +333,7 @@ pub(super) fn only_zero(
 
 /// The zero before `x` of a margin that rises from zero at the start and has fallen to `value` there; the start if it does
 /// not rise.
-fn after_start(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
+fn zero_before(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
     while x > LEAST_RISE {
         let before = on(0.5 * x);
         if before > 0.0 {
@@ -345,22 +347,26 @@ fn after_start(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
 /// The first zero within [0, 1] of a margin that may fail in this interval, from its values at both ends;
 /// without a zero, the place of its minimum and the minimum.
 fn first_zero(on: &dyn Fn(f64) -> f64, begin: f64, end: f64) -> Result<f64, (f64, f64)> {
-    let mut values = [begin; PARTS + 1];
-    for k in 1..=PARTS {
-        let x = k as f64 / PARTS as f64;
-        values[k] = if k == PARTS { end } else { on(x) };
+    let mut values = [begin; PARTS_OF_STEP + 1];
+    for k in 1..=PARTS_OF_STEP {
+        let x = k as f64 / PARTS_OF_STEP as f64;
+        values[k] = if k == PARTS_OF_STEP { end } else { on(x) };
         if values[k] <= 0.0 {
-            let from = (k - 1) as f64 / PARTS as f64;
+            let from = (k - 1) as f64 / PARTS_OF_STEP as f64;
             if k == 1 && begin <= 0.0 {
-                return Ok(after_start(on, x, values[1]));
+                return Ok(zero_before(on, x, values[1]));
             }
             return Ok(crossing(on, from, x, values[k - 1].max(f64::MIN_POSITIVE), values[k]));
         }
     }
     // The margin has its minimum around the lowest of these places.
-    let low = (0..=PARTS).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
-    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS)];
-    let (x, value) = least(on, from as f64 / PARTS as f64, to as f64 / PARTS as f64);
+    let low = (0..=PARTS_OF_STEP).min_by(|i, j| values[*i].total_cmp(&values[*j])).unwrap_or(0);
+    let [from, to] = [low.saturating_sub(1), (low + 1).min(PARTS_OF_STEP)];
+    let (x, value) = least(on, from as f64 / PARTS_OF_STEP as f64, to as f64 / PARTS_OF_STEP as f64);
     let fails = value < 0.0;
-    if fails { Ok(crossing(on, from as f64 / PARTS as f64, x, values[from], value)) } else { Err((x, value)) }
+    if fails {
+        Ok(crossing(on, from as f64 / PARTS_OF_STEP as f64, x, values[from], value))
+    } else {
+        Err((x, value))
+    }
 }

@@ -10,7 +10,7 @@
 //! search for events. The equations are a [`Flows`], and [`schedule`](super::schedule) fills the lanes. The steps of a
 //! lane do not depend on the other lanes.
 
-use super::{FROZEN, SHORTEST, SLOW, SOON, Spent};
+use super::{CRAWLING_TIME_SHARE, SHORTEST, SLOW, SOON, Spent};
 use crate::methods::rk8::{self, LOOKS};
 use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 use crate::numbers::{Real, here};
@@ -59,7 +59,7 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
     pub until: f64,
     /// Number of crawling steps that are allowed.
     pub patience: u64,
-    /// Number of evaluations that the lane counts at its start, besides those that it makes ([`counted_before`]).
+    /// Number of evaluations that the lane counts at its start, besides those that it makes ([`evaluations_before_limit`]).
     pub made: u64,
 }
 
@@ -82,13 +82,13 @@ const TIME_REACHED: f64 = 2.0;
 const TOIL_IN_LANES: f64 = 1e6;
 
 /// The evaluations that a lane counts at its start if it may make only `toil` evaluations.
-pub(crate) fn counted_before(toil: u64) -> u64 {
+pub(crate) fn evaluations_before_limit(toil: u64) -> u64 {
     (TOIL_IN_LANES as u64).saturating_sub(toil)
 }
 
 /// The progress of the motions in their lanes.
 #[derive(Clone, Copy)]
-struct Way<T, const N: usize, const M: usize> {
+struct LaneProgress<T, const N: usize, const M: usize> {
     y: [T; N],
     /// The rounding errors of the numbers, which are added in the next step.
     carry: [T; N],
@@ -104,7 +104,7 @@ struct Way<T, const N: usize, const M: usize> {
     erred: T,
 }
 
-impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
+impl<T: Copy, const N: usize, const M: usize> LaneProgress<T, N, M> {
     /// Calls `f` for all numbers, one after the other.
     fn each(&mut self, mut f: impl FnMut(&mut T)) {
         let Self { y, carry, h, before, back, patience, made, erred } = self;
@@ -114,23 +114,23 @@ impl<T: Copy, const N: usize, const M: usize> Way<T, N, M> {
 
 /// `yes` where a mask is positive, elsewhere `no`.
 #[inline(always)]
-fn at<T: SideBySide>(mask: T, yes: T, no: T) -> T {
+fn select_positive<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
 }
 
 /// A new lane has an earlier place with margins, before its start by this share of its first step.
-const RETURN: f64 = 0.03;
+const EARLIER_PLACE_SHARE: f64 = 0.03;
 /// Each of two chords is made steeper by this share of the difference of their slopes, as a reserve. Without this
 /// reserve a margin that bends unevenly could dip below zero unseen; a larger share stops more lanes than necessary.
-const STEEPER: f64 = 0.25;
+const CHORD_RESERVE: f64 = 0.25;
 
 /// 1 where all margins stay positive in a step, else 0, also where one is NaN. `places` are the margins
 /// `back` steps before the start, at the start, at the stages [`LOOKS`] and at the end. Between two places a
 /// convex margin lies above the extended chords of the intervals on both sides. These are made steeper
-/// (`STEEPER`), since a margin is not convex everywhere. In the last interval only the chord on the left is
+/// (`CHORD_RESERVE`), since a margin is not convex everywhere. In the last interval only the chord on the left is
 /// known.
 #[inline(always)]
-fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) -> T {
+fn margins_stay_positive<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) -> T {
     let (zero, one) = (back.splat(0.0), back.splat(1.0));
     let mut ends = [0.0; LOOKS.len() + 2];
     for (end, (_, share)) in ends[1..].iter_mut().zip(LOOKS) {
@@ -157,7 +157,7 @@ fn sure<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() + 3], back: T) ->
             let above = match slopes.get(k + 1) {
                 Some(next) => {
                     let rise = here.max(*next);
-                    let more = one.splat(STEEPER) * (fall + rise);
+                    let more = one.splat(CHORD_RESERVE) * (fall + rise);
                     let (down, up) = (fall + more, rise + more);
                     let above = up * margin[k] + down * margin[k + 1] - down * up * long;
                     zero.select_lt(rise, above, one)
@@ -176,7 +176,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     law: L,
     tol: T,
     until: T,
-    way: Way<T, N, M>,
+    way: LaneProgress<T, N, M>,
     rate: [T; N],
     /// The margins at the current place.
     margins: [T; M],
@@ -190,19 +190,28 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     /// A set with the same initial data in all lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
-        let way = Way { y, carry: y, h: zero, before, back: zero, patience: zero, made: zero, erred: zero };
+        let way = LaneProgress {
+            y,
+            carry: y,
+            h: zero,
+            before,
+            back: zero,
+            patience: zero,
+            made: zero,
+            erred: zero,
+        };
         let rows = vec![[0.0; MOST]; 2 * N + M + 5 + NUMBERS + 2];
         let (tol, until, status, idle) = (zero, zero, zero, zero);
         let (rate, margins) = ([zero; N], [zero; M]);
         let mut set = Self { law, tol, until, way, rate, margins, status, idle, rows };
         (0..T::COUNT).for_each(|k| set.fill(k, entry));
-        set.settle(zero);
+        set.load_rows(zero);
         set
     }
 
     /// Puts a task into lane `k` of the rows.
     pub fn fill(&mut self, k: usize, entry: &Entry<N, M>) {
-        let mut way = Way {
+        let mut way = LaneProgress {
             y: entry.y,
             carry: [0.0; N],
             h: entry.step,
@@ -223,7 +232,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     }
 
     /// Writes the progress of all lanes into the rows, so that single lanes can be filled anew.
-    pub fn keep(&mut self) {
+    pub fn store_rows(&mut self) {
         let (mut row, rows) = (0, &mut self.rows);
         self.way.each(|x| {
             (0..T::COUNT).for_each(|k| rows[row][k] = x.lane(k));
@@ -232,7 +241,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     }
 
     /// Loads all lanes from the rows.
-    pub fn settle(&mut self, zero: T) {
+    pub fn load_rows(&mut self, zero: T) {
         let (mut row, rows) = (0, &self.rows);
         let mut next = || {
             row += 1;
@@ -252,7 +261,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 let seen = law.rates(&way.y, &mut rate);
                 let margins = law.margins(&way.y, &seen);
                 // A lane that starts gets an earlier place on a straight line along its rates.
-                let fresh = way.h * zero.splat(RETURN);
+                let fresh = way.h * zero.splat(EARLIER_PLACE_SHARE);
                 let mut y = way.y;
                 for i in 0..N {
                     y[i] = way.y[i] - fresh * rate[i];
@@ -261,9 +270,9 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
                 let seen = law.rates(&y, &mut unused);
                 let earlier = law.margins(&y, &seen);
                 for (before, earlier) in way.before.iter_mut().zip(earlier) {
-                    *before = at(way.back, *before, earlier);
+                    *before = select_positive(way.back, *before, earlier);
                 }
-                way.back = at(way.back, way.back, fresh);
+                way.back = select_positive(way.back, way.back, fresh);
                 (law, way, rate, margins)
             },
         );
@@ -271,7 +280,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     }
 
     /// Marks the lanes without a task as idle.
-    pub fn rests(&mut self, zero: T, idle: &[f64; MOST]) {
+    pub fn mark_idle_lanes(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
         self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
     }
@@ -296,13 +305,13 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
     /// The cost of lane `k` so far: the number of evaluations, the sum of the step errors, and the number of
     /// crawling steps that are still allowed.
     pub fn spent(&self, k: usize) -> Spent {
-        let Way { made, patience, erred, .. } = &self.way;
+        let LaneProgress { made, patience, erred, .. } = &self.way;
         let patience = patience.lane(k).max(0.0) as u64;
         Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience, exhausted: None }
     }
 
     /// Takes at most `steps` steps, until a lane stops running.
-    pub fn burst(&mut self, zero: T, steps: usize) {
+    pub fn take_steps(&mut self, zero: T, steps: usize) {
         apart(
             zero,
             #[inline(always)]
@@ -345,16 +354,17 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
             let margins = law.margins(&next, &seen);
             let [first, second, last] = &within;
             let places = [&way.before, &self.margins, first, second, last, &margins];
-            let sure = sure(places, way.back / way.h);
+            let sure = margins_stay_positive(places, way.back / way.h);
             let good = error.select_lt(one, one, zero);
             let early = next[N - 1].select_lt(self.until, one, zero);
             let takes = good * sure * early;
 
             // A step that is not taken is repeated, so that the longest step at its end does not matter.
             let grown = way.h * rk8::growth(error);
-            let grown = at(takes, law.longest(&next, &rate).min(grown), grown);
+            let grown = select_positive(takes, law.longest(&next, &rate).min(grown), grown);
             let calm = law.calm(&next);
-            let frozen = (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(FROZEN), one, zero);
+            let frozen =
+                (next[N - 1] - way.y[N - 1]).select_lt(calm * zero.splat(CRAWLING_TIME_SHARE), one, zero);
             let crawls = way.h.select_lt(calm * zero.splat(SLOW), one, frozen);
             let patience = way.patience - crawls;
             let stuck = way.h.select_lt(law.shortest(&way.y), zero.splat(NEEDS_SINGLE), zero);
@@ -366,18 +376,18 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
 
             let erred = error.mac(law.fastest(&way.y), way.erred);
             let way = &mut self.way;
-            way.erred = at(takes, erred, way.erred);
+            way.erred = select_positive(takes, erred, way.erred);
             // `h` is still the length of this step.
             let since = way.h * zero.splat(1.0 - LOOKS[LOOKS.len() - 1].1);
-            way.back = at(takes, since, way.back);
+            way.back = select_positive(takes, since, way.back);
             for i in 0..M {
-                way.before[i] = at(takes, last[i], way.before[i]);
-                self.margins[i] = at(takes, margins[i], self.margins[i]);
+                way.before[i] = select_positive(takes, last[i], way.before[i]);
+                self.margins[i] = select_positive(takes, margins[i], self.margins[i]);
             }
             for i in 0..N {
-                way.y[i] = at(takes, next[i], way.y[i]);
-                way.carry[i] = at(takes, carry[i], way.carry[i]);
-                self.rate[i] = at(takes, rate[i], self.rate[i]);
+                way.y[i] = select_positive(takes, next[i], way.y[i]);
+                way.carry[i] = select_positive(takes, carry[i], way.carry[i]);
+                self.rate[i] = select_positive(takes, rate[i], self.rate[i]);
             }
             // A step in which an event is possible keeps its length for the single flow.
             way.h = zero.select_lt(good - takes, way.h, grown);

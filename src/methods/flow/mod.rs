@@ -23,7 +23,7 @@ use stiff::{STABLE, StiffSteps};
 use super::radau;
 use super::rk8::{self, growth, plus};
 use crate::error::Error;
-use crate::numbers::{Dual, IN_REGISTERS, here, in_registers};
+use crate::numbers::{COMPILES_AVX2, Dual, here, in_registers};
 
 /// A step shorter than this, relative to the elapsed time, is too short: rounding would swallow its advance.
 pub(crate) const SHORTEST: f64 = 1e-14;
@@ -34,7 +34,7 @@ pub(crate) const FASTEST: f64 = 1e15;
 /// A step crawls if it is shorter than this share of the longest step that rotation and nutation allow.
 pub(crate) const SLOW: f64 = 0.01;
 /// A step also crawls if time advances by less than this share of that longest step.
-pub(crate) const FROZEN: f64 = 1e-6;
+pub(crate) const CRAWLING_TIME_SHARE: f64 = 1e-6;
 /// Largest error of the part of a step up to an event, in units of the allowed error. The error is large
 /// beyond a singularity, where the event is not real and the step is repeated; rounding errors near the table
 /// are smaller.
@@ -46,19 +46,19 @@ pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
 /// Whether the stages form a loop in parts of steps and on processors without AVX2, which shortens the
 /// compilation.
-const SPARES: bool = rk8::LOOPS || IN_REGISTERS;
+const PARTS_IN_LOOPS: bool = rk8::LOOPS || COMPILES_AVX2;
 /// The numbers right after an implicit step have an error this many times larger than the one that remains: that of the fast
 /// numbers, which decays in the next step.
-const BEFORE_IT_DECAYS: f64 = 20.0;
+const ERROR_AFTER_IMPLICIT_STEP: f64 = 20.0;
 /// A part of an implicit step is divided into at most 2 to this power.
-const PARTINGS: i32 = 8;
+const MOST_HALVINGS: i32 = 8;
 /// The longest part of a step in which an output is sought, and the largest number of parts that are tried for it.
-const BEYOND: f64 = 1.1;
-const SEARCHES: u32 = 100;
+const LONGEST_PART: f64 = 1.1;
+const MOST_PARTS_TRIED: u32 = 100;
 /// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
-const MOSTLY: f64 = 1.0 - f64::EPSILON;
+const LATEST_OUTPUT_SHARE: f64 = 1.0 - f64::EPSILON;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
-const TIRING: u64 = 20_000;
+const STEPS_BETWEEN_STUCK_TESTS: u64 = 20_000;
 
 /// Largest number of evaluations of a motion over the time `span`.
 pub(crate) fn toil_of(span: f64) -> u64 {
@@ -66,8 +66,8 @@ pub(crate) fn toil_of(span: f64) -> u64 {
 }
 
 /// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still allowed.
-pub(crate) fn until_tired(patience: u64) -> u64 {
-    patience - patience.saturating_sub(1) / TIRING * TIRING
+pub(crate) fn steps_to_stuck_test(patience: u64) -> u64 {
+    patience - patience.saturating_sub(1) / STEPS_BETWEEN_STUCK_TESTS * STEPS_BETWEEN_STUCK_TESTS
 }
 
 /// A system of differential equations with M margins, and the ends of its flow.
@@ -282,14 +282,14 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn part_at_once<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         in_registers!(
             self.parted::<{ rk8::LOOPS }, N>(from, h).1,
-            else self.parted::<SPARES, N>(from, h).1
+            else self.parted::<PARTS_IN_LOOPS, N>(from, h).1
         )
     }
 
     #[inline(never)]
     fn part_in_parts<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         let mut y = [f64::NAN; N];
-        for count in (1..=PARTINGS).map(|k| 1 << k) {
+        for count in (1..=MOST_HALVINGS).map(|k| 1 << k) {
             let mut place = *from;
             for _ in 0..count {
                 y = self.part_at_once(&place, h / f64::from(count));
@@ -311,9 +311,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[Self::TIME] - from.y[Self::TIME];
         let near = (1e-9 * span).max(f64::EPSILON * t.abs());
-        let (mut low, mut high, mut before) = (0.0, BEYOND, f64::INFINITY);
+        let (mut low, mut high, mut before) = (0.0, LONGEST_PART, f64::INFINITY);
         let mut x = ((t - from.y[Self::TIME]) / span).clamp(0.0, 1.0);
-        for _ in 0..SEARCHES {
+        for _ in 0..MOST_PARTS_TRIED {
             let y = self.part(from, x * h);
             let rate = self.rates(&y);
             let left = t - y[Self::TIME];
@@ -357,7 +357,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 Some((halt, y)) => {
                     let (begin, end) = (after.y[Self::TIME], y[Self::TIME]);
                     // Rounding must not make a slip vanish before its end.
-                    let share = ((t - begin) / (end - begin)).min(MOSTLY);
+                    let share = ((t - begin) / (end - begin)).min(LATEST_OUTPUT_SHARE);
                     let left = if Self::is_curved(*halt) { share * (1.0 - share) } else { 0.0 };
                     let lasts = (end - begin) / after.rate[Self::TIME];
                     core::array::from_fn(|i| {
@@ -388,7 +388,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         // Compiled for AVX2 where the processor has it: several numbers in a register, and the same bits.
         in_registers!(
             self.run_here::<{ rk8::LOOPS }, N>(here, steps, times, write, go_on),
-            else self.run_here::<SPARES, N>(here, steps, times, write, go_on)
+            else self.run_here::<PARTS_IN_LOOPS, N>(here, steps, times, write, go_on)
         )
     }
 
@@ -454,7 +454,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
             }
             if crawls {
                 let left = spent.patience - self.effort();
-                tired = tired || left.div_ceil(TIRING) != spent.patience.div_ceil(TIRING);
+                tired = tired
+                    || left.div_ceil(STEPS_BETWEEN_STUCK_TESTS)
+                        != spent.patience.div_ceil(STEPS_BETWEEN_STUCK_TESTS);
                 spent.patience = left;
             }
             if tired && let Some(halt) = self.stuck(&here, &margins) {
@@ -463,7 +465,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
             tired = false;
             let stable =
                 if Self::MAY_BE_STIFF && self.is_stiff(&here) { self.stable(&here) } else { f64::INFINITY };
-            let implicit = ways.leads_to(&mut h, stable, || self.longest(&here));
+            let implicit = ways.next_is_implicit(&mut h, stable, || self.longest(&here));
             let made = if implicit {
                 let (made, at) = self.implicit_step(&here, h, radau::goes_on(&ways.last, h));
                 stages[..radau::RADAU_STAGES].copy_from_slice(&at.moved);
@@ -483,7 +485,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 let tried = h;
                 h *= growth(error).min(unseen.unwrap_or(0.7));
                 if implicit {
-                    ways.fails(tried, !error.is_nan(), &mut h, stable);
+                    ways.note_failure(tried, !error.is_nan(), &mut h, stable);
                 }
                 // A step that is NaN counts as too short.
                 if h.is_nan() || here.y.iter().any(|x| x.is_nan()) || h < self.shortest(&here.y) {
@@ -497,13 +499,13 @@ pub(crate) trait Flow<const M: usize>: Copy {
             }
             let ahead = self.margins_at(&after);
             let calms = calm / (after.y[Self::TIME] - here.y[Self::TIME]);
-            let failure = ends::failed(self, (&here, h), &stages, calms, (&margins, &ahead));
+            let failure = ends::first_failing_margin(self, (&here, h), &stages, calms, (&margins, &ahead));
             let mut length = h;
             let stop = match failure {
                 Some((x, i)) => {
                     length = x * h;
                     // Beyond a singularity the failure is not real, as a large error of this part shows.
-                    let (part, y) = self.parted::<SPARES, N>(&here, length);
+                    let (part, y) = self.parted::<PARTS_IN_LOOPS, N>(&here, length);
                     let off = self.error(&here.y, &part);
                     if (off.is_nan() || off > ROUNDED) && length > self.shortest(&here.y) {
                         h *= 0.5 * x;
@@ -515,7 +517,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
                 }
                 None => self.stopped(&after).inspect(|(halt, _)| steep = self.slows(*halt, &after)),
             };
-            spent.erred += if implicit { BEFORE_IT_DECAYS } else { 1.0 } * error * self.fastest(&here.y);
+            spent.erred +=
+                if implicit { ERROR_AFTER_IMPLICIT_STEP } else { 1.0 } * error * self.fastest(&here.y);
             let until = stop.as_ref().map_or(after.y[Self::TIME], |(_, y)| y[Self::TIME]);
             let step = (&here, &after, h);
             if !Self::ONLY_ENDS {
@@ -535,10 +538,10 @@ pub(crate) trait Flow<const M: usize>: Copy {
             if Self::MAY_BE_STIFF {
                 ways.last = None;
                 if implicit {
-                    ways.succeeds((core::array::from_fn(|i| stages[i]), h));
+                    ways.note_success((core::array::from_fn(|i| stages[i]), h));
                 }
             }
-            frozen = after.y[Self::TIME] - here.y[Self::TIME] <= FROZEN * calm;
+            frozen = after.y[Self::TIME] - here.y[Self::TIME] <= CRAWLING_TIME_SHARE * calm;
             (here, margins) = (after, ahead);
             calm = self.calm(&here.y);
             h = (h * growth(error)).min(self.longest(&here));

@@ -33,20 +33,20 @@ pub(crate) fn follow<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: 
             // A lane without a flow computes as well; its results are ignored.
             let set = set.get_or_insert_with(|| Set::new(like, law, &entry));
             if !fresh {
-                set.keep();
+                set.store_rows();
             }
             set.fill(k, &entry);
             (*busy, fresh) = (true, true);
         }
         let Some(set) = &mut set else { return };
-        set.rests(like, &busy.map(|busy| f64::from(u8::from(!busy))));
+        set.mark_idle_lanes(like, &busy.map(|busy| f64::from(u8::from(!busy))));
         if fresh {
-            set.settle(like);
+            set.load_rows(like);
         }
         if busy == [false; MOST] || !waiting.go_on() {
             return;
         }
-        set.burst(like, BURST);
+        set.take_steps(like, BURST);
         for (k, busy) in busy.iter_mut().enumerate().take(T::COUNT).filter(|(_, busy)| **busy) {
             let status = set.status(k);
             if status != LaneStatus::Runs {

@@ -245,7 +245,7 @@ fn left(zeros: [f64; 2], up: f64) -> (f64, lanes::LaneStatus) {
         lanes::Entry { y: [0.0; 2], step: 1.0, numbers, tol: 1.0, until: 9.5, patience: 100, made: 0 };
     let mut set = lanes::Set::new(0.0, LaneClock([0.0; 3]), &entry);
     while set.status(0) == lanes::LaneStatus::Runs {
-        set.burst(0.0, 64);
+        set.take_steps(0.0, 64);
     }
     (set.place(0).0[1], set.status(0))
 }

@@ -4,7 +4,7 @@ use crate::laws::contact::Force;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::motions::walk::errors::{force_distance, pose_distance, pose_distance_over};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 use core::f64::consts::PI;
 use core::fmt::Debug;
 
@@ -43,7 +43,7 @@ pub trait Moving: Copy + Debug + PartialEq {
     /// The largest difference between the numbers of two states.
     fn distance(&self, other: &Self) -> f64 {
         let (a, b) = (self.numbers(), other.numbers());
-        a.as_ref().iter().zip(b.as_ref()).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()))
+        a.as_ref().iter().zip(b.as_ref()).fold(0.0, |most, (a, b)| larger_or_nan(most, (a - b).abs()))
     }
 }
 

@@ -39,7 +39,7 @@ coded! {
 }
 
 /// The last numbers of a motion.
-struct AtLast {
+struct LastState {
     ending: Ending,
     state: State,
     slip: [f64; 2],
@@ -48,7 +48,7 @@ struct AtLast {
     kind: Option<Kind>,
 }
 
-impl AtLast {
+impl LastState {
     fn of(motion: &Motion, path: Option<&Path>) -> Option<Self> {
         let (ending, kind) =
             (motion.ending(), path.and_then(|path| path.phases.last()).map(|phase| phase.kind));
@@ -99,20 +99,20 @@ impl Motion {
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     pub fn rests_on(&self, body: &Body) -> RestsOn {
-        AtLast::of(self, self.path.as_deref()).map_or(RestsOn::None, |last| last.rests_on(body))
+        LastState::of(self, self.path.as_deref()).map_or(RestsOn::None, |last| last.rests_on(body))
     }
 }
 
 /// The same for a body that has rolled on its first rim without a change of phase.
 #[cfg(feature = "many")]
 pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
-    AtLast { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
+    LastState { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
 }
 
 #[cfg(feature = "many")]
 impl Followed {
     /// The same for a motion whose path is apart.
     pub(crate) fn rests_on(&self, body: &Body) -> RestsOn {
-        AtLast::of(&self.motion, Some(&self.path)).map_or(RestsOn::None, |last| last.rests_on(body))
+        LastState::of(&self.motion, Some(&self.path)).map_or(RestsOn::None, |last| last.rests_on(body))
     }
 }

@@ -224,7 +224,7 @@ impl<S: Moving> Motion<S> {
     }
 
     /// Makes the estimated errors infinite, since the run that shows them is missing.
-    pub(crate) fn forgets_error(&mut self) {
+    pub(crate) fn make_error_infinite(&mut self) {
         self.error = f64::INFINITY;
         for (error, some) in
             [(&mut self.pose_error, self.poses.is_some()), (&mut self.force_error, self.forces.is_some())]

@@ -4,7 +4,7 @@
 use crate::error::{Error, room};
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ask, Kind, Motion, Moving, Path};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 
 /// The outputs at one time.
 pub(crate) struct OutputRow<S: Moving> {
@@ -61,7 +61,7 @@ impl<S: Moving> Followed<S> {
         }
         if let Some((forces, (force, doubt))) = motion.forces.as_mut().zip(row.force) {
             forces.push(force);
-            motion.force_error = larger(motion.force_error, doubt);
+            motion.force_error = larger_or_nan(motion.force_error, doubt);
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::numbers::Real;
 
-/// A face has landed where sin(theta) is at most `FLAT`, or `ENDLESS` if it lands after
+/// A face has landed where sin(theta) is at most `FLAT`, or `WHIRR_END_SINE` if it lands after
 /// infinitely many turns.
 pub(crate) const FLAT: f64 = 1e-12;
-const ENDLESS: f64 = 1e-22;
+const WHIRR_END_SINE: f64 = 1e-22;
 /// A face that approaches the table exponentially, with w2 ~ s, is computed down to this sine of theta. The time from
 /// there to `FLAT` follows from that law.
-const NEARS: f64 = 1e-10;
+const SLOW_LANDING_SINE: f64 = 1e-10;
 
 /// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of the rotation w1 in the energy of an almost flat face; 1/2 in a whirr.
 #[inline(always)]
@@ -18,9 +18,9 @@ pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
 }
 
 /// The sine of theta at which a face lands; `faster` is w2'. Where a law lets a whirr last for infinitely many turns
-/// (`endless`), the motion is computed down to `ENDLESS`, and so is that of a face that falls more and more slowly but
+/// (`endless`), the motion is computed down to `WHIRR_END_SINE`, and so is that of a face that falls more and more slowly but
 /// lands. A face that drops lands at `FLAT`, and one that approaches exponentially, with w2 ~ s, is computed down to
-/// `NEARS`.
+/// `SLOW_LANDING_SINE`.
 #[inline(always)]
 pub(crate) fn lands_at<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster: T, endless: bool) -> T {
     let number = |x: f64| s.splat(x);
@@ -28,8 +28,8 @@ pub(crate) fn lands_at<T: Real>(i1: T, (s, c): (T, T), [w1, w2]: [T; 2], faster:
         return number(FLAT);
     }
     let (zero, square) = (number(0.0), w2 * w2);
-    let nears = (square * number(0.9)).select_lt(-(c * faster * s), number(NEARS), zero);
+    let nears = (square * number(0.9)).select_lt(-(c * faster * s), number(SLOW_LANDING_SINE), zero);
     let comes = zero.select_lt(c * w2, s.select_lt(square, number(FLAT), nears), zero);
     let turns = number(0.05).select_lt(turning_share(i1, s, w1, w2), zero, comes);
-    turns.max(number(ENDLESS))
+    turns.max(number(WHIRR_END_SINE))
 }

@@ -9,9 +9,9 @@ use crate::motions::dry::creep::ASIDE;
 use crate::motions::walk::numbers::{Halt, W1, W2, W3};
 
 /// A step is near its limit of stability if its length times the slope of the rates is more than this.
-const STABLE: f64 = 0.3;
+const STABILITY_LIMIT: f64 = 0.3;
 /// A law is stiff if it pulls w at this many times the rate at which w changes.
-const FAR_FASTER: f64 = 100.0;
+const STIFF_RATIO: f64 = 100.0;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Returns the error of a wrong value of a law where a flow begins.
@@ -42,7 +42,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         fault.map_or(Ok(()), Err)?;
         let short = matches!(exhausted, Some(Exhausted::Crawling | Exhausted::Evaluations));
-        if short && is_kept_short(flow, &end(), flown.step) {
+        if short && is_shortened_by_law(flow, &end(), flown.step) {
             self.made.motion.limit = Some(Limit::Stiff);
         }
         Ok(())
@@ -51,7 +51,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
 /// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: its couple pulls w
 /// towards a slow motion much faster than w changes, and than rotation and nutation allow.
-fn is_kept_short<const M: usize, const N: usize>(flow: &impl Flow<M>, y: &[f64; N], h: f64) -> bool {
+fn is_shortened_by_law<const M: usize, const N: usize>(flow: &impl Flow<M>, y: &[f64; N], h: f64) -> bool {
     let (fast, rate) = (flow.fastest(y), flow.rates(y));
     let mut slope = 0f64;
     for j in 2..5 {
@@ -61,5 +61,5 @@ fn is_kept_short<const M: usize, const N: usize>(flow: &impl Flow<M>, y: &[f64; 
         slope += (2..5).map(|i| ((above[i] - rate[i]) / (more[j] - y[j])).powi(2)).sum::<f64>();
     }
     let (slope, change) = (slope.sqrt(), rate[W1].hypot(rate[W2]).hypot(rate[W3]));
-    h * slope > STABLE && slope > FAR_FASTER * change.max(fast / flow.calm(y)) / fast
+    h * slope > STABILITY_LIMIT && slope > STIFF_RATIO * change.max(fast / flow.calm(y)) / fast
 }

@@ -43,7 +43,7 @@ use crate::motions::walk::two_runs::{Followed, judged};
 pub(crate) use body_walk::{BodyPhases, BodyWalk};
 
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
-const AXIS: f64 = 0.25;
+const AXIS_ERROR_SHARE: f64 = 0.25;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
 /// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
@@ -62,14 +62,14 @@ pub fn follow(
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     if !SHORT_CODE && spun::knows(body, ask) {
         let mut found = run(fine, times)?;
-        found.knows_itself(fine);
+        found.complete_known_errors(fine);
         return Ok(found.into());
     }
     let mut found = judged(fine, times, run)?;
     if body.is_ball() {
         // Beside a pole the lean has no direction: phi has the error of the axis over sin(theta).
         let (error, sines) = (found.motion.error, found.motion.states.iter().map(|y| y.theta.sin()));
-        found.motion.pose_error += AXIS * (error / (error + sines.fold(1.0, f64::min))).min(1.0);
+        found.motion.pose_error += AXIS_ERROR_SHARE * (error / (error + sines.fold(1.0, f64::min))).min(1.0);
     }
     Ok(found.into())
 }
@@ -155,11 +155,11 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             )?;
         }
     }
-    if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { without_slip(start.slip).map(|()| fine) }
+    if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { refuse_slip(start.slip).map(|()| fine) }
 }
 
 /// Returns an error for a slip without a law of friction.
-pub(super) fn without_slip([along, across]: [f64; 2]) -> Result<(), Error> {
+pub(super) fn refuse_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     let value = if along == 0.0 { across } else { along };
     if value == 0.0 {
         return Ok(());

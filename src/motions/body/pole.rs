@@ -16,10 +16,10 @@ use crate::motions::walk::numbers::{PHI, PSI, SIN, TIME, W1, poses};
 /// A ball whose axis approaches its pole passes it in one step from this sine of theta on.
 const BESIDE_POLE: f64 = 1e-9;
 /// It passes so only within this time: an axis that comes to rest on the pole, or winds about it, does not pass it.
-const AT_MOST: f64 = 1e-7;
+const LONGEST_PASSAGE: f64 = 1e-7;
 
 /// A step past the pole is tried again up to this share of the way to it.
-const APPROACHES: f64 = 0.8;
+const APPROACH_SHARE: f64 = 0.8;
 
 /// The share by which a step is tried again that passes the pole without seeing on which side, if that counts: phi turns to
 /// that side, and so does e_h with a couple of dry friction along the rim. None for another step, and for a body that only
@@ -27,11 +27,11 @@ const APPROACHES: f64 = 0.8;
 #[inline(always)]
 pub(crate) fn passes_unseen<const N: usize>(from: &[f64; N], y: &[f64; N], counts: bool) -> Option<f64> {
     let passes = from[SIN] * y[SIN] < 0.0 && from[W1] != 0.0 && (poses(N) || counts);
-    passes.then(|| APPROACHES * from[SIN] / (from[SIN] - y[SIN]))
+    passes.then(|| APPROACH_SHARE * from[SIN] / (from[SIN] - y[SIN]))
 }
 
 /// A vector of the table, in the basis that is turned by the angle with this cosine and sine.
-fn rotated([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
+fn in_turned_basis([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
     [cos * h + sin * two, cos * two - sin * h]
 }
 
@@ -39,7 +39,7 @@ fn rotated([cos, sin]: [f64; 2], [h, two]: [f64; 2]) -> [f64; 2] {
 pub(crate) fn passage(s: f64, c: f64, [w1, w2]: [f64; 2]) -> Option<f64> {
     let nears = s * c * w2;
     let lasts = 2.0 * nears / (w1 * w1 + c * c * w2 * w2);
-    (s.abs() < BESIDE_POLE && nears > 0.0 && lasts < AT_MOST).then_some(lasts)
+    (s.abs() < BESIDE_POLE && nears > 0.0 && lasts < LONGEST_PASSAGE).then_some(lasts)
 }
 
 /// The numbers at the same inclination on the other side of the pole, from the [`numbers`](crate::motions::walk::numbers) y
@@ -65,7 +65,7 @@ pub(crate) fn passed<const N: usize>(y: &[f64; N], rates: &[f64; N]) -> Option<[
     let lean: [f64; 2] = core::array::from_fn(|i| lean[i] + 0.5 * lasts * (early[i] + late[i]));
     let s = lean[0].hypot(lean[1]).copysign(s);
     let way = lean.map(|x| -x / s);
-    let ([h, w2], [u_h, u_2]) = (rotated(way, level_then), rotated(way, slip));
+    let ([h, w2], [u_h, u_2]) = (in_turned_basis(way, level_then), in_turned_basis(way, slip));
     let c = (1.0 - s * s).sqrt().copysign(c);
     let mut there: [f64; N] = core::array::from_fn(|i| y[i] + lasts * rates[i]);
     let w = [c * h + s * upright_then, w2, c * upright_then - s * h];

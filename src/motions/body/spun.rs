@@ -23,10 +23,10 @@ use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::Ask;
 
 /// Roundings of the numbers of one phase.
-pub(super) const OF_A_PHASE: f64 = 8.0;
+pub(super) const ROUNDINGS_PER_PHASE: f64 = 8.0;
 /// Two terms of the series in succession that are smaller than this end a part of it; in a part w h and a h^2 are at most
 /// 1, so that there are thirty terms at most.
-const NO_MORE: f64 = 1e-18;
+const NEGLIGIBLE_TERM: f64 = 1e-18;
 
 /// The largest number of parts of a slip, as many as the steps of an integrator would need all its evaluations for.
 const MOST_PARTS: f64 = 4e5;
@@ -122,7 +122,7 @@ impl Spun {
     }
 
     /// Whether the series over this time have too many parts.
-    pub fn toils(&self, t: f64) -> bool {
+    pub fn needs_too_many_parts(&self, t: f64) -> bool {
         self.push != [0.0; 3] && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
     }
 
@@ -148,7 +148,7 @@ impl Spun {
             let push = self.push.map(|a| a * h * h);
             let (mut before, mut term, axis) = ([0.0; 3], self.axis, &mut self.axis);
             let mut k = 0.0;
-            while size(term) + size(before) > NO_MORE {
+            while size(term) + size(before) > NEGLIGIBLE_TERM {
                 k += 1.0;
                 let (turns, pushed) = (cross(w, term), cross(push, before));
                 before = term;

@@ -18,18 +18,18 @@
 
 /// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin here; at
 /// larger inclinations they would be wrong.
-const ALIKE_BELOW: f64 = 1e-4;
+const SELF_SIMILAR_SINE: f64 = 1e-4;
 /// The two values of p^(1/3) in an estimate differ at least by this factor. Closer ones would give a
 /// less accurate end.
-const APART: f64 = 1.25;
+const LEAST_ROOT_RATIO: f64 = 1.25;
 /// The end is accepted, and the last turns are left out, if its error is below this, or below this multiple of the sum of
 /// all step errors: along so many slips these grow by more, and the end moves with them.
 const END_KNOWN: f64 = 1e-9;
 const OF_STEP_ERRORS: f64 = 3.0;
 /// Sine of theta below which any estimate of the end is accepted, and slips are no longer computed.
-const GONE: f64 = 1e-13;
+const ANY_END_SINE: f64 = 1e-13;
 /// Assumed number of further changes of the estimate where these do not become smaller.
-const LEFT: f64 = 64.0;
+const FURTHER_CHANGES: f64 = 64.0;
 /// A motion that would be given up has an end if its error is below this share of the time that is left.
 const BETTER_THAN_NONE: f64 = 0.1;
 /// A nod has at most so many slips from rest, and so many estimates in a row must agree.
@@ -74,7 +74,7 @@ pub(super) struct Nods {
 impl Nods {
     /// Adds the beginning of a slip at this sine of theta.
     pub fn adds(&mut self, s: f64, start: SlipStart) {
-        if s > ALIKE_BELOW || start.root == 0.0 {
+        if s > SELF_SIMILAR_SINE || start.root == 0.0 {
             self.count = 0;
             return;
         }
@@ -131,17 +131,19 @@ impl LastTurns {
     /// Updates the estimates with a point: its time, sine of theta and w1.
     pub fn adds_point(&mut self, t: f64, s: f64, w1: f64) {
         let root = (w1 * s).abs().cbrt();
-        if s > ALIKE_BELOW || root == 0.0 {
+        if s > SELF_SIMILAR_SINE || root == 0.0 {
             *self = Self::default();
             return;
         }
         match self.last {
-            Some([before, far]) if far >= APART * root => {
+            Some([before, far]) if far >= LEAST_ROOT_RATIO * root => {
                 let end = t + (t - before) / (far / root - 1.0);
                 let moved = self.end.map_or(f64::INFINITY, |[other, ..]| (end - other).abs());
                 // If each change is the same share of the previous one, all further changes are a geometric series.
                 let share = self.end.map_or(1.0, |[_, other, _]| moved / other);
-                let doubt = 2.0 * moved * if share < 1.0 - 1.0 / LEFT { 1.0 / (1.0 - share) } else { LEFT };
+                let doubt = 2.0
+                    * moved
+                    * if share < 1.0 - 1.0 / FURTHER_CHANGES { 1.0 / (1.0 - share) } else { FURTHER_CHANGES };
                 (self.last, self.end) = (Some([t, root]), Some([end, moved, doubt]));
             }
             Some([_, far]) if far >= root => {}
@@ -158,8 +160,8 @@ impl LastTurns {
     }
 
     /// The time of the end and its error, if the error is small and the end is before `until`, or if `s`
-    /// is below `GONE`.
+    /// is below `ANY_END_SINE`.
     pub fn known(&self, s: f64, until: f64) -> Option<[f64; 2]> {
-        self.end().filter(|end| s < GONE || is_known(*end, until, 0.0))
+        self.end().filter(|end| s < ANY_END_SINE || is_known(*end, until, 0.0))
     }
 }

@@ -11,7 +11,7 @@ use super::fly::Aloft;
 use super::own::Own;
 use super::roll::lossy::LossyFlow;
 use super::slide::{Slide, is_still};
-use super::spun::{OF_A_PHASE, Spun};
+use super::spun::{ROUNDINGS_PER_PHASE, Spun};
 use crate::laws::contact::impact::{Hit, Struck};
 use crate::laws::contact::{Contact, Table, force, patch};
 use crate::laws::loss::{Holds, Law};
@@ -34,7 +34,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (at.w[0], at.w[2], at.slip[1]) = (0.0, 0.0, 0.0);
         }
         let (of, fastest) = (&self.of.roundings, spun.fastest);
-        let share = (of.count + OF_A_PHASE) * f64::EPSILON;
+        let share = (of.count + ROUNDINGS_PER_PHASE) * f64::EPSILON;
         let turned = of.turned + share * (1.0 + angle) + 2.0 * fastest * of.late;
         let sine = if at.angle.0 > 0.0 { at.angle.0 } else { 1.0 };
         self.claims(fastest * (turned / sine + share));
@@ -44,7 +44,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Ends a phase of the length `t` in which the ball has turned by `angle`, and whose end is as late as `late`.
     fn rounds(&mut self, t: f64, angle: f64, late: f64) {
         let of = &mut self.of.roundings;
-        of.count += OF_A_PHASE;
+        of.count += ROUNDINGS_PER_PHASE;
         let share = of.count * f64::EPSILON;
         of.turned += share * (1.0 + angle);
         of.late += share * (t + late);
@@ -127,7 +127,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (now, ask, slide) = (self.at[TIME], self.ask, self.of.slide);
         let (body, start) = (self.of.body, self.of.start);
         let left = self.since.last().map_or(0.0, |t| t - now);
-        if spun.toils(end.min(left)) {
+        if spun.needs_too_many_parts(end.min(left)) {
             self.next = Some(self.gives_up(Limit::Evaluations));
             return None;
         }
@@ -195,7 +195,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// Whether the phase of rolling that begins is known: only dry friction slows the ball, by couples that are constant in
     /// the laboratory.
-    pub(super) fn slows_evenly(&self) -> bool {
+    pub(super) fn is_slowing_known(&self) -> bool {
         let mut losses = self.ask.losses.iter();
         let dry = !self.of.own.has_couple()
             && losses.all(|(law, _)| matches!(law, Law::RollingResistance | Law::Drilling));
@@ -238,7 +238,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
 impl Followed {
     /// Completes the estimated errors of a motion whose phases are all known, which no rougher run has to show.
-    pub(crate) fn knows_itself(&mut self, tol: f64) {
+    pub(crate) fn complete_known_errors(&mut self, tol: f64) {
         let phases = self.path.phases.iter();
         let fastest = |y: &State| y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
         let fastest = phases.fold(1.0, |most: f64, phase| most.max(fastest(&phase.state)));

@@ -83,7 +83,7 @@ impl Followed {
             let pose = pose(y);
             match ask.table {
                 Table::Smooth => {
-                    let under = Pose::below_centre(body, start, &now, pose.phi.rest);
+                    let under = Pose::contact_point_below_centre(body, start, &now, pose.phi.rest);
                     Pose { contact_point: under, ..pose }
                 }
                 _ => pose,

@@ -38,7 +38,7 @@ pub(crate) struct OwnLaws<'a> {
 }
 
 /// The state at the sine and cosine of theta and w, and the sign of e1 and e2 in it: a ball may lean to the other side.
-fn upright([s, c, w1, w2, w3]: [f64; 5]) -> (f64, State) {
+fn upright_state([s, c, w1, w2, w3]: [f64; 5]) -> (f64, State) {
     let side = if s < 0.0 { -1.0 } else { 1.0 };
     (side, State { theta: (side * s).atan2(c), w1: side * w1, w2: side * w2, w3 })
 }
@@ -50,7 +50,7 @@ impl<'a> OwnLaws<'a> {
     }
 
     /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
-    fn lower(&self, y: &State) -> (State, f64) {
+    fn seen_from_lower_rim(&self, y: &State) -> (State, f64) {
         if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
             return (*y, 1.0);
         }
@@ -59,17 +59,17 @@ impl<'a> OwnLaws<'a> {
 
     /// The couple of a law at the sine and cosine of theta and w.
     fn value(&self, law: &dyn CoupleLaw, y: [f64; 5], normal: f64) -> [f64; 3] {
-        let (side, y) = upright(y);
-        let [m1, m2, m3] = self.of_state(law, &y, normal);
+        let (side, y) = upright_state(y);
+        let [m1, m2, m3] = self.couple_or_nan(law, &y, normal);
         [side * m1, side * m2, m3]
     }
 
     /// NaN for a law that has failed, and for a wrong value, which is noted.
-    fn of_state(&self, law: &dyn CoupleLaw, y: &State, normal: f64) -> [f64; 3] {
+    fn couple_or_nan(&self, law: &dyn CoupleLaw, y: &State, normal: f64) -> [f64; 3] {
         if law.has_failed() {
             return [f64::NAN; 3];
         }
-        let ((seen, side), normal) = (self.lower(y), normal.max(0.0));
+        let ((seen, side), normal) = (self.seen_from_lower_rim(y), normal.max(0.0));
         let [m1, m2, m3] = law.couple(self.body, &seen, normal);
         if (m1 + m2 + m3).is_nan() && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
             self.fault.set(fault_of_couple([m1, m2, m3], &seen, normal));
@@ -78,7 +78,7 @@ impl<'a> OwnLaws<'a> {
     }
 
     /// The couple about the normal force that `normal` gives for it.
-    fn secants(
+    fn couple_by_secants(
         &self,
         law: &'a dyn CoupleLaw,
         at: [f64; 5],
@@ -134,12 +134,16 @@ impl OwnCouple<f64> for OwnLaws<'_> {
     }
 
     #[inline(never)]
-    fn solved(&self, seen: &Kinematics<f64>, normal: impl Fn(&Couple<f64>) -> f64) -> Option<Couple<f64>> {
+    fn solved_couple(
+        &self,
+        seen: &Kinematics<f64>,
+        normal: impl Fn(&Couple<f64>) -> f64,
+    ) -> Option<Couple<f64>> {
         let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
-        self.custom.couple.map(|law| self.secants(law, [s, c, w1, w2, w3], normal))
+        self.custom.couple.map(|law| self.couple_by_secants(law, [s, c, w1, w2, w3], normal))
     }
 
-    fn takes(&self, seen: &Kinematics<f64>, normal: f64) -> Option<f64> {
+    fn power_taken(&self, seen: &Kinematics<f64>, normal: f64) -> Option<f64> {
         let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
         let at = [s, c, w1, w2, w3];
         let m = match self.last.get() {
@@ -157,7 +161,7 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
 
     /// The slope of the part that does not depend on the normal force is that of the couple where this force is constant.
     #[inline(never)]
-    fn solved(
+    fn solved_couple(
         &self,
         seen: &Kinematics<Dual<f64>>,
         normal: impl Fn(&Couple<Dual<f64>>) -> Dual<f64>,
@@ -167,7 +171,7 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
         let dual =
             |found: &Couple<f64>| Couple { free: found.free.map(still), pressed: found.pressed.map(still) };
         let at = |found: &Couple<f64>| normal(&dual(found)).value;
-        let found = self.secants(law, y.map(|x| x.value), at);
+        let found = self.couple_by_secants(law, y.map(|x| x.value), at);
         let normal = at(&found);
         let fastest = y.iter().fold(1.0, |most: f64, x| most.max(x.value.abs()));
         let changes = y.iter().fold(0.0, |most: f64, x| most.max(x.slope.abs()));
@@ -186,7 +190,7 @@ impl Own for OwnLaws<'_> {
     const IS: bool = true;
 
     fn couple_at(&self, y: &State, normal: f64) -> [f64; 3] {
-        self.custom.couple.map_or([0.0; 3], |law| self.of_state(law, y, normal))
+        self.custom.couple.map_or([0.0; 3], |law| self.couple_or_nan(law, y, normal))
     }
 
     fn has_failed(&self) -> bool {
@@ -207,7 +211,7 @@ impl Own for OwnLaws<'_> {
                 speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
             };
             let turns = |(law, (y, normal)): (&dyn CoupleLaw, ([f64; 5], f64))| {
-                let (seen, normal) = (self.lower(&upright(y).1).0, normal.max(0.0));
+                let (seen, normal) = (self.seen_from_lower_rim(&upright_state(y).1).0, normal.max(0.0));
                 fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
             };
             let fault = self.custom.couple.zip(at).and_then(turns);
@@ -262,7 +266,7 @@ mod tests {
         let found = laws(|of| {
             let rim = of.body.shape().map(|value| Dual { value, slope: 0.0 }).rim;
             let seen = Kinematics::of(&rim, (s, c), w1 / s, [w1, w2, w3]);
-            of.solved(&seen, |_: &Couple<Dual<f64>>| normal).unwrap().under(normal)
+            of.solved_couple(&seen, |_: &Couple<Dual<f64>>| normal).unwrap().under(normal)
         });
         let by = 1e-5;
         let along = |by: f64| {

@@ -27,7 +27,7 @@ use core::cell::{Cell, RefCell};
 use laws::OwnLaws;
 
 /// The default tolerance of a step, since a user-defined law may be slow.
-const FAIR: f64 = 1e-10;
+const CUSTOM_TOLERANCE: f64 = 1e-10;
 /// Count of numbers of such a motion: those of a slip, the pose and the energy lost.
 const CUSTOM_NUMBERS: usize = 14;
 
@@ -119,7 +119,7 @@ pub(crate) fn stone_followed(
     }
     let (mut ask, fault) = (on_own_table(ask, &custom), Cell::new(None));
     if ask.method == Method::Exact && custom.friction.is_some() {
-        ask.method = Method::Tolerance(FAIR);
+        ask.method = Method::Tolerance(CUSTOM_TOLERANCE);
     }
     let own = custom.friction.map(|law| OwnFriction { law, fault: &fault });
     let mut go_on = || !custom.has_failed() && go_on();
@@ -174,7 +174,7 @@ pub(crate) fn followed(
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     check_options(ask, custom)?;
     let tol = body::check_walk(body, start, ask)?;
-    Ok(if ask.method == Method::Exact { FAIR } else { tol })
+    Ok(if ask.method == Method::Exact { CUSTOM_TOLERANCE } else { tol })
 }
 
 /// Returns an error for options that such laws exclude.

@@ -51,7 +51,7 @@ pub(crate) struct BranchPoint<T> {
 impl<T: Real> Branch<T> {
     /// The place with n and m computed from sine and cosine, which is accurate where neither n nor m is small.
     #[inline(always)]
-    pub fn plain(&self, angle: (T, T)) -> BranchAngle<T> {
+    pub fn angle_in_doubles(&self, angle: (T, T)) -> BranchAngle<T> {
         let n = -self.shape.rim.lever(angle);
         let m = n + self.excess * (angle.1 * self.shape.rim.radius(angle));
         BranchAngle { angle, n, m }
@@ -135,12 +135,12 @@ impl Exact {
         Self { body: *body, branch, balance, limit }
     }
 
-    pub fn place(&self, theta: Sum<f64>) -> BranchAngle<f64> {
-        self.place_at(theta, (self.balance - theta).hi)
+    pub fn angle_at(&self, theta: Sum<f64>) -> BranchAngle<f64> {
+        self.angle_below_balance(theta, (self.balance - theta).hi)
     }
 
     /// The place at an inclination whose distance `below` theta0 is known more precisely.
-    pub fn place_at(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
+    pub fn angle_below_balance(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
         let rim = self.branch.shape.rim;
         let (s, c) = sum_sin_cos(theta);
         // A ball has no theta0, so that its n comes from the lever.

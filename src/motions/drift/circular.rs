@@ -164,16 +164,16 @@ impl<T: Real> Circular<T> {
 impl Circular<f64> {
     /// Whether a body lies nearly flat on a face and spins so fast that only the terms of S in Omega count: w1/w3 = A L/(I1
     /// + L^2).
-    pub fn spins_flat(&self, [theta, rate, w3, _]: &Numbers<f64>, far: f64) -> bool {
-        const MUCH: f64 = 1e12;
+    pub fn is_flat_and_fast(&self, [theta, rate, w3, _]: &Numbers<f64>, far: f64) -> bool {
+        const FLAT_SPIN_RATIO: f64 = 1e12;
         let (rim, (s, c)) = (&self.of.shape.rim, theta.sin_cos());
         let height = rim.height((s, far * c));
-        (height * w3 * rate).abs() > MUCH && rim.a * height.abs() > MUCH * theta
+        (height * w3 * rate).abs() > FLAT_SPIN_RATIO && rim.a * height.abs() > FLAT_SPIN_RATIO * theta
     }
 }
 
 /// theta |dt/dtheta|, the time per e-fold of the inclination.
 #[inline(always)]
-pub(crate) fn unit<T: Real, const N: usize>(y: &[T; N], rate: &[T; N]) -> T {
+pub(crate) fn time_per_e_fold<T: Real, const N: usize>(y: &[T; N], rate: &[T; N]) -> T {
     (y[0] * rate[3] / rate[0]).abs()
 }

@@ -58,7 +58,7 @@ pub(crate) struct DriftClock {
 
 impl ClockPath {
     /// The point at x, and |dtheta/dx|.
-    fn spot(&self, leg: ClockLeg, x: f64) -> (WayPoint, f64) {
+    fn point_on_leg(&self, leg: ClockLeg, x: f64) -> (WayPoint, f64) {
         match leg {
             ClockLeg::Begin { behind } => {
                 let gone = behind * x.exp_m1();
@@ -66,16 +66,16 @@ impl ClockPath {
             }
             ClockLeg::End { length, power } => {
                 let rate = length * f64::from(power) * x.powi(power - 1);
-                (self.before_goal(length * x.powi(power)), rate)
+                (self.point_before_goal(length * x.powi(power)), rate)
             }
             ClockLeg::Fade { length } => {
                 let left = length * (-x).exp();
-                (self.before_goal(left), left)
+                (self.point_before_goal(left), left)
             }
         }
     }
 
-    fn before_goal(&self, left: f64) -> WayPoint {
+    fn point_before_goal(&self, left: f64) -> WayPoint {
         WayPoint { theta: self.goal.theta - (self.way * left).into(), left: Some(left) }
     }
 
@@ -87,7 +87,7 @@ impl ClockPath {
         slowness: &impl Fn(&WayPoint) -> [f64; 2],
     ) -> Option<Antiderivative<1>> {
         Antiderivative::new(&part, 0.0, |x| {
-            let (spot, rate) = self.spot(leg, x);
+            let (spot, rate) = self.point_on_leg(leg, x);
             let [slow, size] = slowness(&spot);
             let noise = SLOWNESS_ROUNDINGS * f64::EPSILON * (size / slow).min(1.0 / f64::EPSILON);
             Sampled { value: [slow * rate], scale: [slow * rate], noise }
@@ -100,7 +100,7 @@ const SLOWNESS_ROUNDINGS: f64 = 8.0;
 
 impl TimedLeg {
     /// The time from the beginning of the leg to x.
-    fn since(&self, x: f64) -> f64 {
+    fn time_in_leg(&self, x: f64) -> f64 {
         let [time] = self.time.at(x);
         if let ClockLeg::End { .. } = self.leg { self.time.total[0] - time } else { time }
     }
@@ -165,12 +165,12 @@ impl DriftClock {
             let time = loop {
                 match path.time(leg, [0.0, deep], slowness) {
                     Some(time) => break time,
-                    None if deep < SHALLOW => return None,
+                    None if deep < SHORTEST_HALVED_LEG => return None,
                     None => deep *= 0.8,
                 }
             };
             clock.legs.push(TimedLeg { leg, time, begins });
-            let (spot, rate) = path.spot(leg, deep);
+            let (spot, rate) = path.point_on_leg(leg, deep);
             clock.tail =
                 Some([clock.stops(), length * (-deep).exp(), slowness(&spot)[0] * rate, -goal.power]);
         }
@@ -183,7 +183,7 @@ impl DriftClock {
     }
 
     /// The time to the goal; infinite if the goal is never reached.
-    pub fn whole(&self) -> f64 {
+    pub fn time_to_goal(&self) -> f64 {
         if self.tail.is_some() { f64::INFINITY } else { self.stops() }
     }
 
@@ -209,37 +209,39 @@ impl DriftClock {
             (ClockLeg::Begin { behind }, _) if left >= gone => {
                 // Near the start the time keeps its digits if the last piece is integrated anew.
                 let x = (gone / behind).ln_1p();
-                let (from, [before]) = first.time.begun(x);
+                let (from, [before]) = first.time.start_of_piece(x);
                 let rest = if from < x { self.path.time(first.leg, [from, x], slowness) } else { None };
-                rest.map_or_else(|| first.since(x), |rest| before + rest.total[0])
+                rest.map_or_else(|| first.time_in_leg(x), |rest| before + rest.total[0])
             }
             (_, ClockLeg::End { length, power }) => {
-                second.begins + second.since((left / length).powf(1.0 / f64::from(power)).min(1.0))
+                second.begins + second.time_in_leg((left / length).powf(1.0 / f64::from(power)).min(1.0))
             }
-            (_, ClockLeg::Fade { length }) => second.begins + second.since((length / left).ln().max(0.0)),
+            (_, ClockLeg::Fade { length }) => {
+                second.begins + second.time_in_leg((length / left).ln().max(0.0))
+            }
             (_, ClockLeg::Begin { .. }) => f64::NAN,
         }
     }
 
     /// The point of the path at a time; None before the start and after the end.
-    pub fn spot_at(&self, t: f64) -> Option<WayPoint> {
-        if t.is_nan() || t < 0.0 || t > self.whole() * (1.0 + super::SLACK) {
+    pub fn point_at_time(&self, t: f64) -> Option<WayPoint> {
+        if t.is_nan() || t < 0.0 || t > self.time_to_goal() * (1.0 + super::SLACK) {
             return None;
         }
         if let Some([t0, last, slow, power]) = self.tail
             && t >= t0
         {
-            return Some(self.path.before_goal(tail_left(t0, last, slow, power, t)));
+            return Some(self.path.point_before_goal(tail_distance(t0, last, slow, power, t)));
         }
         let Some(leg) = self.legs.iter().find(|leg| t < leg.stops()) else {
-            return Some(self.path.before_goal(0.0));
+            return Some(self.path.point_before_goal(0.0));
         };
-        Some(self.path.spot(leg.leg, leg.place(t - leg.begins)).0)
+        Some(self.path.point_on_leg(leg.leg, leg.place(t - leg.begins)).0)
     }
 }
 
 /// Length in x below which a leg is not halved when its quadrature fails: its time does not overflow.
-const SHALLOW: f64 = 1.0;
+const SHORTEST_HALVED_LEG: f64 = 1.0;
 
 /// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).
 fn tail_time(t: f64, last: f64, slow: f64, power: f64, left: f64) -> f64 {
@@ -253,7 +255,7 @@ fn tail_time(t: f64, last: f64, slow: f64, power: f64, left: f64) -> f64 {
 }
 
 /// The distance that remains in the tail at a time.
-fn tail_left(t0: f64, last: f64, slow: f64, power: f64, t: f64) -> f64 {
+fn tail_distance(t0: f64, last: f64, slow: f64, power: f64, t: f64) -> f64 {
     let ratio = (t - t0) / slow;
     if power == 0.0 { last * (-ratio).exp() } else { last * (1.0 + power * ratio).powf(-1.0 / power) }
 }

@@ -6,7 +6,7 @@
 //! Error: that of `rolling`.
 
 use super::circular::{CirclePoint, Numbers};
-use super::rolling::{DriftStep, MOST, Rolling};
+use super::rolling::{DriftStep, MOST_DRIFT_STEPS, Rolling};
 use super::tail::Tail;
 use super::{DriftState, End, SLACK};
 use crate::error::Error;
@@ -34,12 +34,12 @@ impl DriftCourse {
     pub fn new(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         let (of, start) = Rolling::begin(body, y, losses)?;
         let steps = RefCell::default();
-        let mut watched = of.watched(&steps);
-        let flown = watched.follow(start, None, MOST)?;
+        let mut watched = of.recording_steps(&steps);
+        let flown = watched.follow(start, None, MOST_DRIFT_STEPS)?;
         let Some((end, tail)) = watched.ended(&flown) else {
             return Err(Error::Lost { theta: watched.counted(flown.y[0]) });
         };
-        let of = of.counting_from(watched.far);
+        let of = of.with_inclination_from(watched.far);
         Ok(Self { of, steps: steps.into_inner(), end, last: flown.y, tail, turns: y.w1.signum() })
     }
 
@@ -50,7 +50,7 @@ impl DriftCourse {
 
     /// The equations with the inclination counted as in this step.
     fn of(&self, step: &DriftStep) -> Rolling<'static> {
-        self.of.counting_from(step.far)
+        self.of.with_inclination_from(step.far)
     }
 
     /// The first time at which the drift reaches an inclination; NaN if the drift never does.
@@ -80,7 +80,7 @@ impl DriftCourse {
         let goal = self.of.counted(theta);
         match &self.tail {
             Some(tail) if (0.0..=self.last[0]).contains(&goal) => {
-                self.last[3] + tail.until(goal / self.last[0])
+                self.last[3] + tail.time_until(goal / self.last[0])
             }
             _ => f64::NAN,
         }
@@ -99,28 +99,32 @@ impl DriftCourse {
                 let h = search::crossing(miss, 0.0, step.h, step.from.y[3] - t, step.to[3] - t);
                 (of, of.part(&step.from, h))
             }
-            (None, Some(tail)) => return Some(self.landing(tail, t)),
+            (None, Some(tail)) => return Some(self.state_in_tail(tail, t)),
             (None, None) => (self.of, self.last),
         };
         let CirclePoint { w1, speed, .. } = of.of.at(&y, of.far);
         let theta = if step.is_some() { of.counted(y[0]) } else { self.end.1 };
-        Some(self.turned(State { theta, w1, w2: 0.0, w3: y[2] }, y[1], speed))
+        Some(self.with_mirror_image(State { theta, w1, w2: 0.0, w3: y[2] }, y[1], speed))
     }
 
     /// The state with Omega and |V|, for the body itself where its mirror image drifts.
-    fn turned(&self, y: State, rate: f64, speed: f64) -> DriftState {
+    fn with_mirror_image(&self, y: State, rate: f64, speed: f64) -> DriftState {
         let state = State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y };
         DriftState { state, precession: self.turns * rate, friction_coefficient: speed * rate.abs() }
     }
 
     /// The state at a time in the tail.
-    fn landing(&self, tail: &Tail, t: f64) -> DriftState {
+    fn state_in_tail(&self, tail: &Tail, t: f64) -> DriftState {
         let [last, rate, w3, from] = self.last;
         let left = tail.at(t - from);
         let (w1, w3) = (self.of.of.at(&self.last, self.of.far).w1 * left.w1, w3 * left.w3);
         let theta = last * left.theta;
         let (s, c) = theta.sin_cos();
         let speed = self.of.of.speed((s, self.of.far * c), w1, w3).abs();
-        self.turned(State { theta: self.of.counted(theta), w1, w2: 0.0, w3 }, rate * left.rate, speed)
+        self.with_mirror_image(
+            State { theta: self.of.counted(theta), w1, w2: 0.0, w3 },
+            rate * left.rate,
+            speed,
+        )
     }
 }

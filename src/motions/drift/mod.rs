@@ -35,11 +35,11 @@ use rest::Rest;
 /// A drift that begins at the time 0. Times are in sqrt(R/g), angles in radians, rates in sqrt(g/R).
 #[derive(Debug, Clone)]
 pub struct Drift {
-    kept: Kept,
+    kind: DriftVariant,
 }
 
 #[derive(Debug, Clone)]
-enum Kept {
+enum DriftVariant {
     Rest(Box<Rest>),
     Rolling(Box<DriftCourse>),
 }
@@ -68,7 +68,7 @@ impl Drift {
     /// ```
     pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         check_drift(body, losses)?;
-        Ok(Self { kept: Kept::Rest(Box::new(Rest::new(body, theta, losses)?)) })
+        Ok(Self { kind: DriftVariant::Rest(Box::new(Rest::new(body, theta, losses)?)) })
     }
 
     /// The drift of a body that rolls, from a steady state whose centre is at rest or moves along a circle.
@@ -77,13 +77,13 @@ impl Drift {
     /// a state that is unstable in rolling, kappa <= 0.
     pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         check_drift(body, losses)?;
-        Ok(Self { kept: Kept::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })
+        Ok(Self { kind: DriftVariant::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })
     }
 
     fn end(&self) -> (End, f64, f64) {
-        match &self.kept {
-            Kept::Rest(rest) => rest.end(),
-            Kept::Rolling(roll) => roll.end(),
+        match &self.kind {
+            DriftVariant::Rest(rest) => rest.end(),
+            DriftVariant::Rolling(roll) => roll.end(),
         }
     }
 
@@ -104,18 +104,18 @@ impl Drift {
 
     /// The time in sqrt(R/g) until which rolling is stable: 0 if the first state is unstable, infinite if all states are stable.
     pub fn stable_until(&self) -> f64 {
-        match &self.kept {
-            Kept::Rest(rest) => rest.stable_until(),
-            Kept::Rolling(roll) if roll.end().0 == End::StabilityLost => roll.end().2,
-            Kept::Rolling(_) => f64::INFINITY,
+        match &self.kind {
+            DriftVariant::Rest(rest) => rest.stable_until(),
+            DriftVariant::Rolling(roll) if roll.end().0 == End::StabilityLost => roll.end().2,
+            DriftVariant::Rolling(_) => f64::INFINITY,
         }
     }
 
     /// The first time, in sqrt(R/g), at which the drift reaches an inclination; NaN if the drift never does.
     pub fn time(&self, theta: f64) -> f64 {
-        match &self.kept {
-            Kept::Rest(rest) => rest.time(theta),
-            Kept::Rolling(roll) => roll.time(theta),
+        match &self.kind {
+            DriftVariant::Rest(rest) => rest.time(theta),
+            DriftVariant::Rolling(roll) => roll.time(theta),
         }
     }
 
@@ -141,9 +141,9 @@ impl Drift {
 
     /// The state at a time, with its precession and the coefficient of friction that is needed.
     pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
-        match &self.kept {
-            Kept::Rest(rest) => rest.at(t),
-            Kept::Rolling(roll) => roll.at_time(t),
+        match &self.kind {
+            DriftVariant::Rest(rest) => rest.at(t),
+            DriftVariant::Rolling(roll) => roll.at_time(t),
         }
     }
 }

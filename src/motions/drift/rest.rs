@@ -29,7 +29,7 @@ pub(crate) struct Rest {
     path: BranchPath,
     /// The largest coefficient of the losses. The clock runs in the time multiplied by it, so that no time
     /// overflows.
-    most: f64,
+    largest_coefficient: f64,
     clock: DriftClock,
     stable_until: f64,
 }
@@ -48,8 +48,10 @@ impl BranchPath {
     fn at(&self, spot: &WayPoint) -> BranchPoint<f64> {
         // Close to theta0 the terms keep their digits if they follow from the distance to theta0.
         self.of.at(match spot.left {
-            Some(left) if self.goal.end == End::Balanced => self.of.place_at(spot.theta, self.way * left),
-            _ => self.of.place(spot.theta),
+            Some(left) if self.goal.end == End::Balanced => {
+                self.of.angle_below_balance(spot.theta, self.way * left)
+            }
+            _ => self.of.angle_at(spot.theta),
         })
     }
 
@@ -75,9 +77,10 @@ impl Rest {
     /// The drift without `stable_until`, which needs a search for the limits of stability.
     pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         steady::state(body, theta)?;
-        let most = losses.coefficients.iter().fold(0f64, |most, x| most.max(*x));
-        let of = Exact::new(body, Couples::of(losses, |x| x / most));
-        let down = of.at(of.place(theta.into())).slope >= 0.0;
+        let largest_coefficient =
+            losses.coefficients.iter().fold(0f64, |largest_coefficient, x| largest_coefficient.max(*x));
+        let of = Exact::new(body, Couples::of(losses, |x| x / largest_coefficient));
+        let down = of.at(of.angle_at(theta.into())).slope >= 0.0;
         let goal = goal(&of, losses, theta, down);
         let several = losses.coefficients.iter().filter(|x| **x > 0.0).count() > 1;
         let edges = [0.0, PI, body.theta_balance(), body.theta_limit()];
@@ -85,21 +88,25 @@ impl Rest {
         let behind = behind.filter(|x| *x > 0.0).fold(1.0, f64::min);
         let path = BranchPath { of, goal, way: if down { -1.0 } else { 1.0 } };
         if let Some(clock) = DriftClock::new(theta, goal, behind, several, &path.slowness()) {
-            return Ok(Self { path, most, clock, stable_until: 0.0 });
+            return Ok(Self { path, largest_coefficient, clock, stable_until: 0.0 });
         }
         if !several {
             return Err(Error::Lost { theta });
         }
         // A second, very small loss can make the time overflow next to the end, and has no effect elsewhere;
         // so the smallest loss is left out.
-        let least = losses.coefficients.iter().filter(|x| **x > 0.0).fold(most, |least, x| least.min(*x));
+        let least = losses
+            .coefficients
+            .iter()
+            .filter(|x| **x > 0.0)
+            .fold(largest_coefficient, |least, x| least.min(*x));
         let coefficients = losses.coefficients.map(|x| if x == least { 0.0 } else { x });
         Self::unwatched(body, theta, &Losses { coefficients })
     }
 
     /// The end of the drift, its inclination and its time.
     pub fn end(&self) -> (End, f64, f64) {
-        (self.path.goal.end, self.path.goal.theta.hi, self.clock.whole() / self.most)
+        (self.path.goal.end, self.path.goal.theta.hi, self.clock.time_to_goal() / self.largest_coefficient)
     }
 
     /// The first time at which kappa of rolling vanishes: 0 for an unstable start, infinite if kappa stays positive.
@@ -108,21 +115,21 @@ impl Rest {
     }
 
     pub fn time(&self, theta: f64) -> f64 {
-        self.clock.time(theta, &self.path.slowness()) / self.most
+        self.clock.time(theta, &self.path.slowness()) / self.largest_coefficient
     }
 
     pub fn at(&self, t: f64) -> Option<DriftState> {
-        let spot = self.clock.spot_at(t * self.most)?;
+        let spot = self.clock.point_at_time(t * self.largest_coefficient)?;
         let theta = spot.theta.hi;
         if self.path.goal.end == End::Face && spot.left == Some(0.0) {
             // At the face w1 = Omega sin theta vanishes as the square root of theta.
-            return Some(resting(State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
+            return Some(drift_state(State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }, f64::INFINITY));
         }
         let BranchPoint { turning: [w1, w3], rate, .. } = self.path.at(&spot);
-        Some(resting(State { theta, w1, w2: 0.0, w3 }, rate))
+        Some(drift_state(State { theta, w1, w2: 0.0, w3 }, rate))
     }
 }
 
-fn resting(state: State, precession: f64) -> DriftState {
+fn drift_state(state: State, precession: f64) -> DriftState {
     DriftState { state, precession, friction_coefficient: 0.0 }
 }

@@ -10,7 +10,7 @@
 //! Error: 1e-10 of the time; up to 0.99 of the time also of theta, w1 and Omega, and of w3 over |w|. `test_late_drifts`
 //! compares the drift with 20 digits, and `benches/drifts.py` with DOP853 on (theta, w1, w3).
 
-use super::circular::{CirclePoint, Circular, Numbers, unit};
+use super::circular::{CirclePoint, Circular, Numbers, time_per_e_fold};
 use super::ends::End;
 use super::tail::Tail;
 use crate::error::Error;
@@ -27,12 +27,12 @@ use std::cell::RefCell;
 /// Allowed error of a step, relative to the numbers.
 const TOLERANCE: f64 = 1e-13;
 
-/// The tail begins where the time per e-fold of the inclination falls below the fraction `LITTLE` of the time
-/// so far, and at the latest at the inclination `LAST`. In air alone, where the face never lands, it begins
+/// The tail begins where the time per e-fold of the inclination falls below the fraction `TAIL_TIME_SHARE` of the time
+/// so far, and at the latest at the inclination `LAST_INCLINATION`. In air alone, where the face never lands, it begins
 /// at the fraction `FACE_LANDED` of the first inclination. The condition on the time counts only below the
 /// inclination `LOW`.
-const LITTLE: f64 = 1e-16;
-const LAST: f64 = 1e-140;
+const TAIL_TIME_SHARE: f64 = 1e-16;
+const LAST_INCLINATION: f64 = 1e-140;
 const FACE_LANDED: f64 = 1e-11;
 const LOW: f64 = 1e-3;
 
@@ -41,10 +41,10 @@ const NEARLY_FLAT: f64 = 1e-6;
 
 /// Inclination, in radians, above which it is counted from the other end of [0, pi]; above pi/2, so that the
 /// counting does not change back and forth.
-pub(crate) const FROM_ABOVE: f64 = 1.8;
+pub(crate) const COUNTED_FROM_PI_ABOVE: f64 = 1.8;
 
 /// Greatest number of steps of one drift; a drift that needs more fails.
-pub(crate) const MOST: u64 = 5000;
+pub(crate) const MOST_DRIFT_STEPS: u64 = 5000;
 
 /// Lengths in x of the first step and of the longest step.
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
@@ -84,12 +84,12 @@ pub(crate) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], mad
 
 /// A number that is positive until the tail of a drift begins.
 #[inline(always)]
-pub(crate) fn before_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], last: T) -> T {
+pub(crate) fn until_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], last: T) -> T {
     let number = here(
         #[inline(always)]
         |x: f64| last.splat(x),
     );
-    let early = (y[0] - number(LOW)).max(unit(y, rate) - number(LITTLE) * y[3]);
+    let early = (y[0] - number(LOW)).max(time_per_e_fold(y, rate) - number(TAIL_TIME_SHARE) * y[3]);
     early.min(y[0] - last)
 }
 
@@ -172,7 +172,7 @@ impl Rolling<'_> {
     }
 
     /// Returns this drift with its steps stored.
-    pub fn watched<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
+    pub fn recording_steps<'a>(self, steps: &'a RefCell<Vec<DriftStep>>) -> Rolling<'a>
     where
         Self: 'a,
     {
@@ -180,7 +180,8 @@ impl Rolling<'_> {
     }
 
     /// Returns this drift with the inclination counted from pi if `far` is -1.
-    pub fn counting_from(self, far: f64) -> Self {
+    #[must_use]
+    pub fn with_inclination_from(self, far: f64) -> Self {
         Self { far, ..self }
     }
 
@@ -212,8 +213,8 @@ impl Rolling<'_> {
             DriftHalt::Fails(End::Side) => Some(((End::Side, self.margins.side, y[3]), None)),
             DriftHalt::Fails(end) => Some(((end, self.counted(y[0]), y[3]), None)),
             DriftHalt::Flat => {
-                let fades = self.margins.steady > 0.0 && self.of.spins_flat(&y, self.far);
-                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.airy > 0.0, fades);
+                let fades = self.margins.no_loss_by_lean > 0.0 && self.of.is_flat_and_fast(&y, self.far);
+                let tail = Tail::new(&self.sloped.0, &y, self.far, self.margins.only_air > 0.0, fades);
                 let end = if self.ball { End::Upright } else { End::Face };
                 Some(((end, self.counted(0.0), y[3] + tail.time()), Some(tail)))
             }
@@ -239,14 +240,18 @@ pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
     theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
 }
 
-/// Returns these numbers with the inclination counted from the other end if it is above `FROM_ABOVE`.
+/// Returns these numbers with the inclination counted from the other end if it is above `COUNTED_FROM_PI_ABOVE`.
 fn from_other_end([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
-    if theta < FROM_ABOVE { ([theta, rate, w3, t], far) } else { ([PI - theta, rate, w3, t], -far) }
+    if theta < COUNTED_FROM_PI_ABOVE {
+        ([theta, rate, w3, t], far)
+    } else {
+        ([PI - theta, rate, w3, t], -far)
+    }
 }
 
 /// The first four numbers of a flow.
 #[inline(always)]
-fn four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
+fn first_four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
     [y[0], y[1], y[2], y[3]]
 }
 
@@ -260,7 +265,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        all.copy_from_slice(&self.of.at(&four(y), self.far).rates);
+        all.copy_from_slice(&self.of.at(&first_four(y), self.far).rates);
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; DRIFT_MARGINS] {
@@ -270,7 +275,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let known = self.of.at(&four(y), self.far);
+        let known = self.of.at(&first_four(y), self.far);
         self.margins.all(&known, self.counted(y[0]))[i]
     }
 
@@ -305,13 +310,13 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(DriftHalt, [f64; N])> {
         let y = place.y;
-        if before_tail(&y, &place.rate, self.margins.last) < 0.0 {
+        if until_tail(&y, &place.rate, self.margins.last) < 0.0 {
             return Some((DriftHalt::Flat, y));
         }
-        if self.margins.turns_on(&y, &place.rate) < 0.0 {
+        if self.margins.until_turning_stops(&y, &place.rate) < 0.0 {
             return Some((DriftHalt::Fails(End::DrillingStops), y));
         }
-        (y[0] >= FROM_ABOVE).then_some((DriftHalt::Turned, y))
+        (y[0] >= COUNTED_FROM_PI_ABOVE).then_some((DriftHalt::Turned, y))
     }
 
     fn stuck<const N: usize>(
@@ -319,7 +324,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
         place: &FlowPlace<N>,
         _: &[Dual<f64>; DRIFT_MARGINS],
     ) -> Option<DriftHalt> {
-        if self.margins.turns_on(&place.y, &place.rate) < 0.0 {
+        if self.margins.until_turning_stops(&place.y, &place.rate) < 0.0 {
             return Some(DriftHalt::Fails(End::DrillingStops));
         }
         (place.y[0] < NEARLY_FLAT).then_some(DriftHalt::Flat)
@@ -330,14 +335,18 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
     }
 
     fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
-        let kept = self.of.kept(&four(&y), self.far);
+        let kept = self.of.kept(&first_four(&y), self.far);
         core::array::from_fn(|i| kept[i])
     }
 
     fn passed<const N: usize>(&self, (from, ..): TakenStep<'_, N>, h: f64, to: &FlowPlace<N>) {
         if let Some(steps) = self.steps {
-            let from = FlowPlace { y: four(&from.y), carry: four(&from.carry), rate: four(&from.rate) };
-            steps.borrow_mut().push(DriftStep { from, h, to: four(&to.y), far: self.far });
+            let from = FlowPlace {
+                y: first_four(&from.y),
+                carry: first_four(&from.carry),
+                rate: first_four(&from.rate),
+            };
+            steps.borrow_mut().push(DriftStep { from, h, to: first_four(&to.y), far: self.far });
         }
     }
 
@@ -353,9 +362,9 @@ pub(crate) struct Margins<T> {
     /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
     dry: [T; 2],
     /// 1 if only the drag of the air acts, so that the face never lands, else 0.
-    airy: T,
+    only_air: T,
     /// 1 if no loss depends on the inclination of a body that lies nearly flat, else 0.
-    steady: T,
+    no_loss_by_lean: T,
     /// The inclination below which the tail begins.
     pub last: T,
 }
@@ -376,7 +385,7 @@ impl<T: Real> Margins<T> {
             if law.powers().face[1] < 1.0 {
                 firm = firm + x;
             }
-            if law.is_along() {
+            if law.is_along_contour() {
                 along = along + x;
             }
         }
@@ -384,18 +393,18 @@ impl<T: Real> Margins<T> {
             // A body without a second rim gets a limit above pi, which it never reaches.
             side: theta_end.select_lt(one.splat(PI), theta_end, one.splat(4.0)),
             dry: [dry, drilling].map(|x| zero.select_lt(x, one, zero)),
-            airy: zero.select_lt(firm, zero, one),
-            steady: zero.select_lt(along, zero, one),
-            last: zero.select_lt(firm, one.splat(LAST), start * one.splat(FACE_LANDED)),
+            only_air: zero.select_lt(firm, zero, one),
+            no_loss_by_lean: zero.select_lt(along, zero, one),
+            last: zero.select_lt(firm, one.splat(LAST_INCLINATION), start * one.splat(FACE_LANDED)),
         }
     }
 
     /// A number that is positive until drilling friction would stop the precession within a time below rounding. This
     /// is the end of the drift of a coin that comes upright and rolls straight on.
     #[inline(always)]
-    pub fn turns_on<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
+    pub fn until_turning_stops<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
         let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));
-        let left = -(y[1] * rate[3] / rate[1]) - one.splat(8.0 * LITTLE) * y[3];
+        let left = -(y[1] * rate[3] / rate[1]) - one.splat(8.0 * TAIL_TIME_SHARE) * y[3];
         let falls = rate[1].select_lt(zero, self.dry[1], zero);
         zero.select_lt(falls, left, one)
     }

@@ -12,19 +12,19 @@
 //! Error: 1e-12 of the time of a tail that takes some time. A test of `test_late_drifts` compares this time with the spin,
 //! which falls evenly, and with the three-dimensional model.
 
-use super::circular::{Circular, Numbers, unit};
+use super::circular::{Circular, Numbers, time_per_e_fold};
 use crate::methods::antiderivative::{Antiderivative, Sampled};
 use crate::methods::search;
 use crate::numbers::{Dual, Real, Sum};
 
 /// Exponent of the remaining time up to which, in air alone, the face never lands.
-const SLOW: f64 = 0.02;
+const LARGEST_EXPONENT_IN_AIR: f64 = 0.02;
 
 /// Share of the time so far below which the time of the tail needs no precise exponent.
-const NOTHING: f64 = 1e-13;
+const NEGLIGIBLE_TAIL: f64 = 1e-13;
 
 /// Greatest z of a spin that fades: exp(-40) of it remains, a rounding error.
-const FADED: f64 = 40.0;
+const FADED_EXPONENT: f64 = 40.0;
 
 /// The rest of a drift after its last step, up to a face that lands or a ball that stands on its pole.
 #[derive(Debug, Clone)]
@@ -60,12 +60,12 @@ impl Tail {
     /// independently of theta. A tail that takes some time needs a precise exponent.
     pub fn new(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64, airy: bool, fades: bool) -> Self {
         let tail = Powers::of(powers(of, *y, far), airy);
-        if tail.time() < NOTHING * y[3] {
+        if tail.time() < NEGLIGIBLE_TAIL * y[3] {
             return Self::Powers(tail);
         }
         if fades
             && !airy
-            && let Some(fade) = Self::fade(of, y, far)
+            && let Some(fade) = Self::fading_spin(of, y, far)
         {
             return fade;
         }
@@ -74,19 +74,19 @@ impl Tail {
     }
 
     /// The spin that fades; None if its time cannot be resolved.
-    fn fade(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64) -> Option<Self> {
+    fn fading_spin(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64) -> Option<Self> {
         let dual = Dual::constant;
         let rates = |z: f64| {
             let [theta, rate, w3] = [y[0], y[1] * (-z).exp(), y[2] * (-z).exp()];
             let known = of.at(&[theta, rate, w3, y[3]].map(dual), dual(far)).rates.map(|x| x.value);
             [(w3 * known[3] / known[2]).abs(), (w3 * known[0] / (known[2] * theta)).abs()]
         };
-        let integrals = Antiderivative::new(&[0.0, FADED], 0.0, |z| {
+        let integrals = Antiderivative::new(&[0.0, FADED_EXPONENT], 0.0, |z| {
             let value = rates(z);
             Sampled { value, scale: value, noise: 8.0 * f64::EPSILON }
         })?;
-        // Beyond `FADED` the spin falls at a constant rate, and the rest takes w3/w3'.
-        let time = integrals.total[0] + rates(FADED)[0];
+        // Beyond `FADED_EXPONENT` the spin falls at a constant rate, and the rest takes w3/w3'.
+        let time = integrals.total[0] + rates(FADED_EXPONENT)[0];
         Some(Self::Fade(integrals, time))
     }
 
@@ -99,16 +99,17 @@ impl Tail {
     }
 
     /// The time after which the fraction `left` of the inclination remains.
-    pub fn until(&self, left: f64) -> f64 {
+    pub fn time_until(&self, left: f64) -> f64 {
         match self {
-            Self::Powers(of) => of.until(left),
+            Self::Powers(of) => of.time_until(left),
             Self::Fade(integrals, time) => {
                 let miss = |z: f64| integrals.at(z)[1] + left.ln();
-                let (first, last) = (miss(0.0), miss(FADED));
+                let (first, last) = (miss(0.0), miss(FADED_EXPONENT));
                 if last < 0.0 {
                     return *time;
                 }
-                let z = if first >= 0.0 { 0.0 } else { search::crossing(miss, 0.0, FADED, first, last) };
+                let z =
+                    if first >= 0.0 { 0.0 } else { search::crossing(miss, 0.0, FADED_EXPONENT, first, last) };
                 integrals.at(z)[0]
             }
         }
@@ -135,14 +136,19 @@ impl Powers {
     fn of([unit, power, along, axial]: [f64; 4], airy: bool) -> Self {
         // An exponent that is only a rounding error counts as 0.
         let power = if power.abs() < 1e-9 { 0.0 } else { power };
-        Self { unit, power, lands: power > if airy { SLOW } else { 0.0 }, turning: [along, axial] }
+        Self {
+            unit,
+            power,
+            lands: power > if airy { LARGEST_EXPONENT_IN_AIR } else { 0.0 },
+            turning: [along, axial],
+        }
     }
 
     fn time(&self) -> f64 {
         if self.lands { self.unit / self.power } else { f64::INFINITY }
     }
 
-    fn until(&self, left: f64) -> f64 {
+    fn time_until(&self, left: f64) -> f64 {
         if self.power == 0.0 {
             -self.unit * left.ln()
         } else {
@@ -174,7 +180,7 @@ fn powers<T: Real>(of: &Circular<Dual<T>>, y: Numbers<T>, far: T) -> [T; 4] {
     for _ in 0..2 {
         let y = core::array::from_fn(|i| dual(steady[i], slopes[i]));
         let rate = of.at(&y, far).rates;
-        (slopes, lasts) = (rate.map(|x| x.value), unit(&y, &rate));
+        (slopes, lasts) = (rate.map(|x| x.value), time_per_e_fold(&y, &rate));
     }
     let fold = slopes[0] / steady[0];
     let axial = slopes[2] / steady[2] / fold;

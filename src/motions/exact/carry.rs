@@ -19,11 +19,11 @@ use crate::numbers::power::horner;
 use crate::numbers::{Sum, long_sin_cos};
 
 /// Number of terms of a series whose error is 1e-36 within half the reach.
-const CARRIED: usize = 44;
+const CARRY_TERMS: usize = 44;
 
 /// A place along a motion, to 32 digits.
 #[derive(Debug, Clone)]
-pub(super) struct Carried {
+pub(super) struct PrecisePlace {
     /// s, c, P and n.
     pub at: [Sum<f64>; 4],
     /// Twice the energy of the rotation w2, J w2^2.
@@ -36,7 +36,7 @@ pub(super) struct Origin {
     law: Reduced<Sum<f64>>,
     poles: Poles,
     twice_energy: Sum<f64>,
-    start: Carried,
+    start: PrecisePlace,
 }
 
 impl Origin {
@@ -47,18 +47,18 @@ impl Origin {
         let law = Reduced::of(contact, &shape, !body.is_sharp());
         let [s, c] = long_sin_cos(y.theta);
         let tilting = law.inertia(|| (s, c)) * w2 * w2;
-        let twice_energy = tilting + law.untilted((s, c), w1, w3);
+        let twice_energy = tilting + law.energy_without_tilting((s, c), w1, w3);
         let poles = Poles::of(&contact.reduced(body));
-        Self { law, poles, twice_energy, start: Carried { at: [s, c, w1 * s, w3], tilting } }
+        Self { law, poles, twice_energy, start: PrecisePlace { at: [s, c, w1 * s, w3], tilting } }
     }
 
-    pub fn start(&self) -> &Carried {
+    pub fn start(&self) -> &PrecisePlace {
         &self.start
     }
 
     /// The numbers of a place as the centre of a panel. K, twice the energy less that of the height and of
     /// the spin, is a sum of squares.
-    pub fn centre(&self, place: &Carried) -> PanelCentre {
+    pub fn centre(&self, place: &PrecisePlace) -> PanelCentre {
         let [s, c, p, n] = place.at;
         let (of, rim, w1) = (self.law.at((s, c)), &self.law.shape.rim, p / s);
         let k = if self.law.round {
@@ -74,7 +74,7 @@ impl Origin {
 
     /// G and its slope at a place.
     #[inline(always)]
-    pub fn g(&self, place: &Carried) -> [f64; 2] {
+    pub fn g_and_slope(&self, place: &PrecisePlace) -> [f64; 2] {
         let [s, c, p, n] = place.at;
         let of = self.law.at((s, c));
         let push = self.law.tilting(&of, (s, c), p / s, n);
@@ -84,22 +84,22 @@ impl Origin {
     }
 
     /// The motion at the distance `by` in x from the start, where `x` is ln tan(theta/2) of the start.
-    pub fn carried(&self, x: f64, by: f64) -> Carried {
-        crate::numbers::in_registers!(self.carry(x, by))
+    pub fn place_in_full(&self, x: f64, by: f64) -> PrecisePlace {
+        crate::numbers::in_registers!(self.advance(x, by))
     }
 
     #[inline(always)]
-    fn carry(&self, mut x: f64, by: f64) -> Carried {
+    fn advance(&self, mut x: f64, by: f64) -> PrecisePlace {
         let (mut at, mut left) = (self.start.at, by);
         while left != 0.0 {
             let most = 0.5 * self.poles.reach(x);
             let h = left.max(-most).min(most);
-            let [s, c, p, n, ..] = lines::<Sum<f64>, CARRIED>(&self.law, at);
+            let [s, c, p, n, ..] = lines::<Sum<f64>, CARRY_TERMS>(&self.law, at);
             at = [s, c, p, n].map(|series| horner(&series, h.into()));
             left -= h;
             x += h;
         }
         let [s, c, p, n] = at;
-        Carried { at, tilting: self.twice_energy - self.law.untilted((s, c), p / s, n) }
+        PrecisePlace { at, tilting: self.twice_energy - self.law.energy_without_tilting((s, c), p / s, n) }
     }
 }

@@ -28,16 +28,16 @@ impl Swing {
         // The uncertainty of a landing is that of the motion just before.
         let t = self.landing(t).map_or(t, |(limit, _)| t.signum() * t.abs().min(limit * (1.0 - 1e-6)));
         let phase = self.phase_at(t);
-        let at = self.local(phase.spot);
+        let at = self.point_on_stretch(phase.spot);
         let y = self.state_at(phase.spot, phase.time >= 0.0);
         let dy = self.contact.derivative(&self.body, &y);
         let doubt = self.time_doubt(&phase, t);
         let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
-        let rate = rate.max(self.departure(phase.spot, doubt));
+        let rate = rate.max(self.largest_difference(phase.spot, doubt));
         // The uncertainty of the ends moves the state along x.
         let [low, high] = self.lines.range();
         let part = ((at.x - low) / (high - low)).clamp(0.0, 1.0);
-        let [at_low, at_high] = self.shifts();
+        let [at_low, at_high] = self.uncertainties_of_ends();
         let shift = (1.0 - part) * at_low + part * at_high;
         let [p, n] = self.lines.slope(&at);
         let along = (p / at.s).abs() + (at.p / at.s * at.c).abs() + n.abs() + at.s;
@@ -63,7 +63,7 @@ impl Swing {
             let curvature = f64::EPSILON * self.lines.terms_at(0, 0.0) / (start.reach * start.reach);
             0.5 * period * (curvature / start.g[2]).abs()
         } else {
-            2.0 * self.whole.doubt
+            2.0 * self.half_nutation.doubt
         };
         doubt + 64.0 * f64::EPSILON * period
     }
@@ -74,7 +74,7 @@ impl Swing {
         let doubt = if self.is_steady() {
             self.start.precession().abs() * self.period_error()
         } else {
-            2.0 * self.whole.turns_doubt[0]
+            2.0 * self.half_nutation.turns_doubt[0]
         };
         doubt + 64.0 * f64::EPSILON * turn.abs()
     }
@@ -90,16 +90,16 @@ impl Swing {
     pub(super) fn time_doubt(&self, phase: &SwingPhase, t: f64) -> f64 {
         let unfolded = |periods: f64, time: f64, spot: LegPoint| {
             let doubt = self.legs[spot.leg].doubt(spot.v);
-            2.0 * periods * self.whole.doubt + if time < 0.0 { -doubt } else { doubt }
+            2.0 * periods * self.half_nutation.doubt + if time < 0.0 { -doubt } else { doubt }
         };
         let now = unfolded(phase.periods, phase.time, phase.spot);
         let start = self.at_start;
         let gone = (now - unfolded(0.0, self.phase, start)).abs();
         // The place of the start is uncertain too.
         let leg = &self.legs[start.leg];
-        let at = self.local(start);
+        let at = self.point_on_stretch(start);
         let [low, high] = self.lines.range();
-        let [at_low, at_high] = self.shifts();
+        let [at_low, at_high] = self.uncertainties_of_ends();
         let nearer = |shift: f64, distance: f64| {
             if shift < at.noise * distance.abs() { shift / distance.abs() } else { at.noise }
         };
@@ -107,24 +107,24 @@ impl Swing {
             if leg.stretch.is_whole() { nearer(at_low, -low) + nearer(at_high, high) } else { at.noise };
         let slow = at.s * at.s * self.inertia(&at).sqrt() * at.x_per_root;
         let placed = (relative + f64::EPSILON) * leg.stretch.stiffness(start.v) * slow;
-        gone + placed + f64::EPSILON * (t.abs() + self.whole.time)
+        gone + placed + f64::EPSILON * (t.abs() + self.half_nutation.time)
     }
 
     /// Uncertainties of both ends in x.
-    fn shifts(&self) -> [f64; 2] {
+    fn uncertainties_of_ends(&self) -> [f64; 2] {
         [false, true].map(|upper| {
             if self.lines.reaches_pole()[usize::from(upper)] {
                 return 0.0;
             }
             let end = self.end(upper);
             let stretch = &self.legs[end.leg].stretch;
-            if stretch.is_whole() { self.local(end).noise } else { stretch.shift() + f64::EPSILON }
+            if stretch.is_whole() { self.point_on_stretch(end).noise } else { stretch.shift() + f64::EPSILON }
         })
     }
 
     /// Greatest difference of states per unit of `doubt`, the uncertainty of the time; 0 where `doubt` is so
     /// small that the rate of the state suffices.
-    fn departure(&self, now: LegPoint, doubt: f64) -> f64 {
+    fn largest_difference(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);
             // Landing on the face and passing the pole happen at full speed, without any growth of errors.
@@ -133,14 +133,14 @@ impl Swing {
             }
             most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))
         });
-        let growth = growth.max(0.0).sqrt() + 1.0 / self.whole.time;
+        let growth = growth.max(0.0).sqrt() + 1.0 / self.half_nutation.time;
         if doubt * growth <= 0.05 {
             return 0.0;
         }
         let here = self.state_at(now, true);
         let mut most = 0f64;
         for (place, _) in self.nodes() {
-            let there = self.rising(place);
+            let there = self.rising_state(place);
             let tilts = there.w2.abs() + here.w2.abs();
             let off = [there.theta - here.theta, there.w1 - here.w1, tilts, there.w3 - here.w3];
             most = off.iter().fold(most, |a, x| a.max(x.abs()));

@@ -19,7 +19,7 @@ use core::f64::consts::PI;
 
 /// Allowance for rounding in the margin of slip, relative to the terms whose difference is the required friction. With
 /// a smaller allowance, rolling that needs exactly mu N could end by rounding alone.
-const GRIP: f64 = 16.0 * f64::EPSILON;
+const SLIP_MARGIN_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A body with its contact, and the margins of its motion that must stay positive.
 #[derive(Debug, Clone, Copy)]
@@ -39,15 +39,15 @@ impl Limits {
     /// Margins of lift-off and slip; the margin of slip includes an allowance for rounding.
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
-        let [lift, slip] = self.plain_grip(y, dy, angle);
+        let [lift, slip] = self.margins_without_allowance(y, dy, angle);
         let depth = self.rates.reduced().shape.rim.depth(angle).abs();
         let terms = 1.0 + y.w1.abs() / angle.0 * (y.w3.abs() + depth * y.w1.abs());
-        [lift, slip + GRIP * terms]
+        [lift, slip + SLIP_MARGIN_ROUNDING * terms]
     }
 
     /// Margins of lift-off and slip without the allowance for rounding; they determine the time of an event.
     #[inline(always)]
-    fn plain_grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
+    fn margins_without_allowance(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         // Unlimited friction never lets the contact point slip, and on a smooth table slip is no event.
         if self.mu.is_infinite() || self.contact == Contact::Smooth {
             return [newton::normal(&self.rates.reduced().shape, angle, y.w2, dy.w2), 1.0];
@@ -57,14 +57,14 @@ impl Limits {
     }
 
     /// Margins of lift-off and slip at a state, with the allowance for rounding.
-    fn grip_of(&self, y: &State) -> [f64; 2] {
+    fn margins_of_state(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
         self.grip(y, &self.rates.derivative(y, angle), angle)
     }
 
-    fn plain_grip_of(&self, y: &State) -> [f64; 2] {
+    fn margins_of_state_without_allowance(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
-        self.plain_grip(y, &self.rates.derivative(y, angle), angle)
+        self.margins_without_allowance(y, &self.rates.derivative(y, angle), angle)
     }
 
     /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1 without a theta_end.
@@ -77,8 +77,8 @@ impl Limits {
     fn margin(&self, ending: Ending, y: &State) -> f64 {
         match ending {
             Ending::Side => self.side(y),
-            Ending::LiftOff => self.plain_grip_of(y)[0],
-            Ending::Slip => self.plain_grip_of(y)[1],
+            Ending::LiftOff => self.margins_of_state_without_allowance(y)[0],
+            Ending::Slip => self.margins_of_state_without_allowance(y)[1],
             Ending::Done
             | Ending::Face
             | Ending::Invalid
@@ -170,8 +170,9 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
         offer(Ending::Side, side.map(|(t, y)| (t, State { theta: theta_end, ..y })));
     }
     if !swing.is_steady() {
-        let margin = |i: usize| move |u: f64| limits.grip_of(&swing.rising(u))[i];
-        let plain = |i: usize| move |u: f64| limits.plain_grip_of(&swing.rising(u))[i];
+        let margin = |i: usize| move |u: f64| limits.margins_of_state(&swing.rising_state(u))[i];
+        let plain =
+            |i: usize| move |u: f64| limits.margins_of_state_without_allowance(&swing.rising_state(u))[i];
         let lift = violations(swing, margin(0), plain(0), 0);
         let slip =
             if limits.mu.is_infinite() { (None, None) } else { violations(swing, margin(1), plain(1), 5) };

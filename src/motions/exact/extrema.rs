@@ -8,12 +8,12 @@ use crate::methods::search;
 
 /// Least and greatest theta, least N, and greatest coefficient of friction that rolling needs, from time 0 to `end`.
 pub(crate) fn extremes(swing: &Swing, body: &Body, end: f64) -> [f64; 4] {
-    let [from, to] = swing.passed(end);
+    let [from, to] = swing.range_of_places(end);
     let mut nodes: Vec<f64> =
         swing.nodes().into_iter().map(|(u, _)| u).filter(|u| from < *u && *u < to).collect();
     nodes.insert(0, from);
     nodes.push(to);
-    let at = |u: f64| swing.rising(u);
+    let at = |u: f64| swing.rising_state(u);
     let [low, high, mut normal, mut friction] =
         extremes_of(nodes.iter().map(|u| at(*u)).collect::<Vec<_>>().iter(), body, swing.contact());
     for w in nodes.windows(3) {

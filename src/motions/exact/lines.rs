@@ -11,7 +11,9 @@
 //! from the start in twice the digits, which decides whether the motion turns or passes.
 
 use super::carry::Origin;
-use super::panel::{Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, deflated, taylor, value};
+use super::panel::{
+    Certainty, Dip, ORDER, Panel, PanelCentre, PanelTerms, Poles, divided_by_root, taylor, value,
+};
 use crate::laws::body::Body;
 use crate::laws::contact::reduced::Reduced;
 use crate::laws::contact::{Contact, FLAT};
@@ -19,7 +21,7 @@ use crate::laws::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Width in x below which a slow place is checked for the loss of digits; a wider one keeps them.
-const NARROW: f64 = 0.03;
+const NARROW_DIP: f64 = 0.03;
 /// Relative rounding error of the width above which the place is computed again in twice the digits.
 const REFINED: f64 = 1e-12;
 /// Relative rounding error of the width that ends this computation.
@@ -27,7 +29,7 @@ const ENDS_REFINING: f64 = 1e-6;
 
 /// Largest number of places on one side that are computed again, so that the search ends even where rounding repeatedly
 /// shows a place that has been passed.
-const TRIES: u32 = 3;
+const MOST_RECOMPUTED: u32 = 3;
 
 /// Inclination below which a ball is assumed to pass exactly through its pole; the change is a rounding error.
 const POLE: f64 = 1e-13;
@@ -48,7 +50,7 @@ pub(super) struct Turning {
 
 /// A minimum of G between the turning points, its place in its panel, and its width.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slow {
+pub(super) struct SlowPlace {
     pub x: f64,
     pub panel: usize,
     pub local: f64,
@@ -70,21 +72,21 @@ pub(super) struct Lines {
     pub panels: Vec<Panel>,
     pub ends: [SwingEnd; 2],
     /// Least values of G, ascending in x.
-    pub slow: Vec<Slow>,
+    pub slow: Vec<SlowPlace>,
     /// H, if both ends lie in the panel of the start.
-    pub both: Option<Both>,
+    pub both: Option<DividedByEnds>,
 }
 
 /// H as a power series, and the numbers on which its rounding error depends.
 #[derive(Debug, Clone)]
-pub(super) struct Both {
+pub(super) struct DividedByEnds {
     pub h: PanelTerms,
     /// The end that is farther from the start, and H there.
     far: f64,
     at_far: f64,
 }
 
-impl Both {
+impl DividedByEnds {
     /// Rounding error of H at `y`, relative to H, in units of epsilon times the terms of G.
     ///
     /// G and G' are known at the start, and the curvature is not. An error of the curvature moves the farther end,
@@ -96,9 +98,9 @@ impl Both {
 }
 
 /// Whether the motion turns at a place or passes it, with the panel and the position in it.
-enum Settled {
+enum TurnsOrPasses {
     Turns(usize, f64),
-    Passes(Slow),
+    Passes(SlowPlace),
 }
 
 impl Lines {
@@ -121,14 +123,16 @@ impl Lines {
             both: None,
         };
         let start = from.start();
-        let first = lines.about(0.0, from.centre(start)).knowing(from.g(start), Certainty::Start);
+        let first = lines
+            .panel_about(0.0, from.centre(start))
+            .with_exact_centre(from.g_and_slope(start), Certainty::Start);
         if !first.is_finite() {
             return None;
         }
         // The start is itself a slow place if G has its least value there.
         if first.g[0] > 0.0 && first.g[1] == 0.0 && first.g[2] > 0.0 {
             let width = (first.g[0] / first.g[2]).sqrt();
-            lines.slow.push(Slow { x: 0.0, panel: 0, local: 0.0, width });
+            lines.slow.push(SlowPlace { x: 0.0, panel: 0, local: 0.0, width });
         }
         lines.panels.push(first);
         for (side, way) in [(0, -1.0), (1, 1.0)] {
@@ -144,35 +148,37 @@ impl Lines {
             }
             same
         });
-        lines.both = lines.both_divided();
+        lines.both = lines.divided_by_ends();
         Some(lines)
     }
 
-    fn about(&self, centre: f64, start: PanelCentre) -> Panel {
+    fn panel_about(&self, centre: f64, start: PanelCentre) -> Panel {
         let reach = self.poles.reach(self.origin + centre);
         crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
     /// Computes the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
-        let face = way * -(0.5 * self.flat()).ln() - self.origin;
+        let face = way * -(0.5 * self.flat_inclination()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
-        let mut looks = TRIES;
+        let mut looks = MOST_RECOMPUTED;
         'panels: loop {
             let mut dips = Vec::new();
-            let turn = self.panels[panel].walk(y, way, &mut dips);
+            let turn = self.panels[panel].first_zero_or_dips(y, way, &mut dips);
             for dip in dips {
-                let slow = self.slow_at(panel, dip);
+                let slow = self.slow_place_at(panel, dip);
                 if way * (face - slow.x) <= 0.0 {
                     break;
                 }
                 let doubtful = looks > 0 && self.doubtful_dip(&slow);
-                let settled = if doubtful { self.settled(from, slow.x, way) } else { None };
+                let settled = if doubtful { self.turns_or_passes(from, slow.x, way) } else { None };
                 looks -= u32::from(doubtful);
                 match settled {
                     None => self.slow.push(slow),
-                    Some(Settled::Turns(panel, local)) => return Some(self.turning(panel, local, way)),
-                    Some(Settled::Passes(slow)) => {
+                    Some(TurnsOrPasses::Turns(panel, local)) => {
+                        return Some(self.turning_end(panel, local, way));
+                    }
+                    Some(TurnsOrPasses::Passes(slow)) => {
                         (panel, y) = (slow.panel, slow.local);
                         self.slow.push(slow);
                         continue 'panels;
@@ -185,12 +191,14 @@ impl Lines {
                     return Some(SwingEnd { x: face, turning: None });
                 }
                 let doubtful = looks > 0 && self.doubtful_turn(panel, local);
-                let settled = if doubtful { self.settled(from, centre + local, way) } else { None };
+                let settled = if doubtful { self.turns_or_passes(from, centre + local, way) } else { None };
                 looks -= u32::from(doubtful);
                 match settled {
-                    None => return Some(self.turning(panel, local, way)),
-                    Some(Settled::Turns(panel, local)) => return Some(self.turning(panel, local, way)),
-                    Some(Settled::Passes(slow)) => {
+                    None => return Some(self.turning_end(panel, local, way)),
+                    Some(TurnsOrPasses::Turns(panel, local)) => {
+                        return Some(self.turning_end(panel, local, way));
+                    }
+                    Some(TurnsOrPasses::Passes(slow)) => {
                         (panel, y) = (slow.panel, slow.local);
                         self.slow.push(slow);
                         continue;
@@ -204,7 +212,7 @@ impl Lines {
             let edge = &self.panels[panel];
             let [p, n, k] = [&edge.p, &edge.n, &edge.k].map(|series| value(series, way * reach));
             let (s, c) = self.angle(next);
-            let fresh = self.about(next, PanelCentre { at: [s, c, p, n], k, size: edge.size(reach) });
+            let fresh = self.panel_about(next, PanelCentre { at: [s, c, p, n], k, size: edge.size(reach) });
             if !fresh.is_finite() {
                 return None;
             }
@@ -213,13 +221,13 @@ impl Lines {
         }
     }
 
-    fn turning(&self, panel: usize, local: f64, way: f64) -> SwingEnd {
-        let rest = deflated(&self.panels[panel].g, local).map(|g| -way * g);
+    fn turning_end(&self, panel: usize, local: f64, way: f64) -> SwingEnd {
+        let rest = divided_by_root(&self.panels[panel].g, local).map(|g| -way * g);
         SwingEnd { x: self.panels[panel].centre + local, turning: Some(Turning { panel, local, rest }) }
     }
 
-    fn slow_at(&self, panel: usize, dip: Dip) -> Slow {
-        Slow { x: self.panels[panel].centre + dip.local, panel, local: dip.local, width: dip.width }
+    fn slow_place_at(&self, panel: usize, dip: Dip) -> SlowPlace {
+        SlowPlace { x: self.panels[panel].centre + dip.local, panel, local: dip.local, width: dip.width }
     }
 
     /// The size of the terms of which G is the sum, at `y` in a panel.
@@ -248,9 +256,9 @@ impl Lines {
         self.panels[panel].rounding(y, self.terms_at(panel, y))
     }
 
-    fn doubtful_dip(&self, slow: &Slow) -> bool {
+    fn doubtful_dip(&self, slow: &SlowPlace) -> bool {
         let g = value(&self.panels[slow.panel].g, slow.local).max(f64::MIN_POSITIVE);
-        slow.width < NARROW && self.rounding(slow.panel, slow.local) > REFINED * g
+        slow.width < NARROW_DIP && self.rounding(slow.panel, slow.local) > REFINED * g
     }
 
     /// Whether rounding hides the distance of a turning point from the next zero of G.
@@ -262,29 +270,31 @@ impl Lines {
         let width = slope.abs() / half;
         let near = self.panels[panel].known != Certainty::Rounded && local.abs() < 1e-3 * width;
         let size = (half * width * width).max(f64::MIN_POSITIVE);
-        width < NARROW && !near && self.rounding(panel, local) > REFINED * size
+        width < NARROW_DIP && !near && self.rounding(panel, local) > REFINED * size
     }
 
     /// Whether the motion in the direction `way` turns near the place `x` or passes it, computed from the
     /// start in twice the digits.
-    fn settled(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<Settled> {
+    fn turns_or_passes(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<TurnsOrPasses> {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
-            let place = from.carried(self.origin, x);
-            let carried = self.about(x, from.centre(&place)).knowing(from.g(&place), Certainty::Carried);
+            let place = from.place_in_full(self.origin, x);
+            let carried = self
+                .panel_about(x, from.centre(&place))
+                .with_exact_centre(from.g_and_slope(&place), Certainty::PrecisePlace);
             if !carried.is_finite() {
                 return None;
             }
-            let (y, passes, size) = nature(&carried.g, way)?;
+            let (y, passes, size) = nature_of_minimum(&carried.g, way)?;
             let panel = self.panels.len();
             self.panels.push(carried);
             if self.rounding(panel, y) <= ENDS_REFINING * size || round == ROUNDS || x + y == x {
                 return Some(if passes {
                     let half = taylor(&self.panels[panel].g, y)[2];
                     let width = (size.max(f64::MIN_POSITIVE) / half).sqrt();
-                    Settled::Passes(Slow { x: x + y, panel, local: y, width })
+                    TurnsOrPasses::Passes(SlowPlace { x: x + y, panel, local: y, width })
                 } else {
-                    Settled::Turns(panel, y)
+                    TurnsOrPasses::Turns(panel, y)
                 });
             }
             self.panels.pop();
@@ -295,7 +305,7 @@ impl Lines {
 
     /// H as G divided by both ends. The division by the nearer end comes first, from the highest term down; the lowest
     /// term of the second quotient depends on G' at the centre and is computed from the lowest term of the first.
-    fn both_divided(&self) -> Option<Both> {
+    fn divided_by_ends(&self) -> Option<DividedByEnds> {
         let [SwingEnd { turning: Some(low), .. }, SwingEnd { turning: Some(high), .. }] = &self.ends else {
             return None;
         };
@@ -308,11 +318,11 @@ impl Lines {
         } else {
             (high, low.local, 1.0)
         };
-        let mut h = deflated(&near.rest, far).map(|g| sign * g);
+        let mut h = divided_by_root(&near.rest, far).map(|g| sign * g);
         if far != 0.0 {
             h[0] = -sign * near.rest[0] / far;
         }
-        Some(Both { far, at_far: value(&h, far), h })
+        Some(DividedByEnds { far, at_far: value(&h, far), h })
     }
 
     /// Both ends in x, measured from the start.
@@ -331,7 +341,7 @@ impl Lines {
     }
 
     /// The inclination below which a body lies flat or a ball is at its pole, in radians.
-    pub fn flat(&self) -> f64 {
+    pub fn flat_inclination(&self) -> f64 {
         if self.ball { POLE } else { FLAT }
     }
 
@@ -374,7 +384,7 @@ fn cotangent(theta: f64) -> f64 {
 /// For a minimum of G close to 0: the place of the minimum if it is positive, else of the first zero in the direction
 /// `way`; whether the minimum is positive, so that the motion passes; and the size of G with which its rounding error
 /// is compared. None without a minimum within 0.2.
-fn nature(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
+fn nature_of_minimum(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });
     let mut least = -g[1] / (2.0 * g[2]);

@@ -10,7 +10,7 @@ use crate::methods::SHORT_CODE;
 use crate::motions::ask::check_conserving;
 use crate::motions::exact::{self, Swing};
 use crate::motions::rk4::stepped;
-use crate::motions::walk::errors::pressed;
+use crate::motions::walk::errors::with_contact_forces;
 use crate::motions::{Ask, Method, Motion, Start};
 
 /// Tolerance of the integrator where the first integrals lose all their digits.
@@ -69,5 +69,5 @@ fn with_forces(
     // An interrupted motion has all its forces, too.
     let over = found.is_interrupted();
     let mut go_on = || over || go_on();
-    if ask.force { pressed(found, ask.table.contact(), body, &mut go_on) } else { Ok(found) }
+    if ask.force { with_contact_forces(found, ask.table.contact(), body, &mut go_on) } else { Ok(found) }
 }

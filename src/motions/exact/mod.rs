@@ -50,7 +50,7 @@ pub struct Swing {
     /// The legs from the lower end to the upper one; empty for a steady state.
     legs: Vec<Leg>,
     /// The integrals from the lower end to the upper one, half a nutation.
-    whole: Sums,
+    half_nutation: LegSums,
     /// Initial time since the lower turning point, negative before it; `at_start` is the place of the initial state.
     phase: f64,
     at_start: LegPoint,
@@ -67,12 +67,12 @@ struct Leg {
     turns: Option<Antiderivative<2>>,
     path: Option<Antiderivative<2>>,
     /// The integrals from the lower end of the swing to the lower end of this leg.
-    before: Sums,
+    before: LegSums,
 }
 
 /// Time, angles and contact point since the lower end, with their absolute uncertainties.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct LegSums {
     time: f64,
     doubt: f64,
     turns: [f64; 2],
@@ -110,7 +110,7 @@ impl Leg {
     }
 
     fn doubt(&self, v: f64) -> f64 {
-        let (here, all) = (self.clock.doubt_at(v), self.clock.doubt[0]);
+        let (here, all) = (self.clock.uncertainty_at(v), self.clock.doubt[0]);
         self.before.doubt + if self.stretch.way > 0.0 { here } else { all - here }
     }
 
@@ -123,7 +123,7 @@ impl Leg {
     }
 
     /// The integrals from the lower end of the swing to the upper end of this leg.
-    fn after(&self) -> Sums {
+    fn sums_at_end(&self) -> LegSums {
         let mut sums = self.before;
         sums.time += self.clock.total[0];
         sums.doubt += self.clock.doubt[0];
@@ -146,7 +146,7 @@ impl Leg {
 
 /// Relative uncertainty that the error estimate assumes for P at a pole, and so for the angle by which the
 /// turn of phi there differs from pi/2.
-const PASSED: f64 = 1e-9;
+const POLE_UNCERTAINTY: f64 = 1e-9;
 
 /// Returns an error for a body or a state outside the range in which motions are computed.
 pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
@@ -206,7 +206,7 @@ impl Swing {
             contact,
             start: *start,
             legs: Vec::new(),
-            whole: Sums::default(),
+            half_nutation: LegSums::default(),
             phase: 0.0,
             at_start: LegPoint::default(),
             kappa: 0.0,
@@ -221,30 +221,30 @@ impl Swing {
         // of the pole.
         let [through_low, through_high] = swing.through_pole();
         if through_low {
-            swing.whole.time = swing.pole_time(false);
+            swing.half_nutation.time = swing.pole_time(false);
             let turn = swing.pole_turn(false);
-            swing.whole.turns = [turn, -turn];
-            swing.whole.turns_doubt = [PASSED * (FRAC_PI_2 - turn).abs(); 2];
+            swing.half_nutation.turns = [turn, -turn];
+            swing.half_nutation.turns_doubt = [POLE_UNCERTAINTY * (FRAC_PI_2 - turn).abs(); 2];
             if contact == Contact::Rolling {
-                swing.whole.path[1] = -swing.lines.flat();
+                swing.half_nutation.path[1] = -swing.lines.flat_inclination();
             }
         }
         for stretch in swing.lines.stretches() {
             let leg = swing.leg(stretch, pose).ok_or(lost)?;
-            swing.whole = leg.after();
+            swing.half_nutation = leg.sums_at_end();
             swing.legs.push(leg);
         }
         if through_high {
-            swing.whole.time += swing.pole_time(true);
+            swing.half_nutation.time += swing.pole_time(true);
             if contact == Contact::Rolling {
-                let (sin, cos) = swing.whole.turns[0].sin_cos();
-                swing.whole.path[0] -= swing.lines.flat() * cos;
-                swing.whole.path[1] -= swing.lines.flat() * sin;
+                let (sin, cos) = swing.half_nutation.turns[0].sin_cos();
+                swing.half_nutation.path[0] -= swing.lines.flat_inclination() * cos;
+                swing.half_nutation.path[1] -= swing.lines.flat_inclination() * sin;
             }
             let more = swing.pole_turn(true);
-            swing.whole.turns = swing.whole.turns.map(|turn| turn + more);
-            let doubt = PASSED * (FRAC_PI_2 - more).abs();
-            swing.whole.turns_doubt = swing.whole.turns_doubt.map(|so_far| so_far + doubt);
+            swing.half_nutation.turns = swing.half_nutation.turns.map(|turn| turn + more);
+            let doubt = POLE_UNCERTAINTY * (FRAC_PI_2 - more).abs();
+            swing.half_nutation.turns_doubt = swing.half_nutation.turns_doubt.map(|so_far| so_far + doubt);
         }
         let start_v =
             |(i, leg): (usize, &Leg)| swing.lines.start_on(&leg.stretch).map(|v| LegPoint { leg: i, v });
@@ -256,7 +256,7 @@ impl Swing {
 
     /// The integrals over a stretch, which continue those over the legs below it.
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
-        let (lines, cuts, narrowest) = (&self.lines, stretch.cuts(), 1e-15 * stretch.top);
+        let (lines, cuts, narrowest) = (&self.lines, stretch.cuts(), 1e-15 * stretch.greatest_v);
         // The weight is sqrt(J) dx/dv/sqrt(G).
         let weight = |at: &StretchPoint| self.inertia(at).sqrt() * at.x_per_root;
         let clock = Antiderivative::new(&cuts, narrowest, |v| {
@@ -264,7 +264,7 @@ impl Swing {
             let value = [at.s * at.s * weight(&at)];
             Sampled { value, scale: value, noise: at.noise }
         })?;
-        let mut leg = Leg { stretch, clock, turns: None, path: None, before: self.whole };
+        let mut leg = Leg { stretch, clock, turns: None, path: None, before: self.half_nutation };
         if !pose {
             return Some(leg);
         }
@@ -298,7 +298,7 @@ impl Swing {
         self.lines.law.inertia(|| (at.s, at.c))
     }
 
-    fn local(&self, spot: LegPoint) -> StretchPoint {
+    fn point_on_stretch(&self, spot: LegPoint) -> StretchPoint {
         self.lines.at(&self.legs[spot.leg].stretch, spot.v)
     }
 
@@ -312,22 +312,22 @@ impl Swing {
         let leg = if upper { self.legs.len() - 1 } else { 0 };
         let stretch = &self.legs[leg].stretch;
         // A stretch that is the whole swing has v = 0 at one end and v = top at the other.
-        LegPoint { leg, v: if upper == (stretch.way > 0.0) { stretch.top } else { 0.0 } }
+        LegPoint { leg, v: if upper == (stretch.way > 0.0) { stretch.greatest_v } else { 0.0 } }
     }
 
     /// A place as a number that grows with the inclination: the index of the leg plus the part of the leg that lies
     /// below.
-    fn along(&self, spot: LegPoint) -> f64 {
+    fn place_of(&self, spot: LegPoint) -> f64 {
         let stretch = &self.legs[spot.leg].stretch;
-        let part = spot.v / stretch.top;
+        let part = spot.v / stretch.greatest_v;
         spot.leg as f64 + if stretch.way > 0.0 { part } else { 1.0 - part }
     }
 
-    fn spot(&self, along: f64) -> LegPoint {
+    fn leg_point_at(&self, along: f64) -> LegPoint {
         let leg = (along.max(0.0) as usize).min(self.legs.len() - 1);
         let stretch = &self.legs[leg].stretch;
         let part = (along - leg as f64).clamp(0.0, 1.0);
-        LegPoint { leg, v: stretch.top * if stretch.way > 0.0 { part } else { 1.0 - part } }
+        LegPoint { leg, v: stretch.greatest_v * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
     /// Whether only the angles change, because the swing is smaller than rounding. An unstable steady state is assumed
@@ -341,7 +341,7 @@ impl Swing {
         if self.lines.lands() != [false; 2] {
             f64::INFINITY
         } else if !self.is_steady() {
-            2.0 * self.whole.time
+            2.0 * self.half_nutation.time
         } else if self.kappa > 0.0 {
             TAU / self.kappa.sqrt()
         } else {
@@ -360,13 +360,13 @@ impl Swing {
             return [self.start.theta; 2];
         }
         let [low, high] = self.lines.reaches_pole();
-        let theta = |upper: bool| self.lines.theta(self.local(self.end(upper)).x);
+        let theta = |upper: bool| self.lines.theta(self.point_on_stretch(self.end(upper)).x);
         [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
 
     /// Periods, time since the lower turning point and place of the motion at time `t`.
     fn phase_at(&self, t: f64) -> SwingPhase {
-        let half = self.whole.time;
+        let half = self.half_nutation.time;
         let period = 2.0 * half;
         let mut periods = ((t + self.phase) / period).round();
         if self.lines.lands()[1] {
@@ -405,7 +405,7 @@ impl Swing {
     /// The time that a ball takes from the outermost x that is computed to its pole.
     fn pole_time(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
-        self.lines.flat() * at.s * self.inertia(&at).sqrt() / at.root
+        self.lines.flat_inclination() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
     /// The angle by which phi turns between the outermost computed x and the point nearest to the pole: pi/2
@@ -419,18 +419,18 @@ impl Swing {
     /// The state of a ball between the outermost x and its pole, where theta and w1 fall to zero together.
     fn at_pole(&self, phase: &SwingPhase) -> Option<State> {
         let since = phase.time.abs();
-        let left = [since, self.whole.time - since];
+        let left = [since, self.half_nutation.time - since];
         let upper = (0..2).find(|i| self.through_pole()[*i] && left[*i] < self.pole_time(*i == 1))?;
         let share = left[upper].max(0.0) / self.pole_time(upper == 1);
         let edge = self.state_at(phase.spot, phase.time >= 0.0);
-        let off = self.lines.flat() * share;
+        let off = self.lines.flat_inclination() * share;
         let theta = if upper == 1 { PI - off } else { off };
         Some(State { theta, w1: edge.w1 * share, ..edge })
     }
 
     /// The state at a place, with the inclination rising or falling.
     fn state_at(&self, spot: LegPoint, rising: bool) -> State {
-        let at = self.local(spot);
+        let at = self.point_on_stretch(spot);
         let tilt = at.root / self.inertia(&at).sqrt() / at.s;
         State {
             theta: self.lines.theta(at.x),
@@ -447,7 +447,7 @@ impl Swing {
         if self.is_steady() || lands == [false; 2] {
             return None;
         }
-        let half = self.whole.time;
+        let half = self.half_nutation.time;
         // In reversed time the motion is the same with theta' reversed.
         let phase = if way < 0.0 { -self.phase } else { self.phase };
         let (upper, time) = match lands {
@@ -460,7 +460,7 @@ impl Swing {
         // Between this x and the face the body only falls, so that its remaining potential energy becomes
         // energy of the tilting.
         let inertia = self.lines.law.inertia(|| (0.0, at.c.signum()));
-        let flat = self.lines.flat();
+        let flat = self.lines.flat_inclination();
         let lever = self.lines.law.shape.rim.a;
         let speed = (((at.root / at.s).powi(2) + 2.0 * lever * at.s) / inertia).sqrt();
         let tilt = if upper == (way >= 0.0) { -speed } else { speed };

@@ -3,18 +3,18 @@
 use super::Swing;
 use super::course::Course;
 use super::event::{self, Limits};
-use super::lanes::{QuickMotion, QuickTask, quick};
+use super::lanes::{QuickMotion, QuickTask, roll_narrow_swing};
 use crate::error::{Error, copied, room};
 use crate::laws::body::Body;
 use crate::laws::state::State;
-use crate::motions::walk::errors::pressed;
+use crate::motions::walk::errors::with_contact_forces;
 use crate::motions::{Ask, Event, Method, Motion};
 
 /// Largest estimated errors of a state and of a pose for which the quick method is as good as the other.
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
 /// Number of times after which the caller may interrupt the quick method: their states take about a millisecond.
-const BLOCK: usize = 1 << 14;
+const TIMES_PER_BLOCK: usize = 1 << 14;
 
 /// The exact motion by the quick method, if the swing is narrow and has no event; this takes a tenth of the work.
 pub(crate) fn quickly(
@@ -36,10 +36,10 @@ pub(crate) fn quickly(
     let enough = |times: &[f64], found: &mut QuickMotion| {
         let pose = ask.pose.then_some(QUICK_POSE);
         let (contact, mu) = (ask.table.contact(), ask.table.mu());
-        quick(&QuickTask { contact, body, start, times, mu, tol: QUICK, pose }, found)
+        roll_narrow_swing(&QuickTask { contact, body, start, times, mu, tol: QUICK, pose }, found)
     };
     // Of several blocks the last time comes first, since the error grows with time.
-    if times.len() > BLOCK {
+    if times.len() > TIMES_PER_BLOCK {
         if !enough(&since[times.len() - 1..], &mut found) {
             return Ok(None);
         }
@@ -47,7 +47,7 @@ pub(crate) fn quickly(
         found.poses.clear();
     }
     let mut over = false;
-    for block in since.chunks(BLOCK) {
+    for block in since.chunks(TIMES_PER_BLOCK) {
         over = !found.states.is_empty() && !go_on();
         if over {
             break;
@@ -66,7 +66,11 @@ pub(crate) fn quickly(
         motion.times = copied(times)?;
     }
     let mut go_on = || over || go_on();
-    Ok(Some(if ask.force { pressed(motion, ask.table.contact(), body, &mut go_on)? } else { motion }))
+    Ok(Some(if ask.force {
+        with_contact_forces(motion, ask.table.contact(), body, &mut go_on)?
+    } else {
+        motion
+    }))
 }
 
 /// The exact motion up to its end.

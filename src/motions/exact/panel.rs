@@ -37,7 +37,7 @@ pub(super) enum Certainty {
     /// At the start of the motion: G to full relative precision, G' to 2^-100 of its terms.
     Start,
     /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
-    Carried,
+    PrecisePlace,
 }
 
 /// The motion as functions of x in a neighbourhood of `centre`.
@@ -138,7 +138,7 @@ pub(super) fn value(series: &PanelTerms, y: f64) -> f64 {
 }
 
 /// The quotient by (x - root); the remainder, which is a rounding error, is dropped.
-pub(super) fn deflated(series: &PanelTerms, root: f64) -> PanelTerms {
+pub(super) fn divided_by_root(series: &PanelTerms, root: f64) -> PanelTerms {
     let mut quotient = *series;
     divide(&mut quotient, root);
     quotient
@@ -285,7 +285,7 @@ impl Panel {
     }
 
     /// Returns this panel with more accurate values of G and its slope at the centre.
-    pub fn knowing(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
+    pub fn with_exact_centre(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self
     }
@@ -302,7 +302,7 @@ impl Panel {
         match self.known {
             Certainty::Rounded => f64::EPSILON * terms,
             Certainty::Start => known + KEPT * terms * y.abs().min(1.0),
-            Certainty::Carried => known + KEPT * terms,
+            Certainty::PrecisePlace => known + KEPT * terms,
         }
     }
 
@@ -317,7 +317,7 @@ impl Panel {
 
     /// The first zero of G from `y` on in the direction `way`, within reach; least values of G that are passed before
     /// it are added to `dips`. All places are measured from the centre.
-    pub fn walk(&self, mut y: f64, way: f64, dips: &mut Vec<Dip>) -> Option<f64> {
+    pub fn first_zero_or_dips(&self, mut y: f64, way: f64, dips: &mut Vec<Dip>) -> Option<f64> {
         let derivative = |of: &PanelTerms| -> PanelTerms {
             core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * of[i + 1] } else { 0.0 })
         };

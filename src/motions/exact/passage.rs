@@ -23,7 +23,8 @@ impl Swing {
         }
         for (i, leg) in self.legs.iter().enumerate() {
             let first = nodes.len();
-            nodes.extend(leg.clock.nodes().map(|(v, weight)| (self.along(LegPoint { leg: i, v }), weight)));
+            nodes
+                .extend(leg.clock.nodes().map(|(v, weight)| (self.place_of(LegPoint { leg: i, v }), weight)));
             if leg.stretch.way < 0.0 {
                 nodes[first..].reverse();
             }
@@ -35,7 +36,7 @@ impl Swing {
     }
 
     /// Time until the motion first passes a place; positive also for `way` = -1, which goes backward in time.
-    pub(crate) fn reached(&self, way: f64, place: f64) -> Option<f64> {
+    pub(crate) fn time_to_place(&self, way: f64, place: f64) -> Option<f64> {
         if self.is_steady() {
             return Some(0.0);
         }
@@ -45,16 +46,19 @@ impl Swing {
     }
 
     /// The lowest and the highest place of the motion between time 0 and `t`.
-    pub(crate) fn passed(&self, t: f64) -> [f64; 2] {
+    pub(crate) fn range_of_places(&self, t: f64) -> [f64; 2] {
         let start = self.start_place();
         if self.is_steady() {
             return [start; 2];
         }
         let end = self.landing(t).map_or(t.abs(), |(limit, _)| t.abs().min(limit));
-        let now = self.along(self.phase_at(t.signum() * end).spot);
-        let meets = |place: f64| self.reached(t.signum(), place).is_some_and(|time| time <= end);
-        let top = self.legs.len() as f64;
-        [if meets(0.0) { 0.0 } else { start.min(now) }, if meets(top) { top } else { start.max(now) }]
+        let now = self.place_of(self.phase_at(t.signum() * end).spot);
+        let meets = |place: f64| self.time_to_place(t.signum(), place).is_some_and(|time| time <= end);
+        let greatest_v = self.legs.len() as f64;
+        [
+            if meets(0.0) { 0.0 } else { start.min(now) },
+            if meets(greatest_v) { greatest_v } else { start.max(now) },
+        ]
     }
 
     pub(crate) fn body(&self) -> &Body {
@@ -70,19 +74,19 @@ impl Swing {
     }
 
     pub(crate) fn start_place(&self) -> f64 {
-        if self.is_steady() { 0.0 } else { self.along(self.at_start) }
+        if self.is_steady() { 0.0 } else { self.place_of(self.at_start) }
     }
 
     /// The state at a place while the inclination rises.
-    pub(crate) fn rising(&self, place: f64) -> State {
-        if self.is_steady() { self.start } else { self.state_at(self.spot(place), true) }
+    pub(crate) fn rising_state(&self, place: f64) -> State {
+        if self.is_steady() { self.start } else { self.state_at(self.leg_point_at(place), true) }
     }
 
     /// The place at which the body reaches `theta_end`, where something other than the rim lands; None if the
     /// swing does not get there.
     pub(crate) fn side(&self) -> Option<f64> {
         let ([_, high], side) = (self.lines.range(), self.lines.side);
-        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.along(LegPoint { leg, v }));
+        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.place_of(LegPoint { leg, v }));
         if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
     }
 
@@ -92,11 +96,11 @@ impl Swing {
         if self.is_steady() {
             return None;
         }
-        let half = self.whole.time;
+        let half = self.half_nutation.time;
         let lands = self.lines.lands();
         let phase = if way < 0.0 { -self.phase } else { self.phase };
         let rising = phase > 0.0 || (phase == 0.0 && self.start_place() < 0.5 * self.legs.len() as f64);
-        let time = |place: f64| self.time_at(self.spot(place));
+        let time = |place: f64| self.time_at(self.leg_point_at(place));
         let here = phase.abs();
         let (direct, later) = if rising { (above, below) } else { (below, above) };
         let (place, t, still) = if let Some(place) = direct {
@@ -110,6 +114,6 @@ impl Swing {
         } else {
             return None;
         };
-        Some((t, self.state_at(self.spot(place), (rising == still) == (way >= 0.0))))
+        Some((t, self.state_at(self.leg_point_at(place), (rising == still) == (way >= 0.0))))
     }
 }

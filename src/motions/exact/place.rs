@@ -23,7 +23,7 @@ impl Swing {
         if self.is_steady() {
             return Some([self.start.precession() * self.period(), self.start.spin() * self.period()]);
         }
-        self.posed().then(|| self.whole.turns.map(|half| 2.0 * half))
+        self.has_pose().then(|| self.half_nutation.turns.map(|half| 2.0 * half))
     }
 
     /// Displacement of the contact point over a whole nutation from the start, in R; and the radius of the circle
@@ -35,7 +35,7 @@ impl Swing {
     }
 
     /// Whether the integrals of the angles have been prepared.
-    fn posed(&self) -> bool {
+    fn has_pose(&self) -> bool {
         self.legs.iter().all(|leg| leg.turns.is_some())
     }
 
@@ -54,8 +54,8 @@ impl Swing {
             |spot: LegPoint, time: f64| Some(self.legs[spot.leg].turns(spot.v)?.map(|x| x * sign(time)));
         let (start, here) = (turned(self.at_start, self.phase)?, turned(now.spot, now.time)?);
         let angle = |i: usize| {
-            let whole = Sum::product(now.periods, 2.0 * self.whole.turns[i]);
-            Angle::of(whole.plus(Sum::of(here[i], -start[i])))
+            let half_nutation = Sum::product(now.periods, 2.0 * self.half_nutation.turns[i]);
+            Angle::of(half_nutation.plus(Sum::of(here[i], -start[i])))
         };
         let (phi, psi) = (angle(0), angle(1));
         let place = |spot: LegPoint, time: f64| {
@@ -66,8 +66,8 @@ impl Swing {
             (Some(from), Some(to)) => {
                 // After m periods the path is the first one rotated by m times the angle of a period. Whole turns of
                 // this angle are removed first, which keeps its digits.
-                let turn = Angle::of(Sum::from(2.0 * self.whole.turns[0])).rest;
-                let whole = Angle::of(Sum::product(now.periods, turn)).rest;
+                let turn = Angle::of(Sum::from(2.0 * self.half_nutation.turns[0])).rest;
+                let half_nutation = Angle::of(Sum::product(now.periods, turn)).rest;
                 let half = (0.5 * turn).sin();
                 let sum = if half == 0.0 {
                     Complex::new(now.periods, 0.0)
@@ -76,19 +76,20 @@ impl Swing {
                     let ends = Angle::of(Sum::product(now.periods, 0.5 * turn)).rest;
                     Complex::from_polar(ends.sin() / half, middle)
                 };
-                let there = self.step(turn) * sum + Complex::from_polar(1.0, whole) * to;
+                let there =
+                    self.displacement_per_period(turn) * sum + Complex::from_polar(1.0, half_nutation) * to;
                 // Displacements are measured along the axes of the start.
                 let moved = (there - from) * Complex::from_polar(1.0, -start[0]);
                 Point2::new(moved.re + 0.0, moved.im + 0.0)
             }
-            _ => Pose::below_centre(&self.body, &self.start, &self.state(t), phi.rest),
+            _ => Pose::contact_point_below_centre(&self.body, &self.start, &self.state(t), phi.rest),
         };
         Some(Pose { phi, psi, contact_point: contact, height: 0.0 })
     }
 
     /// The contact point's displacement over one period from the lower turning point, where phi = 0.
-    fn step(&self, turn: f64) -> Complex<f64> {
-        let [x, y] = self.whole.path;
+    fn displacement_per_period(&self, turn: f64) -> Complex<f64> {
+        let [x, y] = self.half_nutation.path;
         let half = Complex::new(x, y);
         half - Complex::from_polar(1.0, turn) * half.conj()
     }
@@ -98,7 +99,7 @@ impl Swing {
         let y = &self.start;
         let phi = Angle::of(Sum::product(y.precession(), t)).rest;
         if self.contact == Contact::Smooth {
-            return Some(Pose::below_centre(&self.body, y, y, phi));
+            return Some(Pose::contact_point_below_centre(&self.body, y, y, phi));
         }
         let chord = if y.w1 == 0.0 { t } else { 2.0 * (0.5 * phi).sin() / y.precession() };
         let radius = self.lines.law.shape.rim.radius(y.theta.sin_cos());
@@ -116,11 +117,12 @@ impl Swing {
         let phase = self.phase_at(t);
         let y = self.state_at(phase.spot, phase.time >= 0.0);
         let rate = y.precession().abs().max(y.spin().abs());
-        let [phi_doubt, psi_doubt] = if self.posed() { self.whole.turns_doubt } else { [f64::NAN; 2] };
+        let [phi_doubt, psi_doubt] =
+            if self.has_pose() { self.half_nutation.turns_doubt } else { [f64::NAN; 2] };
         let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let halves = 2.0 * (2.0 + phase.periods.abs());
         let turned = halves * (phi_doubt.max(psi_doubt) + 0.5 * f64::EPSILON * angles);
-        let [x_doubt, y_doubt] = self.whole.path_doubt;
+        let [x_doubt, y_doubt] = self.half_nutation.path_doubt;
         // An error of the angle moves the contact point in proportion to its distance from the centre of its path.
         let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());
         let path = self.lever()

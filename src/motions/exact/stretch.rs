@@ -14,7 +14,7 @@
 //!
 //! Error: [`StretchPoint::noise`], the relative rounding error of H, R or G, which is propagated through the integrals.
 
-use super::lines::{Lines, Slow, Turning};
+use super::lines::{Lines, SlowPlace, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
@@ -24,7 +24,7 @@ const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Map {
+enum StretchMap {
     Whole,
     End,
     Dip,
@@ -34,7 +34,7 @@ enum Map {
 /// A part of the swing between the turning points.
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
-    map: Map,
+    map: StretchMap,
     /// 1 if x rises with v, -1 if it falls.
     pub way: f64,
     /// The place from which distances are measured: `x` from the start, and `local` from the centre of its `panel`.
@@ -44,7 +44,7 @@ pub(super) struct Stretch {
     width: f64,
     length: f64,
     /// The greatest v of the stretch.
-    pub top: f64,
+    pub greatest_v: f64,
     /// G divided by the distance from the end; `both` tells whether H times the distance from the other end is used in
     /// its place.
     rest: Option<PanelTerms>,
@@ -73,22 +73,22 @@ impl Lines {
     pub fn stretches(&self) -> Vec<Stretch> {
         let [low, high] = self.range();
         let far_enough =
-            |s: &&Slow| low < s.x && s.x < high && s.width < SLOW_DIP * (s.x - low).min(high - s.x);
-        let slow: Vec<&Slow> = self.slow.iter().filter(far_enough).collect();
+            |s: &&SlowPlace| low < s.x && s.x < high && s.width < SLOW_DIP * (s.x - low).min(high - s.x);
+        let slow: Vec<&SlowPlace> = self.slow.iter().filter(far_enough).collect();
         let lingers = |side: usize| {
             let of = self.ends[side].turning.as_ref();
             of.is_some_and(|t| next_zero(t) < SLOW_END * 0.5 * (high - low))
         };
         if slow.is_empty() && !lingers(0) && !lingers(1) {
             return vec![Stretch {
-                map: Map::Whole,
+                map: StretchMap::Whole,
                 way: 1.0,
                 x: low,
                 panel: 0,
                 local: 0.0,
                 width: high - low,
                 length: high - low,
-                top: PI,
+                greatest_v: PI,
                 rest: None,
                 both: self.both.is_some(),
                 shift: 0.0,
@@ -108,14 +108,14 @@ impl Lines {
     fn at_end(&self, side: usize, length: f64) -> Stretch {
         let (way, end) = (if side == 0 { 1.0 } else { -1.0 }, &self.ends[side]);
         let mut stretch = Stretch {
-            map: Map::Face,
+            map: StretchMap::Face,
             way,
             x: end.x,
             panel: self.panel(end.x),
             local: 0.0,
             width: length,
             length,
-            top: length,
+            greatest_v: length,
             rest: None,
             both: false,
             shift: 0.0,
@@ -123,11 +123,11 @@ impl Lines {
         let Some(turning) = &end.turning else { return stretch };
         let width = next_zero(turning).min(length).max(1e-60);
         stretch = Stretch {
-            map: Map::End,
+            map: StretchMap::End,
             panel: turning.panel,
             local: turning.local,
             width,
-            top: (length / width).sqrt().asinh(),
+            greatest_v: (length / width).sqrt().asinh(),
             rest: Some(turning.rest),
             ..stretch
         };
@@ -139,7 +139,7 @@ impl Lines {
             let worst = |both: bool| {
                 let of = Stretch { both, ..stretch.clone() };
                 (0..=4).fold(0f64, |worst, j| {
-                    let noise = self.at(&of, of.top * f64::from(j) / 4.0).noise;
+                    let noise = self.at(&of, of.greatest_v * f64::from(j) / 4.0).noise;
                     if noise.is_nan() { f64::INFINITY } else { worst.max(noise) }
                 })
             };
@@ -151,9 +151,9 @@ impl Lines {
     /// The motion at `v` on a stretch.
     pub fn at(&self, on: &Stretch, v: f64) -> StretchPoint {
         match on.map {
-            Map::Whole => self.at_whole(on.width, v),
-            Map::End => self.at_turning(on, v),
-            Map::Dip | Map::Face => self.at_open(on, v),
+            StretchMap::Whole => self.at_whole(on.width, v),
+            StretchMap::End => self.at_turning(on, v),
+            StretchMap::Dip | StretchMap::Face => self.at_undivided(on, v),
         }
     }
 
@@ -163,8 +163,8 @@ impl Lines {
     pub fn start_on(&self, on: &Stretch) -> Option<f64> {
         let [low, high] = self.range();
         match on.map {
-            Map::Whole => Some(on.at_distance(-low, high)),
-            Map::End => {
+            StretchMap::Whole => Some(on.at_distance(-low, high)),
+            StretchMap::End => {
                 let mut v = on.v(0.0)?;
                 for _ in 0..3 {
                     let d = on.width * v.sinh().powi(2);
@@ -179,7 +179,7 @@ impl Lines {
                 }
                 Some(v)
             }
-            Map::Dip | Map::Face => on.v(0.0),
+            StretchMap::Dip | StretchMap::Face => on.v(0.0),
         }
     }
 
@@ -218,18 +218,18 @@ impl Lines {
     }
 
     /// The motion at `v` on a stretch on which G is not divided.
-    fn at_open(&self, on: &Stretch, v: f64) -> StretchPoint {
+    fn at_undivided(&self, on: &Stretch, v: f64) -> StretchPoint {
         let (d, speed) =
-            if on.map == Map::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
+            if on.map == StretchMap::Dip { (on.width * v.sinh(), on.width * v.cosh()) } else { (v, 1.0) };
         let x = on.x + on.way * d;
         let here = on.local + on.way * d;
-        let inside = on.map == Map::Dip && here.abs() <= self.panels[on.panel].reach;
+        let inside = on.map == StretchMap::Dip && here.abs() <= self.panels[on.panel].reach;
         let (panel, y) = if inside { (on.panel, here) } else { self.place(x) };
-        self.undivided(panel, x, y, speed)
+        self.point_undivided(panel, x, y, speed)
     }
 
     /// The motion at a place in a panel where G is not divided; `speed` is dx/dv.
-    fn undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
+    fn point_undivided(&self, panel: usize, x: f64, y: f64, speed: f64) -> StretchPoint {
         let [s, c, p, n] = self.numbers(panel, x, y);
         let g = value(&self.panels[panel].g, y);
         let off = f64::EPSILON * g + self.panels[panel].rounding(y, self.terms(panel, y, [s, c, p, n]));
@@ -241,7 +241,7 @@ impl Lines {
     pub fn at_face(&self, upper: bool) -> StretchPoint {
         let x = self.ends[usize::from(upper)].x;
         let (panel, y) = self.place(x);
-        self.undivided(panel, x, y, 1.0)
+        self.point_undivided(panel, x, y, 1.0)
     }
 
     /// The motion at `u` on a swing that is one stretch, where both ends are divided out of G.
@@ -321,16 +321,16 @@ fn next_zero(turning: &Turning) -> f64 {
 }
 
 impl Stretch {
-    fn dip(at: &Slow, way: f64, length: f64) -> Self {
+    fn dip(at: &SlowPlace, way: f64, length: f64) -> Self {
         Self {
-            map: Map::Dip,
+            map: StretchMap::Dip,
             way,
             x: at.x,
             panel: at.panel,
             local: at.local,
             width: at.width,
             length,
-            top: (length / at.width).asinh(),
+            greatest_v: (length / at.width).asinh(),
             rest: None,
             both: false,
             shift: 0.0,
@@ -341,7 +341,7 @@ impl Stretch {
     pub fn v(&self, x: f64) -> Option<f64> {
         let d = self.way * (x - self.x);
         // The other side of a dip belongs to another stretch; a place beyond an end can only be a rounding error.
-        let least = if self.map == Map::Dip { 0.0 } else { -1e-12 };
+        let least = if self.map == StretchMap::Dip { 0.0 } else { -1e-12 };
         let inside = least <= d && d <= self.length * (1.0 + 1e-12);
         inside.then(|| self.at_distance(d, self.length - d))
     }
@@ -350,22 +350,26 @@ impl Stretch {
     fn at_distance(&self, d: f64, left: f64) -> f64 {
         let d = d.max(0.0).min(self.length);
         match self.map {
-            Map::Whole => 2.0 * d.sqrt().atan2(left.max(0.0).sqrt()),
-            Map::End => (d / self.width).sqrt().asinh().min(self.top),
-            Map::Dip => (d / self.width).asinh().min(self.top),
-            Map::Face => d,
+            StretchMap::Whole => 2.0 * d.sqrt().atan2(left.max(0.0).sqrt()),
+            StretchMap::End => (d / self.width).sqrt().asinh().min(self.greatest_v),
+            StretchMap::Dip => (d / self.width).asinh().min(self.greatest_v),
+            StretchMap::Face => d,
         }
     }
 
     /// The first cuts of the quadrature in [0, top], between the part that changes on the scale of x and the
     /// part where the motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
-        let (top, slow) = (self.top, matches!(self.map, Map::End | Map::Dip));
-        if slow && top > 6.0 { vec![0.0, top - 5.0, top - 2.0, top] } else { vec![0.0, top] }
+        let (greatest_v, slow) = (self.greatest_v, matches!(self.map, StretchMap::End | StretchMap::Dip));
+        if slow && greatest_v > 6.0 {
+            vec![0.0, greatest_v - 5.0, greatest_v - 2.0, greatest_v]
+        } else {
+            vec![0.0, greatest_v]
+        }
     }
 
     pub fn is_whole(&self) -> bool {
-        self.map == Map::Whole
+        self.map == StretchMap::Whole
     }
 
     pub fn shift(&self) -> f64 {
@@ -376,10 +380,10 @@ impl Stretch {
     /// on the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
-            Map::Whole => 0.5 * v.sin(),
-            Map::End => 0.5 * v.tanh(),
-            Map::Dip => v.tanh(),
-            Map::Face => 0.0,
+            StretchMap::Whole => 0.5 * v.sin(),
+            StretchMap::End => 0.5 * v.tanh(),
+            StretchMap::Dip => v.tanh(),
+            StretchMap::Face => 0.0,
         }
     }
 }

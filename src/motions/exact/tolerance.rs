@@ -17,22 +17,22 @@ use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::motions::ask::FINE;
 use crate::motions::body::walked;
-use crate::motions::walk::errors::{judge, same};
+use crate::motions::walk::errors::{judge, same_end};
 use crate::motions::walk::two_runs::{Followed, judged};
 use crate::motions::{Ask, Event, Method, Motion, Start};
 use crate::states::stability::stiffness;
 
 /// Largest error of an exact solution from which the error of another solution is computed.
-const JUDGES: f64 = 1e-3;
+const REFERENCE_ERROR: f64 = 1e-3;
 /// Largest error of an exact solution that decides how the motion ends.
-const DECIDES: f64 = 1e-6;
+const DECISIVE_ERROR: f64 = 1e-6;
 /// The tolerance of a step as a share of the tolerance of the motion, since errors of many steps add.
-const SHARE: f64 = 0.1;
+const STEP_TOLERANCE_SHARE: f64 = 0.1;
 /// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
 const TIGHTEST: f64 = 1e-13;
 
-/// The exact solution and its end, if its error is at most `JUDGES`.
-pub(crate) struct Known<'a> {
+/// The exact solution and its end, if its error is at most `REFERENCE_ERROR`.
+pub(crate) struct ExactEnd<'a> {
     pub swing: Option<&'a Swing>,
     pub event: Option<Event>,
     /// The error of the time and the state of that event.
@@ -41,13 +41,13 @@ pub(crate) struct Known<'a> {
     pub count: usize,
 }
 
-impl<'a> Known<'a> {
+impl<'a> ExactEnd<'a> {
     pub fn of(course: &Course<'_>, swing: Option<&'a Swing>, limits: &Limits, beyond: bool) -> Self {
         let found = swing.and_then(|swing| event::first_event(swing, limits, course.way()));
         let found = found.filter(|e| e.time.abs() <= course.span.abs());
         // The error of the exact solution counts only up to an end.
         let last = found.filter(|e| e.ends(beyond)).map_or(course.span, |e| e.time);
-        let swing = swing.filter(|s| s.error(last) <= JUDGES);
+        let swing = swing.filter(|s| s.error(last) <= REFERENCE_ERROR);
         let found = found.filter(|_| swing.is_some());
         let last = found.filter(|e| e.ends(beyond)).map(|e| e.time);
         let lands = || swing.and_then(|swing| swing.landing(course.way())).map(|(time, _)| time);
@@ -59,22 +59,22 @@ impl<'a> Known<'a> {
     /// Whether another solution and the exact one have the same end, or both have none.
     fn agrees(&self, event: Option<Event>) -> bool {
         match (event, self.event) {
-            (Some(a), Some(b)) => same(&a, &b),
+            (Some(a), Some(b)) => same_end(&a, &b),
             (a, b) => a.is_none() && b.is_none(),
         }
     }
 
-    /// Whether the error of the exact solution is at most `DECIDES` up to this end, or up to its
+    /// Whether the error of the exact solution is at most `DECISIVE_ERROR` up to this end, or up to its
     /// own earlier end.
     fn is_sure(&self, made: &Event, t0: f64) -> bool {
         let since = |event: &Event| event.time - t0;
         let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
-        self.swing.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= DECIDES)
+        self.swing.is_some_and(|swing| swing.error(own.unwrap_or(since(made))) <= DECISIVE_ERROR)
     }
 }
 
 /// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs.
-fn flown(
+fn run_with_steps(
     course: &Course<'_>,
     ask: &Ask,
     (tol, fine): (f64, f64),
@@ -86,7 +86,7 @@ fn flown(
     let start = Start::from(turned(course.start));
     let mut since = copied(times)?;
     since.iter_mut().for_each(|t| *t = way * (*t - t0));
-    let (tol, fine) = ((SHARE * tol).max(FINE), (SHARE * fine).max(FINE));
+    let (tol, fine) = ((STEP_TOLERANCE_SHARE * tol).max(FINE), (STEP_TOLERANCE_SHARE * fine).max(FINE));
     let ask = Ask { method: Method::Tolerance(fine), losses: Losses::NONE, force: false, ..*ask };
     let mut found = walked((course.body, &start), &ask, (tol, true), &since, go_on)?;
     let motion = &mut found.motion;
@@ -107,18 +107,18 @@ pub(crate) fn within(
     tol: f64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
-    let known = Known::of(course, swing, limits, ask.beyond);
-    let Some(swing) = known.swing else { return judged_alone(course, ask, tol, go_on) };
+    let known = ExactEnd::of(course, swing, limits, ask.beyond);
+    let Some(swing) = known.swing else { return judged_by_rougher_run(course, ask, tol, go_on) };
     let mut run = |tol: f64, beyond: bool| -> Result<Motion, Error> {
-        Ok(flown(course, &Ask { beyond, ..*ask }, (tol, tol), course.times, go_on)?.motion)
+        Ok(run_with_steps(course, &Ask { beyond, ..*ask }, (tol, tol), course.times, go_on)?.motion)
     };
     let mut motion = run(tol, ask.beyond)?;
     if let Some(made) = motion.event.filter(|made| motion.limit.is_none() && !known.agrees(Some(*made))) {
-        motion = decided_ends(course, &known, ask, (motion, made), tol, &mut run)?;
+        motion = decide_about_end(course, &known, ask, (motion, made), tol, &mut run)?;
     }
     // Steps can miss an end of the exact solution.
     if motion.event.is_none() {
-        ended(&mut motion, &known, course, ask);
+        take_exact_end(&mut motion, &known, course, ask);
     }
     motion.error = 0.0;
     judge(&mut motion, swing, known.event, course.t0);
@@ -128,7 +128,7 @@ pub(crate) fn within(
 }
 
 /// Sets the event of a motion to that of the exact solution, and removes the outputs after an end.
-fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask) {
+fn take_exact_end(motion: &mut Motion, known: &ExactEnd<'_>, course: &Course<'_>, ask: &Ask) {
     motion.event = known.event;
     if let Some(event) = known.event.filter(|e| e.ends(ask.beyond)) {
         motion.keep(course.t0, (event.time - course.t0).abs());
@@ -139,9 +139,9 @@ fn ended(motion: &mut Motion, known: &Known<'_>, course: &Course<'_>, ask: &Ask)
 /// is accurate enough to decide, the steps are continued beyond their end. If this is impossible, since the face has
 /// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until these
 /// confirm an end.
-fn decided_ends(
+fn decide_about_end(
     course: &Course<'_>,
-    known: &Known<'_>,
+    known: &ExactEnd<'_>,
     ask: &Ask,
     (mut motion, made): (Motion, Event),
     mut tol: f64,
@@ -152,7 +152,7 @@ fn decided_ends(
         let mut on = run(tol, true)?;
         let reached = on.times.len();
         if on.limit.is_none() {
-            ended(&mut on, known, course, ask);
+            take_exact_end(&mut on, known, course, ask);
         }
         if on.limit.is_some() || reached >= known.count {
             return Ok(on);
@@ -164,7 +164,7 @@ fn decided_ends(
         let stands = if sure {
             known.agrees(tighter.event)
         } else {
-            motion.event.zip(tighter.event).is_some_and(|(a, b)| same(&a, &b))
+            motion.event.zip(tighter.event).is_some_and(|(a, b)| same_end(&a, &b))
         };
         if stands && !sure {
             break;
@@ -179,7 +179,7 @@ fn decided_ends(
 
 /// The motion by steps within `tol`, with its error from a rougher run. If the two runs end differently, they
 /// are repeated with smaller tolerances.
-fn judged_alone(
+fn judged_by_rougher_run(
     course: &Course<'_>,
     ask: &Ask,
     tol: f64,
@@ -187,7 +187,7 @@ fn judged_alone(
 ) -> Result<Motion, Error> {
     let mut fine = tol;
     let mut motion = loop {
-        let run = |tol: f64, times: &[f64]| flown(course, ask, (tol, fine), times, go_on);
+        let run = |tol: f64, times: &[f64]| run_with_steps(course, ask, (tol, fine), times, go_on);
         let found = judged(fine, course.times, run)?;
         if found.motion.error.is_finite() || fine <= TIGHTEST || found.motion.limit.is_some() {
             break found.motion;

@@ -58,8 +58,8 @@ pub(crate) fn guard(
         // Only nodes that the motion reaches before its end count.
         let end = first_event(swing, limits, way).map_or(span, |e| e.time.abs().min(span));
         for (place, weight) in swing.nodes() {
-            if let Some(time) = swing.reached(way, place).filter(|t| *t <= end) {
-                consider(time, &swing.rising(place), weight);
+            if let Some(time) = swing.time_to_place(way, place).filter(|t| *t <= end) {
+                consider(time, &swing.rising_state(place), weight);
                 whole += weight;
             }
         }

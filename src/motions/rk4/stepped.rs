@@ -6,13 +6,13 @@ use crate::error::Error;
 use crate::motions::exact::Swing;
 use crate::motions::exact::course::Course;
 use crate::motions::exact::event::Limits;
-use crate::motions::exact::tolerance::{Known, within};
+use crate::motions::exact::tolerance::{ExactEnd, within};
 use crate::motions::walk::errors::{compare, judge};
 use crate::motions::{Ask, Motion};
 
 /// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The error of
 /// that run is added to the estimated error.
-const BETTER: f64 = 1e-12;
+const COMPARISON_TOLERANCE: f64 = 1e-12;
 
 /// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact solution, if
 /// there is one. A step that is too long to reach that end is an error.
@@ -25,10 +25,17 @@ pub(crate) fn stepped(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
     let guarded = guard(course, swing, limits, step)?;
-    let known = Known::of(course, swing, limits, ask.beyond);
+    let known = ExactEnd::of(course, swing, limits, ask.beyond);
     let reference = match known.swing {
         Some(_) => None,
-        None => Some(within(course, swing, limits, &Ask { max_evaluations: None, ..*ask }, BETTER, go_on)?),
+        None => Some(within(
+            course,
+            swing,
+            limits,
+            &Ask { max_evaluations: None, ..*ask },
+            COMPARISON_TOLERANCE,
+            go_on,
+        )?),
     };
     if let Some(reference) = reference.as_ref().filter(|reference| reference.is_interrupted()) {
         return Ok(Motion::empty(0, ask.pose)?.interrupted(&reference.times[..0], course.t0, *course.start));

@@ -86,7 +86,7 @@ fn derivative<const N: usize, const ROUND: bool>(
     angle: (f64, f64),
 ) -> [f64; N] {
     let now = stepped_state(y);
-    let [w1, w2, w3] = rates.at_on::<ROUND>(angle.0, angle.1, [now.w1, now.w2, now.w3]);
+    let [w1, w2, w3] = rates.at_rim_kind::<ROUND>(angle.0, angle.1, [now.w1, now.w2, now.w3]);
     let dy = State { theta: -now.w2, w1, w2, w3 };
     let mut changes = [0.0; N];
     changes[..4].copy_from_slice(&[dy.theta, dy.w1, dy.w2, dy.w3]);
@@ -175,10 +175,10 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                 }
             }
             let then = steps as f64 * step;
-            let ahead = match self.ahead(&rates, then)? {
+            let ahead = match self.step_to(&rates, then)? {
                 Some(ahead) => ahead,
                 // The pole of a ball lies within this step.
-                None if self.course.body.is_ball() => Stage { t: then, ..self.between(then) },
+                None if self.course.body.is_ball() => Stage { t: then, ..self.stage_at(then) },
                 None => {
                     // Theta leaves (0, pi) within this step. If outputs remain after the step, it has jumped
                     // over a near-flat turn; else the face lands after the last output.
@@ -187,7 +187,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
                         return Err(Error::Step { step, time, theta, advice: 0.1 * step });
                     }
                     for t in &times[written..] {
-                        self.write(&self.between(t - t0));
+                        self.write(&self.stage_at(t - t0));
                     }
                     break;
                 }
@@ -197,7 +197,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             let limit = ahead.t.abs() * (1.0 + 4.0 * f64::EPSILON);
             while let Some(t) = times.get(written).map(|t| t - t0).filter(|t| t.abs() <= limit) {
                 let near = (t - ahead.t).abs() <= 8.0 * f64::EPSILON * t.abs();
-                let place = if near { ahead } else { self.between(t) };
+                let place = if near { ahead } else { self.stage_at(t) };
                 self.write(&place);
                 written += 1;
             }
@@ -211,7 +211,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// One step, to the time `t`; None if theta leaves (0, pi) within the step.
     #[inline(always)]
-    fn ahead(&mut self, rates: &Rates<f64>, t: f64) -> Result<Option<Stage<N>>, Error> {
+    fn step_to(&mut self, rates: &Rates<f64>, t: f64) -> Result<Option<Stage<N>>, Error> {
         let (here, law) = (&self.here, (rates, self.contact));
         let fast = stepped_state(&here.at.y).precession().abs();
         if self.unguarded && (t - here.t).abs() * fast > 1.0 {
@@ -229,9 +229,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         if !self.course.body.is_ball() || ahead.height() >= 0.0 {
             return None;
         }
-        let height = |t: f64| self.between(t).height();
+        let height = |t: f64| self.stage_at(t).height();
         let t = search::crossing(height, self.here.t, ahead.t, self.here.height().max(0.0), ahead.height());
-        let edge = self.between(t);
+        let edge = self.stage_at(t);
         let mut y = edge.at.y;
         let (low, off) = (y[0] < 1.0, y[0].min(PI - y[0]));
         y[2] = -y[2];
@@ -250,7 +250,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
 
     /// The point at time `t`, reached from the last point by one shortened step, or by several where one
     /// would leave (0, pi).
-    fn between(&self, t: f64) -> Stage<N> {
+    fn stage_at(&self, t: f64) -> Stage<N> {
         let law = (&self.rates, self.contact);
         let mut place = self.here;
         let mut h = t - place.t;
@@ -281,7 +281,9 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
             let (phi, psi) = (angle(0), angle(1));
             let contact = match self.contact {
                 Contact::Rolling => Point2::new(y[6], y[7]),
-                Contact::Smooth => Pose::below_centre(self.course.body, self.course.start, &now, phi.rest),
+                Contact::Smooth => {
+                    Pose::contact_point_below_centre(self.course.body, self.course.start, &now, phi.rest)
+                }
             };
             poses.push(Pose { phi, psi, contact_point: contact, height: 0.0 });
         }

@@ -7,26 +7,27 @@ use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::motions::exact::Swing;
 use crate::motions::{Event, Motion, Moving};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 use core::f64::consts::TAU;
 
 pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     let angle = |a: Angle, b: Angle| ((a.turns - b.turns) * TAU + (a.rest - b.rest)).abs();
     let moved = [(a.contact_point - b.contact_point).norm(), (a.height - b.height).abs()];
-    moved.into_iter().fold(larger(angle(a.phi, b.phi), angle(a.psi, b.psi)), larger)
+    moved.into_iter().fold(larger_or_nan(angle(a.phi, b.phi), angle(a.psi, b.psi)), larger_or_nan)
 }
 
 /// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
 /// not down at the start. The points on the table differ along the lean, by a length of the body.
 pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
     let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
-    let turned = larger(by(a.phi, b.phi.turns + 0.5, b.phi.rest), by(a.psi, -b.psi.turns, -b.psi.rest));
+    let turned =
+        larger_or_nan(by(a.phi, b.phi.turns + 0.5, b.phi.rest), by(a.psi, -b.psi.turns, -b.psi.rest));
     let ((sin, cos), moved) = (b.phi.radians().sin_cos(), a.contact_point - b.contact_point);
-    larger(turned, (moved.y * cos - moved.x * sin).abs())
+    larger_or_nan(turned, (moved.y * cos - moved.x * sin).abs())
 }
 
 /// Relative error of a number of a state from a few roundings.
-const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+const ROUNDING_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force,
 /// from the given errors and from a few roundings of every number.
@@ -46,23 +47,23 @@ pub(crate) fn doubted_of<const K: usize>(
     at: impl Fn(&[f64; K]) -> [f64; 3],
 ) -> ([f64; 3], f64) {
     let here = at(of);
-    let mut off = here.map(|x| ROUNDINGS * (1.0 + x.abs()));
+    let mut off = here.map(|x| ROUNDING_ERROR * (1.0 + x.abs()));
     for (i, known) in known.into_iter().enumerate() {
         let mut other = *of;
-        other[i] += known + ROUNDINGS * of[i].abs();
+        other[i] += known + ROUNDING_ERROR * of[i].abs();
         for (off, (a, b)) in off.iter_mut().zip(here.into_iter().zip(at(&other))) {
             *off += (a - b).abs();
         }
     }
     // An error that cannot be computed counts as infinite.
-    let largest = off.into_iter().fold(0.0, larger);
+    let largest = off.into_iter().fold(0.0, larger_or_nan);
     (here, if largest.is_nan() { f64::INFINITY } else { largest })
 }
 
 /// The largest difference between the numbers of two forces.
 pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
     let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
-    [normal, along, across].into_iter().fold(0.0, |most, x| larger(most, x.abs()))
+    [normal, along, across].into_iter().fold(0.0, |most, x| larger_or_nan(most, x.abs()))
 }
 
 /// Sets the error of an integrated motion from the exact motion at some of its times, or at all if they are fewer than
@@ -101,27 +102,30 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
 /// infinity.
 pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
-        motion.error = larger(motion.error, a.distance(b));
+        motion.error = larger_or_nan(motion.error, a.distance(b));
         if let (Some(poses), Some(others)) = (&motion.poses, &other.poses) {
-            motion.pose_error = larger(motion.pose_error, pose_distance(&poses[i], &others[i]));
+            motion.pose_error = larger_or_nan(motion.pose_error, pose_distance(&poses[i], &others[i]));
         }
     }
     match (motion.event, other.event) {
         (None, None) => {}
         (Some(a), Some(b)) if a.ending == b.ending => {
-            motion.error = larger(motion.error, larger(a.state.distance(&b.state), (a.time - b.time).abs()));
+            motion.error = larger_or_nan(
+                motion.error,
+                larger_or_nan(a.state.distance(&b.state), (a.time - b.time).abs()),
+            );
         }
         _ => motion.error = f64::INFINITY,
     }
 }
 
 /// Whether two solutions have the same end.
-pub(crate) fn same(a: &Event, b: &Event) -> bool {
+pub(crate) fn same_end(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }
 
 /// Adds the contact force at each state to the motion, or ends it after the last force if `go_on` interrupts.
-pub(crate) fn pressed(
+pub(crate) fn with_contact_forces(
     mut motion: Motion,
     contact: Contact,
     body: &Body,
@@ -136,7 +140,7 @@ pub(crate) fn pressed(
         for y in some {
             let (force, off) = doubted(y, [motion.error; 2], |y| force(contact, body, y));
             forces.push(force);
-            doubt = larger(doubt, off);
+            doubt = larger_or_nan(doubt, off);
         }
     }
     (motion.forces, motion.force_error) = (Some(forces), doubt);

@@ -27,8 +27,8 @@ use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::{PATIENCE, Spent, Steps, toil_of};
 use crate::motions::ask::result::{Ending, Event, Kind, Limit, Phase, Strike};
 use crate::motions::walk::numbers::{Halt, TIME};
-use crate::motions::walk::two_runs::{BRIEF, Followed};
-use crate::numbers::larger;
+use crate::motions::walk::two_runs::{BRIEF_PHASE, Followed};
+use crate::numbers::larger_or_nan;
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
@@ -41,14 +41,14 @@ const PHASES_PER_TIME: f64 = 20.0;
 const MOST_IMPACTS: usize = 30_000;
 /// Largest number of consecutive phases without an advance of time; a motion with more stops there.
 pub(crate) const STILL: u32 = 6;
-/// The computation of a body that loses energy stops after more than `CHATTER` consecutive phases, without a flight,
-/// shorter than `SHORT`:
+/// The computation of a body that loses energy stops after more than `MOST_SHORT_PHASES` consecutive phases, without a flight,
+/// shorter than `SHORT_PHASE`:
 /// then two laws of dry friction alternate without end.
-const SHORT: f64 = 1e-9;
-const CHATTER: u32 = 200;
+const SHORT_PHASE: f64 = 1e-9;
+const MOST_SHORT_PHASES: u32 = 200;
 /// Number of additional crawling steps that each change of the motion allows, since short steps after a change do not
 /// mean that time hardly advances.
-const RENEWED: u64 = 1000;
+const CRAWLING_STEPS_PER_CHANGE: u64 = 1000;
 
 /// Length of the first step of a slip that has no series, in a straight line: its square is below rounding.
 pub(crate) const MOMENT: f64 = 1e-8;
@@ -122,7 +122,7 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     times: &'a [f64],
     pub made: Followed<P::State>,
     /// Whether the memory has sufficed for all phases and impacts; an error ends the walk before its next phase.
-    grown: Result<(), Error>,
+    memory_result: Result<(), Error>,
     /// The numbers at the beginning of the current phase, or at its end once it has ended.
     pub at: [f64; N],
     pub next: Option<Next>,
@@ -131,10 +131,10 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     /// Whether an earlier phase continues.
     resumes: bool,
     /// The time of the last change of the motion.
-    changed: f64,
+    last_change: f64,
     /// Number of consecutive changes at the same time as the change before.
     pub still: u32,
-    /// Number of consecutive changes at most `SHORT` later than the change before.
+    /// Number of consecutive changes at most `SHORT_PHASE` later than the change before.
     short: u32,
     /// Number of changes within phases.
     turns: usize,
@@ -146,7 +146,7 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub spent: Spent,
     looked: slips::Looked,
     /// Number of steps since `go_on` was asked last, in flows that are shorter than its turn.
-    unasked: u64,
+    steps_since_call: u64,
     /// The series of the last slow slip.
     slow: Option<Box<P::Slow>>,
     /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
@@ -181,19 +181,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             since,
             times,
             made,
-            grown: Ok(()),
+            memory_result: Ok(()),
             at,
             next: None,
             began: f64::NEG_INFINITY,
             resumes: false,
-            changed: f64::NEG_INFINITY,
+            last_change: f64::NEG_INFINITY,
             still: 0,
             short: 0,
             turns: 0,
             crawling,
             spent: Spent { evaluations: 0, erred: 0.0, patience: crawling, exhausted: None },
             looked: slips::Looked::default(),
-            unasked: 0,
+            steps_since_call: 0,
             slow: None,
             tired: false,
         })
@@ -221,7 +221,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     #[inline(never)] // its frame is not on the stack of the flows
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
-            self.grown?;
+            self.memory_result?;
             let next = self.goes_on(next);
             P::audits(self);
             if matches!(next, Next::Own(Kind::Flying)) {
@@ -261,19 +261,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
                     self.begins_phase(Kind::Slipping);
                     if !P::slips_known(self) {
                         let y = P::slips(self);
-                        self.looks_at(&y);
+                        self.note_slip(&y);
                         return Ok(WalkStep::Flows(y));
                     }
                 }
                 Next::SlipsOn => {
                     self.began = self.at[TIME];
                     let y = P::slips_on(self);
-                    self.looks_at(&y);
+                    self.note_slip(&y);
                     return Ok(WalkStep::Flows(y));
                 }
                 Next::SlipsOff { alpha, growth } => {
                     if let Some(y) = self.slips_off((alpha, growth)) {
-                        self.looks_at(&y);
+                        self.note_slip(&y);
                         return Ok(WalkStep::Flows(y));
                     }
                 }
@@ -286,15 +286,15 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// limit that the changes have reached.
     fn changes(&mut self) -> Option<Limit> {
         let now = self.at[TIME];
-        self.still = if now > self.changed { 0 } else { self.still + 1 };
-        self.short = if now > self.changed + SHORT { 0 } else { self.short + 1 };
-        self.changed = now;
+        self.still = if now > self.last_change { 0 } else { self.still + 1 };
+        self.short = if now > self.last_change + SHORT_PHASE { 0 } else { self.short + 1 };
+        self.last_change = now;
         let (count, hops) = (self.made.path.phases.len() + self.turns, self.made.path.impacts.len());
         match () {
             () if hops > MOST_IMPACTS => Some(Limit::Impacts),
             () if count.saturating_sub(hops) > most_phases(&self.since) => Some(Limit::Changes),
             () if self.still > STILL => Some(Limit::Chatter),
-            () if !self.ask.losses.is_none() && self.short > CHATTER => Some(Limit::Chatter),
+            () if !self.ask.losses.is_none() && self.short > MOST_SHORT_PHASES => Some(Limit::Chatter),
             () => None,
         }
     }
@@ -350,16 +350,16 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         match paused {
             Pause::Here(y, step) if looks < u64::MAX => {
                 // A flow this short does not ask `go_on` itself.
-                self.unasked += looks;
-                if self.unasked >= BREATH {
-                    self.unasked = 0;
+                self.steps_since_call += looks;
+                if self.steps_since_call >= BREATH {
+                    self.steps_since_call = 0;
                     if !go_on() {
                         self.made.motion.limit = Some(Limit::Interrupted);
                         P::slip_halts(self, y, Halt::Endless);
                         return Ok(Pause::No);
                     }
                 }
-                Ok(self.takes_up(y, step))
+                Ok(self.continue_by_series(y, step))
             }
             paused => Ok(paused),
         }
@@ -428,17 +428,17 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             return;
         }
         let phase = P::seen(self, kind);
-        self.grown = self.grown.and(grow(&mut self.made.path.phases, phase));
+        self.memory_result = self.memory_result.and(grow(&mut self.made.path.phases, phase));
     }
 
     /// Records an impact.
     pub fn records_impact(&mut self, impact: Strike) {
-        self.grown = self.grown.and(grow(&mut self.made.path.impacts, impact));
+        self.memory_result = self.memory_result.and(grow(&mut self.made.path.impacts, impact));
     }
 
     /// Allows more crawling steps after a change of the motion.
     pub fn allows_crawling(&mut self) {
-        self.spent.patience = (self.spent.patience + RENEWED).min(self.crawling);
+        self.spent.patience = (self.spent.patience + CRAWLING_STEPS_PER_CHANGE).min(self.crawling);
     }
 
     /// Records an event outside the model, at the current numbers, unless an earlier event is recorded.
@@ -457,7 +457,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// The finished motion and its path.
     pub fn done(mut self) -> Result<Followed<P::State>, Error> {
-        self.grown?;
+        self.memory_result?;
         let count = self.made.motion.states.len();
         self.made.motion.times = copied(&self.times[..count])?;
         self.made.motion.evaluations = self.spent.evaluations;
@@ -483,7 +483,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
 
     /// Raises the estimated error of the motion to at least this error, which remains if it is NaN.
     pub fn claims(&mut self, error: f64) {
-        self.made.motion.error = larger(self.made.motion.error, error);
+        self.made.motion.error = larger_or_nan(self.made.motion.error, error);
     }
 
     /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference
@@ -496,7 +496,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     /// the rate at which the margin fell, or the speed of a body that comes to rest.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         // In the midst of bounces the time of an end has no meaning, and its effect is in the difference of the runs.
-        if self.ask.restitution.is_some() && y[TIME] - self.began <= BRIEF {
+        if self.ask.restitution.is_some() && y[TIME] - self.began <= BRIEF_PHASE {
             return;
         }
         if let Some(grows) = self.of.grows(halt, y) {

@@ -9,7 +9,7 @@ use crate::numbers::Series;
 
 /// A slip from rest whose speed grows faster than this does not stay slow: an integrator continues it after its first
 /// series.
-const SLOWLY: f64 = 0.02;
+const SLOW_GROWTH: f64 = 0.02;
 
 /// The series of all numbers along a slow slip. Functions return it in a `Box`, since the stack of the
 /// caller may be small.
@@ -46,14 +46,14 @@ impl<const N: usize> SlowSeries<N> {
 const STEPS_TO_LOOK: [u64; 2] = [24, 240];
 /// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
 /// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
-const CREEPS: f64 = 0.15;
+const CREEP_CHANGE: f64 = 0.15;
 /// The change of the speed is that of the last steps, fewer than these: a lane looks after 96.
-const RECENT: f64 = 110.0;
+const RECENT_STEPS: f64 = 110.0;
 /// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
 /// tolerance.
-const SETTLED: f64 = 0.5;
+const SETTLED_DIRECTION: f64 = 0.5;
 /// Cost of a series, in evaluations of the rates.
-const SERIES: u64 = 100;
+const SERIES_COST: u64 = 100;
 
 /// The speed of a slip where it was looked at last, the number of evaluations until then, and the number of looks to be
 /// skipped, after an attempt that failed, and before the next one.
@@ -69,10 +69,10 @@ pub(super) struct Looked {
 const KEEPS_ITS_WAY: f64 = 1e-5;
 
 /// A series lasts at most about this many times as long as the one before it.
-const STRETCHES: f64 = 2.0;
+const SERIES_DURATION_RATIO: f64 = 2.0;
 
 /// Phases shorter than this, in units of time, may be left out.
-const A_MOMENT: f64 = 1e-6;
+const NEGLIGIBLE_PHASE: f64 = 1e-6;
 
 /// The series of slow slips under the laws of a phase.
 pub(crate) trait SlowLaw<const N: usize> {
@@ -108,7 +108,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         if !series.is_sound() {
             return Some(self.begins_at_once(way, growth));
         }
-        self.follows(slow, series, growth < SLOWLY)
+        self.follow_series(slow, series, growth < SLOW_GROWTH)
     }
 
     /// The series of slow slips under the current law.
@@ -118,7 +118,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
     }
 
     /// Notes the speed of a slip that begins at the numbers `y`.
-    pub(super) fn looks_at(&mut self, y: &[f64; N]) {
+    pub(super) fn note_slip(&mut self, y: &[f64; N]) {
         let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
         self.looked = Looked { speed, evaluations: self.spent.evaluations, skips: [0; 2] };
     }
@@ -132,29 +132,29 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
     }
 
     /// A slow slip at the numbers `y`, whose steps would remain short up to its end, continues by its series.
-    pub(super) fn takes_up(&mut self, y: [f64; N], step: Option<f64>) -> Pause<N> {
+    pub(super) fn continue_by_series(&mut self, y: [f64; N], step: Option<f64>) -> Pause<N> {
         let (speed, spent) = (y[P::SLIP].hypot(y[P::SLIP + 1]), self.spent.evaluations);
         let Looked { speed: before, evaluations, skips: [skips, last] } = self.looked;
         let steps = spent.saturating_sub(evaluations) as f64 / 12.0;
         // Over many steps a slip changes by a small factor a step even if it ends soon.
-        let creeps = steps < RECENT && (before / speed).ln().abs() < CREEPS * steps;
+        let creeps = steps < RECENT_STEPS && (before / speed).ln().abs() < CREEP_CHANGE * steps;
         self.looked = Looked { speed, evaluations: spent, skips: [skips.saturating_sub(1), last] };
         if speed > SLOW_SLIP || !creeps || skips > 0 {
             return Pause::Here(y, step);
         }
         let (mut slow, angle) = (self.recorded(), y[P::SLIP + 1].atan2(y[P::SLIP]));
         let found = slow.follow(&y, Series::of(angle), 0.0, speed);
-        self.spent.evaluations += SERIES;
+        self.spent.evaluations += SERIES_COST;
         let fastest = self.of.grows(Halt::LiftOff, &y).unwrap_or(1.0);
         let off =
             |series: &SlowSeries<N>| (series.angle.at[0] - angle).abs() * speed / (fastest * self.of.tol());
-        match found.filter(|series| series.is_sound() && series.pays && off(series) < SETTLED) {
+        match found.filter(|series| series.is_sound() && series.pays && off(series) < SETTLED_DIRECTION) {
             Some(series) => {
                 self.spent.erred += off(&series) * fastest;
                 self.at = y;
-                match self.follows(slow, series, true) {
+                match self.follow_series(slow, series, true) {
                     Some(y) => {
-                        self.looks_at(&y);
+                        self.note_slip(&y);
                         Pause::Here(y, None)
                     }
                     None => Pause::No,
@@ -171,14 +171,14 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
 
     /// Follows a slow slip by its series. Returns the numbers at which an integrator continues; None if the slip ends
     /// before that. `on` says whether further series may follow.
-    fn follows(
+    fn follow_series(
         &mut self,
         mut slow: Box<P::Slow>,
         mut series: Box<SlowSeries<N>>,
         on: bool,
     ) -> Option<[f64; N]> {
         let left = loop {
-            self.spent.evaluations += SERIES;
+            self.spent.evaluations += SERIES_COST;
             let clear = P::clear_until(self, &series);
             let whole = clear == series.until;
             let until = clear.min(self.since.last().map_or(0.0, |t| t - series.from));
@@ -200,7 +200,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             // The direction of a slow slip returns to its zero of f in a time proportional to the speed, so
             // that an integrator would need tiny steps.
             let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
-            let may_pay = pays(STRETCHES * series.until, series.settling * speed);
+            let may_pay = pays(SERIES_DURATION_RATIO * series.until, series.settling * speed);
             let stays_slow = whole && on && may_pay && self.toil() > 0;
             let next = if stays_slow { slow.follow(&y, series.angle.about(until), 0.0, speed) } else { None };
             match next.filter(|next| next.pays) {
@@ -235,7 +235,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
 
     /// Removes a phase that has lasted only for a moment, such as one in which the drilling of a patch passes zero.
     pub fn forgets_a_moment(&mut self, now: f64) {
-        if now - self.began < A_MOMENT && self.made.path.phases.len() > 1 {
+        if now - self.began < NEGLIGIBLE_PHASE && self.made.path.phases.len() > 1 {
             self.made.path.phases.pop();
             self.resumes = true;
         }

@@ -22,41 +22,41 @@ use crate::numbers::tape::{Player, Tape, Taped};
 use crate::numbers::{Series, TERMS};
 
 /// Number of coefficients for each digit of the tolerance.
-const PER_DIGIT: f64 = 1.2;
+const TERMS_PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
 /// A slip faster than this is computed by the integrator.
 pub(super) const SLOW_SLIP: f64 = 0.02;
 /// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
 /// agreement there is no series, and the integrator computes the slip.
-const SOON: f64 = 0.05;
+const LONGEST_SWEEP: f64 = 0.05;
 const MOST_SWEEPS: i32 = 16;
 
 /// Number of coefficients that a tolerance needs.
 fn terms(tol: f64) -> usize {
-    ((1.0 - tol.log10()) * PER_DIGIT).ceil().clamp(5.0, TERMS as f64) as usize
+    ((1.0 - tol.log10()) * TERMS_PER_DIGIT).ceil().clamp(5.0, TERMS as f64) as usize
 }
 
 /// The time at which the larger of the last two terms of a series reaches `allowed`.
-fn soon(x: &Series, terms: usize, allowed: f64) -> f64 {
+fn time_within_terms(x: &Series, terms: usize, allowed: f64) -> f64 {
     let until = |k: usize| (allowed / x.at[k].abs()).powf(1.0 / k as f64);
     until(terms - 2).min(until(terms - 1))
 }
 
 /// A series that lasts longer than this many settling times takes less work than an integrator, each of whose
 /// steps spans about six of them. In a settling time a deviation of the direction falls by a factor e.
-const WORTHWHILE: f64 = 30.0;
+const WORTHWHILE_SETTLING_TIMES: f64 = 30.0;
 
 /// Whether a series up to the time `until` takes less work than an integrator.
 pub(crate) fn pays(until: f64, settling: f64) -> bool {
-    until > WORTHWHILE * settling
+    until > WORTHWHILE_SETTLING_TIMES * settling
 }
 
 /// Number of times at which the speed along a series is tested for a zero.
-const SPEEDS: usize = 64;
+const SPEED_SAMPLES: usize = 64;
 
 /// Number of parts of a series between which margins are checked.
-const CHECKS: usize = 8;
+const MARGIN_CHECKS: usize = 8;
 /// Largest number of halvings of a series that is too long for its margins.
 const HALVINGS: u32 = 60;
 
@@ -64,14 +64,14 @@ const HALVINGS: u32 = 60;
 /// at both ends and then has no direction; the second argument of `margins` is a time close by at which it has one.
 pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
     for _ in 0..HALVINGS {
-        let part = |k: usize| until * k as f64 / CHECKS as f64;
+        let part = |k: usize| until * k as f64 / MARGIN_CHECKS as f64;
         let moment = 1e-3 * part(1);
         let at = |k: usize| match k {
             0 => margins(0.0, moment),
-            CHECKS => margins(until, until - moment),
+            MARGIN_CHECKS => margins(until, until - moment),
             _ => margins(part(k), part(k)),
         };
-        let all: Vec<[f64; M]> = (0..=CHECKS).map(at).collect();
+        let all: Vec<[f64; M]> = (0..=MARGIN_CHECKS).map(at).collect();
         if are_clear(&all) {
             break;
         }
@@ -196,7 +196,7 @@ impl<const K: usize> SlowSlips<K> {
             for n in 0..terms - 1 {
                 if n > 0 {
                     turns[n - 1] = 0.0;
-                    Self::direct(player, &turns, n);
+                    Self::set_direction(player, &turns, n);
                     player.go_on(n);
                     // The terms of r alpha' without a_n.
                     let speed = player.given(Self::SPEED);
@@ -213,12 +213,12 @@ impl<const K: usize> SlowSlips<K> {
                 let faster = if n == 0 { grows } else { player.result(Self::GROWS).at[n] / over };
                 player.set(Self::SPEED, n + 1, faster);
             }
-            Self::direct(player, &turns, terms - 1);
+            Self::set_direction(player, &turns, terms - 1);
             let settling = 1.0 / -f_alpha;
             if begin == 0.0 {
                 break settling;
             }
-            let soon = SOON.min(soon(&angle, terms, LAST_TERMS));
+            let soon = LONGEST_SWEEP.min(time_within_terms(&angle, terms, LAST_TERMS));
             let off: f64 = (0..terms).map(|n| (angle.at[n] - before.at[n]).abs() * soon.powi(n as i32)).sum();
             // The change of the angle is expected to decrease in the next sweep by the same factor as in this one.
             if sweep > 0 && off * (off / moved).min(1.0) <= 0.1 * self.tol.max(1e-13) {
@@ -250,7 +250,7 @@ impl<const K: usize> SlowSlips<K> {
     }
 
     /// Sets the coefficients `n` > 0 of the cosine and of the sine of an angle with this rate.
-    fn direct(player: &mut Player, rate: &[f64; TERMS], n: usize) {
+    fn set_direction(player: &mut Player, rate: &[f64; TERMS], n: usize) {
         let [cosine, sine] = [Self::COSINE, Self::SINE].map(|i| turned(player.given(i), rate, n));
         player.set(Self::COSINE, n, -sine);
         player.set(Self::SINE, n, cosine);
@@ -272,7 +272,8 @@ impl<const K: usize> SlowSlip<K> {
     /// The time up to which the series of these numbers may be used, and whether the slip ends then.
     pub fn until(&self, numbers: &[Series]) -> (f64, bool) {
         let (speed, mut until) = (&self.speed, f64::INFINITY);
-        let mut within = |x: &Series, allowed: f64| until = until.min(soon(x, self.terms, allowed));
+        let mut within =
+            |x: &Series, allowed: f64| until = until.min(time_within_terms(x, self.terms, allowed));
         for x in numbers {
             within(x, 0.1 * self.tol * x.at[0].abs().max(1.0));
         }
@@ -284,12 +285,12 @@ impl<const K: usize> SlowSlip<K> {
             return (until, false);
         }
         // The speed is not certain to stay positive: the slip may end before its series does.
-        let part = |k: f64| until * k / SPEEDS as f64;
-        let looks: [f64; SPEEDS + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
-        let over = (1..=SPEEDS).find_map(|k| {
-            let (before, here, after) = (looks[k - 1], looks[k], looks[SPEEDS.min(k + 1)]);
+        let part = |k: f64| until * k / SPEED_SAMPLES as f64;
+        let looks: [f64; SPEED_SAMPLES + 1] = core::array::from_fn(|k| speed.value(part(k as f64)));
+        let over = (1..=SPEED_SAMPLES).find_map(|k| {
+            let (before, here, after) = (looks[k - 1], looks[k], looks[SPEED_SAMPLES.min(k + 1)]);
             // A minimum of the speed may lie between two of these times.
-            let dips = k < SPEEDS && here < before && here < after;
+            let dips = k < SPEED_SAMPLES && here < before && here < after;
             let lowest = if dips { 0.5 * (before - after) / (before + after - 2.0 * here) } else { 0.0 };
             Some(part(k as f64 + lowest)).filter(|t| speed.value(*t) <= 0.0)
         });

@@ -7,7 +7,7 @@
 use crate::error::{Error, copied, grow, room};
 use crate::laws::state::State;
 use crate::motions::{Ending, Kind, Limit, Motion, Moving, Path, Phase};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 
 /// A motion and its path, before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,27 +23,27 @@ const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
 /// Where only one of the two runs has an end, this end may be this far from the last time, and the estimated error is
 /// the difference. If the end is farther away the runs disagree, and the error is infinite.
-const LATE: f64 = 1e-6;
+const END_DISTANCE: f64 = 1e-6;
 /// Two phases of the two runs correspond to each other if the times of their beginnings differ by less than
 /// this share of the length of the shorter one.
-const TOGETHER: f64 = 0.3;
+const SAME_PHASE_SHARE: f64 = 0.3;
 /// A second run with more than this share of the evaluations of the first has made almost the same steps, so
 /// that the difference of the runs hides the errors of these steps.
-const ALIKE: f64 = 0.66;
+const ALIKE_EVALUATIONS: f64 = 0.66;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const LEAST_SHARE: f64 = 0.25;
 /// The share of the step errors by which a rougher run that hops is perturbed.
 pub(crate) const CHANCE: f64 = 0.1;
 /// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
 /// run with the same motion before and after may have one more or one less.
-pub(crate) const BRIEF: f64 = 1e-4;
+pub(crate) const BRIEF_PHASE: f64 = 1e-4;
 /// A motion with impacts has an estimated error that is larger by this factor: a flight in air has few steps, whose
 /// errors are less proportional to the tolerance, and impacts multiply them.
-const HOPPING: f64 = 2.0;
+const HOPPING_ERROR_FACTOR: f64 = 2.0;
 /// The estimated error, in units of the difference, of a motion whose two runs do not hop alike.
-const UNLIKE: f64 = 3.0;
+const UNLIKE_ERROR_FACTOR: f64 = 3.0;
 /// Runs that differ by this share of the largest speed have parted, and the error is their whole difference.
-const PARTED: f64 = 0.3;
+const PARTED_SHARE: f64 = 0.3;
 
 /// The tolerance of the second run, which shows the error of a path with the tolerance `tol`.
 pub(crate) fn rougher(tol: f64) -> f64 {
@@ -89,7 +89,11 @@ type PhasePairs<'a, S> = Vec<[&'a Phase<S>; 2]>;
 /// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
 /// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
 /// other, its additional phases at the end do not count, and the last phase that a run has is followed by others.
-fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(PhasePairs<'_, S>, f64), Error> {
+fn pairs_of_phases<S>(
+    runs: [&[Phase<S>]; 2],
+    end: f64,
+    whirrs: bool,
+) -> Result<(PhasePairs<'_, S>, f64), Error> {
     let (mut pairs, mut alone, mut at) = (room(runs[0].len().min(runs[1].len()))?, 0f64, [0; 2]);
     let lasts = |k: usize, i: usize| {
         let begin = runs[k][i].time;
@@ -99,7 +103,7 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(PhaseP
     while let (Some(a), Some(b)) = (runs[0].get(at[0]), runs[1].get(at[1])) {
         let long = [lasts(0, at[0]), lasts(1, at[1])];
         let last = !whirrs && at[0] + 1 == runs[0].len() && at[1] + 1 == runs[1].len();
-        let near = (a.time - b.time).abs() <= TOGETHER * long[0].min(long[1]);
+        let near = (a.time - b.time).abs() <= SAME_PHASE_SHARE * long[0].min(long[1]);
         if a.kind == b.kind && (near || last) {
             pairs.push([a, b]);
             at = at.map(|i| i + 1);
@@ -125,10 +129,10 @@ fn together<S>(runs: [&[Phase<S>]; 2], end: f64, whirrs: bool) -> Result<(PhaseP
 }
 
 /// The phases of a motion with impacts, up to the time `end`, that are not brief.
-fn lasting<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<S>>, Error> {
+fn phases_that_last<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<S>>, Error> {
     let mut found = room(phases.len())?;
     let next = phases.iter().skip(1).map(|phase| phase.time).chain([end]);
-    let long = phases.iter().zip(next).filter(|(phase, next)| next - phase.time > BRIEF);
+    let long = phases.iter().zip(next).filter(|(phase, next)| next - phase.time > BRIEF_PHASE);
     found.extend(long.map(|(phase, _)| *phase));
     Ok(found)
 }
@@ -136,7 +140,7 @@ fn lasting<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<S>>, Erro
 /// Whether a phase follows a brief one, so that the number of bounces decides when it begins.
 fn follows_bounces<S>(phases: &[Phase<S>], phase: &Phase<S>) -> bool {
     let before = phases.partition_point(|other| other.time < phase.time).checked_sub(1);
-    before.is_some_and(|i| phase.time - phases[i].time <= BRIEF)
+    before.is_some_and(|i| phase.time - phases[i].time <= BRIEF_PHASE)
 }
 
 impl Followed {
@@ -170,7 +174,7 @@ impl<S: Moving> Followed<S> {
     /// Marks a motion whose error a rougher run does not show, because the computation was interrupted.
     pub(crate) fn stays_unjudged(&mut self) {
         self.motion.limit = Some(Limit::Interrupted);
-        self.motion.forgets_error();
+        self.motion.make_error_infinite();
     }
 
     /// Estimates the errors of this motion from its difference from a rougher run, or returns an error if the memory does
@@ -180,15 +184,15 @@ impl<S: Moving> Followed<S> {
         let given_up = self.is_given_up();
         let motion = &mut self.motion;
         let (mut off, mut turned, mut pressed) = (0f64, 0f64, 0f64);
-        let mut apart = |by: f64| off = larger(off, by);
+        let mut apart = |by: f64| off = larger_or_nan(off, by);
         // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
         let hops = !self.path.impacts.is_empty();
         let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
             let slips = u.iter().zip(v).map(|(u, v)| (u - v).abs());
-            let direct = slips.fold(a.distance(b), larger);
+            let direct = slips.fold(a.distance(b), larger_or_nan);
             let there = b.seen_from_other_rim().filter(|_| hops);
             there.map_or(direct, |b| {
-                let over = larger(a.distance(&b), (u[0] + v[0]).abs());
+                let over = larger_or_nan(a.distance(&b), (u[0] + v[0]).abs());
                 if over < direct { over } else { direct }
             })
         };
@@ -202,9 +206,10 @@ impl<S: Moving> Followed<S> {
         let end = [&*motion, &rough.motion].map(|m| m.event.map(|e| e.time).or(m.times.last().copied()));
         let end = end.into_iter().flatten().fold(0.0, f64::max);
         let all = [&self.path.phases[..], &rough.path.phases];
-        let lasts = if hops { Some([lasting(all[0], end)?, lasting(all[1], end)?]) } else { None };
+        let lasts =
+            if hops { Some([phases_that_last(all[0], end)?, phases_that_last(all[1], end)?]) } else { None };
         let phases = lasts.as_ref().map_or(all, |[a, b]| [a, b]);
-        let (pairs, alone) = together(phases, end, whirrs)?;
+        let (pairs, alone) = pairs_of_phases(phases, end, whirrs)?;
         // Once two runs do not hop alike, their difference is no longer proportional to the tolerances.
         let unlike = hops && alone > 0.0;
         let alone = if hops { 0.0 } else { alone };
@@ -236,12 +241,12 @@ impl<S: Moving> Followed<S> {
                     (false, true) => S::pose_distance_over(b, a),
                     _ => S::pose_distance(a, b),
                 };
-                turned = larger(turned, apart);
+                turned = larger_or_nan(turned, apart);
             }
         }
         if let (Some(forces), Some(others)) = (&motion.forces, &rough.motion.forces) {
             for (a, b) in forces.iter().zip(others) {
-                pressed = larger(pressed, S::force_distance(a, b));
+                pressed = larger_or_nan(pressed, S::force_distance(a, b));
             }
         }
         let mut ends = motion.event.map(|e| e.ending) == rough.motion.event.map(|e| e.ending)
@@ -249,9 +254,9 @@ impl<S: Moving> Followed<S> {
         // One of the two runs may meet an end at the last time, and the other may just miss that end.
         let last = motion.times.last().or(rough.motion.times.last()).copied();
         if let (Some(event), None) | (None, Some(event)) = (motion.event, rough.motion.event)
-            && let Some(late) = last.map(|t| (event.time - t).abs()).filter(|late| *late <= LATE)
+            && let Some(late) = last.map(|t| (event.time - t).abs()).filter(|late| *late <= END_DISTANCE)
         {
-            (ends, off) = (true, larger(off, late));
+            (ends, off) = (true, larger_or_nan(off, late));
         }
         let fastest =
             self.path.phases.iter().fold(1.0, |most: f64, p| {
@@ -266,7 +271,7 @@ impl<S: Moving> Followed<S> {
         // The error of a step grows as the eighth power of its length: hardly longer steps have hardly
         // larger errors.
         let ratio = rough.motion.evaluations as f64 / motion.evaluations.max(1) as f64;
-        let alike = ratio > ALIKE.min(1.5 * (tol / rougher(tol)).powf(0.125));
+        let alike = ratio > ALIKE_EVALUATIONS.min(1.5 * (tol / rougher(tol)).powf(0.125));
         // Step errors grow along the motion, by the same factor in both runs: in the rougher run from their sum to the
         // difference of the runs. Steps that are not alike show their errors in that difference; as it may be small by
         // chance, the estimated error also includes a share of their sum. Where impacts multiply the errors of both runs, it
@@ -275,11 +280,11 @@ impl<S: Moving> Followed<S> {
         least += self.path.erred * if alike || hops { grows } else { LEAST_SHARE };
         least += alone;
         // Errors that have grown until the two runs part are no longer proportional to the tolerances.
-        let parted = PARTED * fastest;
+        let parted = PARTED_SHARE * fastest;
         let claimed = if unlike {
-            UNLIKE
+            UNLIKE_ERROR_FACTOR
         } else if hops {
-            HOPPING * claimed
+            HOPPING_ERROR_FACTOR * claimed
         } else {
             claimed
         };
@@ -300,7 +305,7 @@ impl<S: Moving> Followed<S> {
         // After an impact the errors of its time and of its sum are also those of the pose.
         let state_claim = if hops { state_claim } else { 0.0 };
         // Angles have parted where they differ by a share of a radian, as where two balls pass on two sides of their poles.
-        let turned = grown_to(turned, PARTED);
+        let turned = grown_to(turned, PARTED_SHARE);
         motion.pose_error = settled(motion.pose_error + state_claim, turned) + 32.0 * f64::EPSILON * turning;
         Ok(())
     }
@@ -326,15 +331,15 @@ mod tests {
         let ours = phases(&[0.0, 1.0, 2.0, 5.0, 5.001, 8.0, 9.0]);
         let theirs = phases(&[0.0, 1.01, 2.01, 8.01, 9.01]);
         for runs in [[&ours[..], &theirs[..]], [&theirs[..], &ours[..]]] {
-            let (pairs, alone) = together(runs, 10.0, false).unwrap();
+            let (pairs, alone) = pairs_of_phases(runs, 10.0, false).unwrap();
             assert_eq!(pairs.len(), 5);
             assert!(pairs.iter().all(|[a, b]| a.kind == b.kind && (a.time - b.time).abs() < 0.02));
             assert!((alone - 0.001).abs() < 1e-12, "{alone}");
         }
         // Phases at the end that only one run has count with their length; for whirrs they do not count.
-        let (pairs, alone) = together([&ours[..5], &ours], 10.0, false).unwrap();
+        let (pairs, alone) = pairs_of_phases([&ours[..5], &ours], 10.0, false).unwrap();
         assert!(pairs.len() == 5 && alone == 2.0, "{} {alone}", pairs.len());
-        assert_eq!(together([&ours[..5], &ours], 10.0, true).unwrap().1, 0.0);
+        assert_eq!(pairs_of_phases([&ours[..5], &ours], 10.0, true).unwrap().1, 0.0);
     }
 
     #[test]
@@ -342,13 +347,13 @@ mod tests {
         let flights = |times: &[f64]| -> Vec<Phase> {
             phases(times).into_iter().map(|phase| Phase { kind: Kind::Flying, ..phase }).collect()
         };
-        let ours = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0).unwrap();
-        let theirs = lasting(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0).unwrap();
+        let ours = phases_that_last(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), 2.0).unwrap();
+        let theirs = phases_that_last(&flights(&[0.0, 1.0, 1.00001, 1.00002]), 2.0).unwrap();
         assert_eq!([ours.len(), theirs.len()], [2, 2]);
-        assert_eq!(together([&ours, &theirs], 2.0, false).unwrap().1, 0.0);
+        assert_eq!(pairs_of_phases([&ours, &theirs], 2.0, false).unwrap().1, 0.0);
         assert!(!follows_bounces(&flights(&[0.0, 1.0, 1.5]), &ours[0]));
         assert!(follows_bounces(&flights(&[0.0, 1.0, 1.00001, 1.00002, 1.00003]), &ours[1]));
-        let parted = lasting(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0).unwrap();
-        assert!(together([&ours, &parted], 2.0, false).unwrap().1 > 0.1);
+        let parted = phases_that_last(&flights(&[0.0, 0.4, 1.2, 1.6]), 2.0).unwrap();
+        assert!(pairs_of_phases([&ours, &parted], 2.0, false).unwrap().1 > 0.1);
     }
 }

@@ -47,7 +47,7 @@ pub(crate) struct Moments<T> {
 
 impl Moments<f64> {
     pub fn of(body: &Body) -> Self {
-        Self::made_of(body.ell(), [body.i1(), body.i3()], body.excess_sum())
+        Self::from_moments(body.ell(), [body.i1(), body.i3()], body.excess_sum())
     }
 }
 
@@ -56,11 +56,11 @@ impl<T: Real> Moments<T> {
     #[inline(always)]
     pub fn tube(ell: T, bore: T) -> Self {
         let (moments, excess) = tube(ell, bore);
-        Self::made_of(tube_or_nan(ell, bore), moments, excess)
+        Self::from_moments(tube_or_nan(ell, bore), moments, excess)
     }
 
     #[inline(always)]
-    pub(super) fn made_of(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
+    pub(super) fn from_moments(ell: T, [i1, i3]: [T; 2], excess: Sum<T>) -> Self {
         let one = ell.splat(1.0);
         let square = ell * ell;
         let (j, d) = (i1 + one + square, i1 * i3 + i1 + i3 * ell * ell);
@@ -106,7 +106,7 @@ impl<T: Copy> Moments<T> {
 fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let inertia = n.fma(n, of.i1);
     let turning = n * (m / of.ratio + c + of.ratio / m) / inertia;
-    turning_one([n, m], turning / s - of.ell.fma(c, s) / inertia)
+    where_rate_is_real([n, m], turning / s - of.ell.fma(c, s) / inertia)
 }
 
 /// Rolling kappa of the state with the centre at rest, from n and m; NaN where no such state exists.
@@ -114,7 +114,7 @@ fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T
 fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
     let x = of.tilt + turn + of.lift * of.spin.fma(s, of.ell * c) * s;
-    turning_one([n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
+    where_rate_is_real([n, m], (n / m) * x / s - of.ell.fma(c, s) * of.inverse_j)
 }
 
 /// Energy of the state with the centre at rest, in M g R: (I1/I3 + ell^2) rate^2 sin^2/2 + ell cos + sin; NaN where no
@@ -122,12 +122,12 @@ fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> 
 #[inline(always)]
 fn energy_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let moment = of.ell.splat(0.5) * (of.ratio + of.ell * of.ell);
-    turning_one([n, m], (n / m) * s * moment + of.ell.fma(c, s))
+    where_rate_is_real([n, m], (n / m) * s * moment + of.ell.fma(c, s))
 }
 
 /// Returns `x` where the squared rate is positive, NaN elsewhere.
 #[inline(always)]
-fn turning_one<T: Real>([n, m]: [T; 2], x: T) -> T {
+fn where_rate_is_real<T: Real>([n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
     let sign = m.select_lt(zero, -n, n);
     zero.select_lt(sign, x, nan)
@@ -135,9 +135,9 @@ fn turning_one<T: Real>([n, m]: [T; 2], x: T) -> T {
 
 /// Returns `x` where theta is in (0, `most`] and the squared rate is positive, NaN elsewhere.
 #[inline(always)]
-fn existing<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
+fn where_steady<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
-    let steady = turning_one([n, m], x);
+    let steady = where_rate_is_real([n, m], x);
     most.select_lt(theta, nan, zero.select_lt(theta, steady, nan))
 }
 
@@ -224,7 +224,7 @@ impl<T: Real> Rounded<T> {
         let lever = rim.lever((s, c));
         let turning = self.i1 + (lean + lean - spin) * (c - spin * self.per_i1);
         let kappa = (square * turning - rim.slope((s, c))) / lever.fma(lever, self.i1);
-        existing(theta, self.most, [of.n.hi, of.m.hi], kappa)
+        where_steady(theta, self.most, [of.n.hi, of.m.hi], kappa)
     }
 
     #[inline(always)]
@@ -241,7 +241,7 @@ impl<T: Real> Rounded<T> {
         let z = rim.rho * (c * axial + s * s) + radius * v - depth * u;
         let lean = i1 * c * u;
         let x = i1 - (lean + lean) + i3 * (u * axial + s * v) + rim.height(angle) * z;
-        existing(theta, self.most, [of.n.hi, of.m.hi], (square * x - rim.slope(angle)) * per_inertia)
+        where_steady(theta, self.most, [of.n.hi, of.m.hi], (square * x - rim.slope(angle)) * per_inertia)
     }
 
     #[inline(always)]
@@ -249,7 +249,7 @@ impl<T: Real> Rounded<T> {
         let [square, axial] = self.turning((s, c), of);
         let turning = self.i1 * s * s + self.i3 * axial * axial;
         let energy = s.splat(0.5) * square * turning + self.rim().height((s, c));
-        existing(theta, self.most, [of.n.hi, of.m.hi], energy)
+        where_steady(theta, self.most, [of.n.hi, of.m.hi], energy)
     }
 }
 
@@ -301,7 +301,7 @@ impl<T: Real> SteadyPoint<T> {
 impl<T: Real> Moments<T> {
     /// The wanted quantities except the rate, from sine, cosine, n and m; n or m is NaN where its sign is not known.
     #[inline(always)]
-    fn beside_rate(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> SteadyPoint<T> {
+    fn other_quantities(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> SteadyPoint<T> {
         let mut found = SteadyPoint::nothing(theta);
         if wanted.energy {
             found.energy = energy_at_rest(angle, of, self);
@@ -325,11 +325,11 @@ impl<T: Real> Moments<T> {
         let angle = sincos(theta);
         let of = terms(&angle, self.ell, self.excess);
         let (sin, cos, [n, m]) = (angle.sin.hi, angle.cos.hi, [of.n.hi, of.m.hi]);
-        let mut found = self.beside_rate(theta, (sin, cos), [n, m], wanted);
+        let mut found = self.other_quantities(theta, (sin, cos), [n, m], wanted);
         let most = theta.splat(FRAC_PI_2);
-        found.rolling = existing(theta, most, [n, m], found.rolling);
-        found.smooth = existing(theta, most, [n, m], found.smooth);
-        found.energy = existing(theta, most, [n, m], found.energy);
+        found.rolling = where_steady(theta, most, [n, m], found.rolling);
+        found.smooth = where_steady(theta, most, [n, m], found.smooth);
+        found.energy = where_steady(theta, most, [n, m], found.energy);
         if wanted.rate {
             found.rate = of.rate(theta, most);
         }
@@ -351,7 +351,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
     #[inline(always)]
     fn found(&self, theta: T, angle: &Short<T>, wanted: Wanted) -> SteadyPoint<T> {
         let of = quick_terms(angle, self.ell, self.excess);
-        let mut found = self.beside_rate(theta, (angle.sin.hi, angle.cos.hi), of.rounded(), wanted);
+        let mut found = self.other_quantities(theta, (angle.sin.hi, angle.cos.hi), of.rounded(), wanted);
         if wanted.rate {
             found.rate = if wanted.single {
                 let of = *self;
@@ -376,7 +376,7 @@ impl<T: Narrow> AtRest<T> for Moments<T> {
         careful.with(
             found,
             #[inline(always)]
-            |careful, quick| of.pick(careful, quick),
+            |careful, quick| of.where_certain(careful, quick),
         )
     }
 }

@@ -11,7 +11,7 @@
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
 use crate::methods::roots::{Coefficient, Cubic, Trig};
-use crate::states::steady::{self, MOST, Shares};
+use crate::states::steady::{self, BodyPolynomials, MOST};
 
 /// Inclinations in (0, pi/2) where the stability of the state with the centre at rest changes,
 /// ascending, NaN after the last: the boundary curves of the map.
@@ -34,7 +34,7 @@ pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool
     let (drag, lift) = (Cubic::of(i3 * i3 * ell / d_sharp), Cubic::of((i1 + i3 * ell * ell) / d_sharp));
     let (one, two, t) = (Cubic::of(1.0), Cubic::of(2.0), Cubic::tangent());
     let (i1, i3, ell) = (Cubic::of(i1), Cubic::of(i3), Cubic::of(ell));
-    let (n, d) = (steady::shared(body), Cubic::of(body.excess_sum()));
+    let (n, d) = (steady::shared_factor(body), Cubic::of(body.excess_sum()));
     let (m, a, weight) = (n + d, one + d, t * (ell + t));
     match contact {
         Contact::Smooth if divided => n * (n + two),
@@ -49,7 +49,8 @@ pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool
 
 /// The boundaries of a body with a rounded rim, at inclinations below theta_end.
 fn rounded_boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
-    let Shares { s, c, radius, depth, height, slope, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
+    let BodyPolynomials { s, c, radius, depth, height, slope, n, m, sigma: [sigma, over], .. } =
+        &BodyPolynomials::of(body);
     let (i1, i3, rho) = (&Trig::of(body.i1()), &Trig::of(body.i3()), &Trig::of(body.fillet()));
     let one = Trig::of(1.0);
     // For a critical body n = m, and both factors cancel in kappa.

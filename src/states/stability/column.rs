@@ -15,7 +15,7 @@ pub(crate) trait Stored: Sync {
 
 /// A number with the values of `eight` from `k` on in its lanes; a number with eight lanes or more has all of them.
 #[inline(always)]
-fn part<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
+fn lanes_from<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
     like.load(if T::COUNT < LANES { &eight[k..] } else { eight })
 }
 
@@ -26,7 +26,7 @@ impl Stored for Moments<[f64; LANES]> {
     fn load<T: Narrow>(&self, like: T, k: usize) -> Moments<T> {
         self.map(
             #[inline(always)]
-            |x| part(like, &x, k),
+            |x| lanes_from(like, &x, k),
         )
     }
 }
@@ -38,7 +38,7 @@ impl Stored for Rounded<[f64; LANES]> {
     fn load<T: Narrow>(&self, like: T, k: usize) -> Rounded<T> {
         Rounded::from_numbers(self.numbers().map(
             #[inline(always)]
-            |x| part(like, &x, k),
+            |x| lanes_from(like, &x, k),
         ))
     }
 }

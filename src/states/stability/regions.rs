@@ -41,7 +41,7 @@ pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) ->
         let wanted = Wanted { region: true, ..Wanted::default() };
         let found = in_lanes!(
             level(),
-            simd => eight(simd, &of, lanes),
+            simd => eight_regions(simd, &of, lanes),
             else lanes.map(|theta| of.found(theta, wanted).region)
         );
         codes.extend(found[..count].iter().map(|code| *code as u8));
@@ -50,7 +50,7 @@ pub(crate) fn regions(body: &Body, theta: impl ExactSizeIterator<Item = f64>) ->
 }
 
 #[inline(always)]
-fn eight<S: Simd>(simd: S, of: &Column<f64>, theta: [f64; LANES]) -> [f64; LANES] {
+fn eight_regions<S: Simd>(simd: S, of: &Column<f64>, theta: [f64; LANES]) -> [f64; LANES] {
     let of = of.map(
         #[inline(always)]
         |x| f64x8::simd_from(simd, [x; LANES]),

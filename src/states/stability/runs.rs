@@ -58,7 +58,7 @@ impl From<Cubic<Terms>> for Curve {
 impl Curve {
     /// Whether the cubic is negative at `t`; None if its sign is uncertain.
     #[inline(always)]
-    fn negative(&self, t: f64) -> Option<bool> {
+    fn is_negative(&self, t: f64) -> Option<bool> {
         let at = |p: &[f64; 4]| ((p[3] * t + p[2]) * t + p[1]) * t + p[0];
         let value = at(&self.p);
         (value.abs() > VALUE_DOUBT * at(&self.sizes)).then_some(value < 0.0)
@@ -76,7 +76,7 @@ impl Curve {
     /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has another sign than
     /// before. Returns whether the cubic is negative at the first tangent; None if any sign is uncertain.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
-        let start = self.negative(tangents[0])?;
+        let start = self.is_negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
             [0; 2]
         } else {
@@ -87,18 +87,18 @@ impl Curve {
             if from >= to {
                 continue;
             }
-            let (first, last) = (self.negative(tangents[from])?, self.negative(tangents[to - 1])?);
+            let (first, last) = (self.is_negative(tangents[from])?, self.is_negative(tangents[to - 1])?);
             if first != before {
-                changes.note(from, which);
+                changes.insert(from, which);
             }
             if first != last {
                 let (mut low, mut high) = (from, to - 1);
                 while high - low > 1 {
                     let middle = low + (high - low) / 2;
-                    let same = self.negative(tangents[middle])? == first;
+                    let same = self.is_negative(tangents[middle])? == first;
                     (low, high) = if same { (middle, high) } else { (low, middle) };
                 }
-                changes.note(high, which);
+                changes.insert(high, which);
             }
             before = last;
         }
@@ -115,7 +115,7 @@ struct Changes {
 
 impl Changes {
     /// Inserts a change of sign at its place in the order.
-    fn note(&mut self, place: usize, which: u8) {
+    fn insert(&mut self, place: usize, which: u8) {
         let mut k = self.count;
         while k > 0 && self.all[k - 1].0 > place {
             self.all[k] = self.all[k - 1];
@@ -139,7 +139,7 @@ pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region,
     if !(within(body.i1()) && within(body.i3()) && within(a) && (ell == 0.0 || within(ell))) {
         return false;
     }
-    let n = steady::shared::<Terms>(body);
+    let n = steady::shared_factor::<Terms>(body);
     let m = n + Cubic::of(body.excess_sum());
     let [rolling, smooth] = [Contact::Rolling, Contact::Smooth].map(|contact| cubic(body, contact, false));
     let curves = [n, m, rolling, smooth].map(Curve::from);

@@ -15,16 +15,16 @@
 //!
 //! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
 
-use super::Shares;
+use super::BodyPolynomials;
 use super::{MOST, rate};
 use crate::laws::body::Body;
 use crate::methods::roots::{Coefficient, Cubic, Trig};
 
 /// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
-const TALLEST: f64 = 1e30;
+const LARGEST_ASPECT: f64 = 1e30;
 
 /// The polynomial n = 1 - ell T, which numerator and denominator of the squared rate share.
-pub(crate) fn shared<C: Coefficient>(body: &Body) -> Cubic<C> {
+pub(crate) fn shared_factor<C: Coefficient>(body: &Body) -> Cubic<C> {
     Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::tangent()
 }
 
@@ -39,7 +39,7 @@ pub fn folds(body: &Body) -> [f64; MOST] {
     if body.excess() == 0.0 {
         return [f64::NAN; MOST];
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
+    let (n, d, t) = (shared_factor(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let ell = Cubic::of(body.ell());
     inclinations_of(body, n * n + d * (Cubic::of(1.0) + ell * t * t * t))
 }
@@ -52,7 +52,7 @@ pub fn ridge(body: &Body) -> [f64; MOST] {
     if !body.is_sharp() {
         return rounded_ridge(body);
     }
-    let (n, d, t) = (shared(body), Cubic::of(body.excess_sum()), Cubic::tangent());
+    let (n, d, t) = (shared_factor(body), Cubic::of(body.excess_sum()), Cubic::tangent());
     let (one, ell) = (Cubic::of(1.0), Cubic::of(body.ell()));
     let half = (one + d + ell * ell) * Cubic::of(0.5);
     let cubic = if body.excess() == 0.0 {
@@ -73,7 +73,7 @@ fn rounded_folds(body: &Body) -> [f64; MOST] {
         // For d = 0 the squared rate is rate^2 = a/s + rho.
         return with_side(body, Vec::new());
     }
-    let Shares { s, c, radius, n, .. } = &Shares::of(body);
+    let BodyPolynomials { s, c, radius, n, .. } = &BodyPolynomials::of(body);
     let (a, ell, d) = (Trig::of(body.rim_sum()), Trig::of(body.ell()), Trig::of(body.excess_sum()));
     let wide = &d * &(radius * radius);
     if body.ell() == 0.0 {
@@ -85,7 +85,8 @@ fn rounded_folds(body: &Body) -> [f64; MOST] {
 
 /// The ridge of a rounded rim: E = p/q + h with p = n (I1 s^2 + I3 (L sigma)^2) and q = 2 I3 sigma m.
 fn rounded_ridge(body: &Body) -> [f64; MOST] {
-    let Shares { s, radius, depth, lever, n, m, sigma: [sigma, over], .. } = &Shares::of(body);
+    let BodyPolynomials { s, radius, depth, lever, n, m, sigma: [sigma, over], .. } =
+        &BodyPolynomials::of(body);
     let (i1, i3) = (Trig::of(body.i1()), Trig::of(body.i3()));
     let (mut p, q) = if body.is_ball() {
         let turning = &(&i1 * &(&(s * s) * &(over * over))) + &(&i3 * &(&(depth * depth) * &(sigma * sigma)));
@@ -96,7 +97,7 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     };
     p = &(&p.slope() * &q) - &(&p * &q.slope());
     let found = (&p - &(lever * &(&q * &q))).angles();
-    if body.ell() == 0.0 { with_side(body, found) } else { steady_ones(body, found) }
+    if body.ell() == 0.0 { with_side(body, found) } else { keep_steady(body, found) }
 }
 
 /// Adds pi/2 to the inclinations `found` if the body can be inclined beyond pi/2 and has a steady state there: where
@@ -109,7 +110,7 @@ fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
         found.push(SIDE);
         found.sort_by(f64::total_cmp);
     }
-    steady_ones(body, found)
+    keep_steady(body, found)
 }
 
 /// The inclinations at which steady states with the centre at rest begin or cease to exist.
@@ -117,7 +118,7 @@ pub(crate) fn edges(body: &Body) -> Vec<f64> {
     let mut edges =
         vec![0.0, body.range(), core::f64::consts::FRAC_PI_2, body.theta_balance(), body.theta_limit()];
     if !body.is_sharp() {
-        let Shares { n, m, .. } = Shares::of(body);
+        let BodyPolynomials { n, m, .. } = BodyPolynomials::of(body);
         edges.extend(n.angles().into_iter().chain(m.angles()));
     }
     edges.retain(|x| !x.is_nan());
@@ -127,11 +128,11 @@ pub(crate) fn edges(body: &Body) -> Vec<f64> {
 /// The inclinations within the range of a body where a polynomial vanishes and a steady state with the centre at rest
 /// exists, ascending, NaN after the last.
 pub(crate) fn in_range(body: &Body, of: &Trig) -> [f64; MOST] {
-    steady_ones(body, of.angles())
+    keep_steady(body, of.angles())
 }
 
 /// The inclinations of `found` that lie within the range of a body and have a steady state, NaN after the last.
-fn steady_ones(body: &Body, found: Vec<f64>) -> [f64; MOST] {
+fn keep_steady(body: &Body, found: Vec<f64>) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
     let inside = found.into_iter().filter(|x| *x < body.range()).filter_map(|x| allowed(body, x));
     for (slot, x) in theta.iter_mut().zip(inside) {
@@ -144,7 +145,7 @@ fn steady_ones(body: &Body, found: Vec<f64>) -> [f64; MOST] {
 /// centre at rest exists, ascending, NaN after the last.
 pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
-    if body.ell() > TALLEST || body.ratio() > TALLEST * TALLEST {
+    if body.ell() > LARGEST_ASPECT || body.ratio() > LARGEST_ASPECT * LARGEST_ASPECT {
         return theta;
     }
     for (slot, x) in theta.iter_mut().zip(cubic.angles().filter_map(|x| allowed(body, x))) {

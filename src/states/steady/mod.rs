@@ -28,11 +28,11 @@ mod trig;
 pub use branch::{folds, ridge};
 pub use inverse::{count, inclinations, states};
 
-pub(crate) use branch::{edges, in_range, inclinations_of, shared};
-pub(crate) use quick::{TINY, may_pass, may_pass_between, quick_angle, quick_terms, widened};
+pub(crate) use branch::{edges, in_range, inclinations_of, shared_factor};
+pub(crate) use quick::{TINY, bounds_beyond_error, may_exceed, may_exceed_between, quick_angle, quick_terms};
 pub(crate) use rounded::{RateTerms, RoundedParts};
 pub(crate) use single::single_rate;
-pub(crate) use trig::Shares;
+pub(crate) use trig::BodyPolynomials;
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;
@@ -57,7 +57,7 @@ pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> RateT
     let m = Sum::ordered(m.hi, m.lo + (extra.lo + n.lo + excess.hi * c.lo + excess.lo * c.hi));
     let radius = Sum { hi: number(1.0), lo: number(0.0) };
     let limits = [number(UNSURE) * c.hi, number(UNSURE) * (c.hi + ell * angle.sin.hi)];
-    RateTerms { n, m, radius, sine: angle.sin }.known(limits)
+    RateTerms { n, m, radius, sine: angle.sin }.nan_where_small(limits)
 }
 
 /// The numerator n = cos theta - ell sin theta, with an error below a quarter ulp of the cosine.
@@ -84,7 +84,7 @@ pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Su
         #[inline(always)]
         move || terms(&sincos(theta), ell, excess).rate(theta, theta.splat(HALF_PI)),
     );
-    of.pick(careful, rate)
+    of.where_certain(careful, rate)
 }
 
 /// The rate of [`rate_lanes`] for callers that rarely need it, kept apart from their frequent work.
@@ -109,7 +109,7 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
         #[inline(always)]
         move || terms(&sincos(theta), ell, excess).square(theta, theta.splat(HALF_PI)),
     );
-    of.pick(careful, square)
+    of.where_certain(careful, square)
 }
 
 /// Reduced rotation rate Omega~ of the steady state with the centre at rest at inclination `theta`

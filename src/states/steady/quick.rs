@@ -60,7 +60,7 @@ impl<T: Lane> QuickTerms<T> {
 impl<T: Real> QuickTerms<T> {
     /// Returns `careful` in the lanes that are uncertain, `quick` elsewhere.
     #[inline(always)]
-    pub fn pick(&self, careful: T, quick: T) -> T {
+    pub fn where_certain(&self, careful: T, quick: T) -> T {
         let first = self.m.hi.abs().select_lt(self.limit, careful, quick);
         self.n.hi.abs().select_lt(self.limit, careful, first)
     }
@@ -89,13 +89,13 @@ impl<T: Real> QuickTerms<T> {
 /// division. The result is true wherever the square is outside, and also where cancellation leaves too few
 /// digits to exclude it.
 #[inline(always)]
-pub(crate) fn may_pass<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]: [T; 2]) -> bool {
+pub(crate) fn may_exceed<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]: [T; 2]) -> bool {
     let (s, c) = (angle.sin.hi, angle.cos.hi);
     let zero = c.splat(0.0);
     let n = c - ell * s;
     let m = excess.fma(c, n);
     let least = angle.least.select_lt(c.splat(TINY), c.splat(f64::INFINITY), zero);
-    let near = (c + (c - n)).fma(c.splat(COARSE), least);
+    let near = (c + (c - n)).fma(c.splat(FORTY_BIT_SHARE), least);
     // n and m of a steady state have the same sign.
     let over = m.select_lt(zero, -n, n);
     let under = m.abs() * s;
@@ -107,7 +107,7 @@ pub(crate) fn may_pass<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]
 /// `to`; n and m decrease with the inclination. The result is false where none of these inclinations has a
 /// steady state.
 #[inline(always)]
-pub(crate) fn may_pass_between<T: Lane>(
+pub(crate) fn may_exceed_between<T: Lane>(
     [from, to]: [&Short<T>; 2],
     ell: T,
     excess: T,
@@ -118,7 +118,7 @@ pub(crate) fn may_pass_between<T: Lane>(
     let (n_most, n_least) = (from.cos.hi - ell * from.sin.hi, to.cos.hi - lever);
     let (m_most, m_least) = (excess.fma(from.cos.hi, n_most), excess.fma(to.cos.hi, n_least));
     let (n, m) = (sizes(n_least, n_most), sizes(m_least, m_most));
-    let near = (from.cos.hi + lever) * one.splat(COARSE);
+    let near = (from.cos.hi + lever) * one.splat(FORTY_BIT_SHARE);
     if n[0].any_lt(near) | m[0].any_lt(near) {
         return true;
     }
@@ -137,12 +137,12 @@ fn sizes<T: Real>(least: T, most: T) -> [T; 2] {
 }
 
 /// Relative to the terms that were subtracted, n and m have at least forty bits above this bound.
-const COARSE: f64 = 1.0 / 4096.0;
+const FORTY_BIT_SHARE: f64 = 1.0 / 4096.0;
 
-/// The bounds for `may_pass`: the least and the greatest square so far, moved closer together by more than its error.
-pub(crate) fn widened([least, greatest]: [f64; 2]) -> [f64; 2] {
-    const PART: f64 = 1.0 / (1_u64 << 36) as f64;
-    [least * (1.0 + PART), greatest * (1.0 - PART)]
+/// The bounds for `may_exceed`: the least and the greatest square so far, moved closer together by more than its error.
+pub(crate) fn bounds_beyond_error([least, greatest]: [f64; 2]) -> [f64; 2] {
+    const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 36) as f64;
+    [least * (1.0 + BOUNDS_MARGIN), greatest * (1.0 - BOUNDS_MARGIN)]
 }
 
 #[cfg(test)]

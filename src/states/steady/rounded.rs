@@ -29,9 +29,9 @@ const UNSURE_SUM: f64 = ROUNDED_UNSURE * ROUNDED_UNSURE;
 /// Where |d rho s c| exceeds |m| (1 + kappa_c) by this factor, m has too few digits: the rate is off by half an ulp.
 const BENT: f64 = 8.0;
 
-/// A sine below `SMALL_SINE` is scaled by `UP`, an even power of two, since a subnormal sine times a number would lose digits.
+/// A sine below `SMALL_SINE` is scaled by `SMALL_SINE_SCALE`, an even power of two, since a subnormal sine times a number would lose digits.
 const SMALL_SINE: f64 = f64::from_bits(0x20B0_0000_0000_0000); // 2^-500
-const UP: f64 = f64::from_bits(0x5F30_0000_0000_0000); // 2^500
+const SMALL_SINE_SCALE: f64 = f64::from_bits(0x5F30_0000_0000_0000); // 2^500
 
 /// The terms n and m of the squared rate, with its factors A and sin theta; A is 1 on a sharp rim.
 #[derive(Clone, Copy, Debug)]
@@ -71,10 +71,10 @@ impl<T: Lane> RoundedParts<T> {
     /// The terms, with twice the digits if any lane needs them, and 1 in the lanes that need them, 0 elsewhere.
     #[inline(always)]
     pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RateTerms<T>, T) {
-        let (terms, bend) = self.unsure(angle);
-        let bent = self.bent(theta, (angle.sin.hi, angle.cos.hi), &terms, bend);
+        let (terms, bend) = self.terms_and_size(angle);
+        let bent = self.where_digits_lack(theta, (angle.sin.hi, angle.cos.hi), &terms, bend);
         // Most points with a small m lie next to thetaInf, where kappa_c is large too and the digits suffice.
-        (if bent.any() { self.careful(theta) } else { terms }, bent)
+        (if bent.any() { self.terms_with_twice_the_digits(theta) } else { terms }, bent)
     }
 }
 
@@ -94,13 +94,13 @@ impl<T: Real> RoundedParts<T> {
     /// The terms by few operations, and a number that is negative where m may have too few digits.
     #[inline(always)]
     pub fn quick(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
-        let (terms, bend) = self.unsure(angle);
-        (self.sure(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
+        let (terms, bend) = self.terms_and_size(angle);
+        (self.without_uncertain_signs(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
     }
 
     /// The terms, also where their signs are uncertain, and |d rho s c|, for a ball divided by the sine.
     #[inline(always)]
-    fn unsure(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
+    fn terms_and_size(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let Self { ell, rho, a, excess } = *self;
         let c = angle.cos;
         let s =
@@ -127,16 +127,16 @@ impl<T: Real> RoundedParts<T> {
     /// Replaces n and m by NaN where the errors of sine and cosine leave their signs open. The sign of n is known where
     /// n is not a difference: for a ball, and for a disk (ell = 0).
     #[inline(always)]
-    fn sure(&self, of: RateTerms<T>, angle: &SinCos<T>, bend: T) -> RateTerms<T> {
+    fn without_uncertain_signs(&self, of: RateTerms<T>, angle: &SinCos<T>, bend: T) -> RateTerms<T> {
         let (out, lever) = (self.a.hi * angle.cos.hi, (self.ell * of.sine.hi).abs());
         let unsure = out.splat(ROUNDED_UNSURE);
         let sum = out.splat(UNSURE_SUM) * of.n.hi.abs().min((of.m.hi - of.n.hi).abs());
-        of.known([unsure * lever.min(out.abs()), unsure.fma(lever + bend, sum)])
+        of.nan_where_small([unsure * lever.min(out.abs()), unsure.fma(lever + bend, sum)])
     }
 
     /// 1 in the lanes where m has too few digits for the bound with kappa_c, 0 elsewhere.
     #[inline(always)]
-    fn bent(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>, bend: T) -> T {
+    fn where_digits_lack(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>, bend: T) -> T {
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let (n, m, radius) = (of.n.hi, of.m.hi, of.radius.hi);
         // For a ball, n and A divided by the sine are constants.
@@ -156,7 +156,7 @@ impl<T: Real> RoundedParts<T> {
     /// m = c a (1 + d) + s (w d rho - ell - w d rho (1 - |c|))
     /// ```
     #[inline(always)]
-    fn careful(&self, theta: T) -> RateTerms<T> {
+    fn terms_with_twice_the_digits(&self, theta: T) -> RateTerms<T> {
         let Self { a, excess, .. } = *self;
         let (zero, one) = (theta.splat(0.0), theta.splat(1.0));
         let (ell, rho) = (Sum { hi: self.ell, lo: zero }, Sum { hi: self.rho, lo: zero });
@@ -173,14 +173,14 @@ impl<T: Real> RoundedParts<T> {
         let m = flat + high;
         let least = theta.splat(UNSURE_LONG) * flat.hi.abs().min(high.hi.abs());
         let sum = theta.splat(UNSURE_SUM) * n.hi.abs().min((m.hi - n.hi).abs());
-        RateTerms { n, m, radius: rim.radius((s, c)), sine: s }.known([zero, least + sum])
+        RateTerms { n, m, radius: rim.radius((s, c)), sine: s }.nan_where_small([zero, least + sum])
     }
 }
 
 impl<T: Real> RateTerms<T> {
     /// Replaces n and m by NaN where their sizes are below these limits.
     #[inline(always)]
-    pub fn known(self, limits: [T; 2]) -> Self {
+    pub fn nan_where_small(self, limits: [T; 2]) -> Self {
         let nan = self.n.hi.splat(f64::NAN);
         let n = Sum { hi: limits[0].select_lt(self.n.hi.abs(), self.n.hi, nan), lo: self.n.lo };
         let m = Sum { hi: limits[1].select_lt(self.m.hi.abs(), self.m.hi, nan), lo: self.m.lo };
@@ -203,14 +203,14 @@ impl<T: Real> RateTerms<T> {
     /// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
     #[inline(always)]
     pub fn square(&self, theta: T, most: T) -> T {
-        self.scaled(theta, most) * self.if_small(UP)
+        self.scaled(theta, most) * self.if_small(SMALL_SINE_SCALE)
     }
 
     /// The square of the steady rate, divided by 2^500 where the sine is below `SMALL_SINE`.
     #[inline(always)]
     fn scaled(&self, theta: T, most: T) -> T {
         let x = |v: f64| theta.splat(v);
-        let (Self { n, m, radius, sine }, up) = (*self, self.if_small(UP));
+        let (Self { n, m, radius, sine }, up) = (*self, self.if_small(SMALL_SINE_SCALE));
         let (sh, sl) = (sine.hi * up, sine.lo * up);
         let over = n.hi * radius.hi;
         let over_lo = n.hi.fma(radius.hi, -over) + n.hi.fma(radius.lo, n.lo * radius.hi);

@@ -11,7 +11,7 @@ use crate::methods::roots::Trig;
 use crate::numbers::Sum;
 
 /// The polynomials of a body.
-pub(crate) struct Shares {
+pub(crate) struct BodyPolynomials {
     pub s: Trig,
     pub c: Trig,
     pub radius: Trig,
@@ -25,7 +25,7 @@ pub(crate) struct Shares {
     pub sigma: [Trig; 2],
 }
 
-impl Shares {
+impl BodyPolynomials {
     pub fn of(body: &Body) -> Self {
         let number = |x: f64| Trig::of(Sum::from(x));
         let (s, c) = (Trig::sin(), Trig::cos());

@@ -6,7 +6,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl._phases import KINDS, two_rims
+from spincyl._phases import KINDS, has_two_rims
 from spincyl.studio.aloft import FLIES, aloft
 from spincyl.studio.poses import span
 
@@ -22,7 +22,12 @@ def flying(m: Motion) -> dict[str, Any]:
     codes = [KINDS.index(phase.kind) for phase in m.phases]
     rims = aloft(m, first, last).on_other((begins + np.maximum(begins, ends)) / 2)
     phases = [list(x) for x in zip(begins.tolist(), codes, rims.astype(int).tolist(), strict=True)]
-    return {"aloft": True, "two": two_rims(m.body), "phases": phases, "told": _told(m, begins, ends, codes)}
+    return {
+        "aloft": True,
+        "two": has_two_rims(m.body),
+        "phases": phases,
+        "told": _told(m, begins, ends, codes),
+    }
 
 
 def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[list[float]]:

@@ -47,14 +47,14 @@ def colours(names: Iterable[str]) -> dict[str, tuple[float, float, float]]:
 def script(names: Iterable[str]) -> str:
     """Scripts as one strict function without comments and needless spaces, since a page has to be small."""
     joined = re.sub(r"^\s+|(^|\s+)//( .*)?$\n?|^\n", "", "".join(map(text, names)), flags=re.M)
-    return f'"use strict";\n(() => {{\n{_tight(joined)}}})();'
+    return f'"use strict";\n(() => {{\n{_without_spaces(joined)}}})();'
 
 
-def _tight(code: str) -> str:
+def _without_spaces(code: str) -> str:
     """A script without spaces next to punctuation; strings and templates stay unchanged."""
     found, at = [], 0
     while at < len(code):
-        end = _quoted(code, at) if code[at] in _QUOTES else _next(code, at, _QUOTES)
+        end = _end_of_string(code, at) if code[at] in _QUOTES else _index_of_next(code, at, _QUOTES)
         piece = code[at:end]
         found.append(piece if code[at] in _QUOTES else _SPACED.sub("", piece))
         at = end
@@ -68,17 +68,17 @@ _SPACED = re.compile(
 )
 
 
-def _next(code: str, at: int, signs: str) -> int:
+def _index_of_next(code: str, at: int, signs: str) -> int:
     """Index of the first of these characters from `at` on, or the end."""
     return min((i for i in (code.find(sign, at) for sign in signs) if i >= 0), default=len(code))
 
 
-def _quoted(code: str, at: int) -> int:
+def _end_of_string(code: str, at: int) -> int:
     """Index after the string that begins at `at`; a template may contain code with strings of its own."""
     quote, at, depth = code[at], at + 1, 0
     while code[at] != quote or depth:
         if depth and code[at] in _QUOTES:
-            at = _quoted(code, at)
+            at = _end_of_string(code, at)
             continue
         if quote == "`" and ((depth and code[at] in "{}") or code.startswith("${", at)):
             depth += -1 if code[at] == "}" else 1

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import AnyContact, fitting, has_patch, named
+from spincyl._contact import AnyContact, check_contact_scale, contact_in_words, has_patch
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.files import path_of, replaced
-from spincyl._input.numbers import flag, made, si, within
-from spincyl._loss import Loss, made_law, typed
+from spincyl._input.files import path_of, writing_whole
+from spincyl._input.numbers import flag, in_range, instance_of, si
+from spincyl._loss import Loss, checked_law, command_line_name
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale
@@ -72,7 +72,7 @@ _SCRIPTS = (
     "play.hands.js",
 )
 #: The scripts of a page without friction, which has no stones.
-_LEAN = tuple(name for name in _SCRIPTS if "stone" not in name)
+_SCRIPTS_WITHOUT_FRICTION = tuple(name for name in _SCRIPTS if "stone" not in name)
 _BODY = ("parts", "ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
 #: The core without friction and losses, and the one with them.
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
@@ -119,7 +119,7 @@ class Play:
 
     @theta.setter
     def theta(self, theta: float) -> None:
-        self._set({"theta": within("theta", theta, 1e-3, np.pi, "radians")}, gone=("w", "precession"))
+        self._set({"theta": in_range("theta", theta, 1e-3, np.pi, "radians")}, gone=("w", "precession"))
 
     @property
     def kick(self) -> float:
@@ -128,7 +128,7 @@ class Play:
 
     @kick.setter
     def kick(self, kick: float) -> None:
-        self._set({"kick": within("kick", kick, -3, 3)})
+        self._set({"kick": in_range("kick", kick, -3, 3)})
 
     @property
     def state(self) -> State:
@@ -147,8 +147,8 @@ class Play:
 
     @contact.setter
     def contact(self, contact: AnyContact) -> None:
-        _needed(self.friction, contact, None, None if self._told.get("stone") else self.body)
-        _bouncing(self.friction, contact, self.restitution)
+        _check_contents(self.friction, contact, None, None if self._told.get("stone") else self.body)
+        _check_bounces(self.friction, contact, self.restitution)
         self._set(words_of_table(contact), gone=("patch",))
 
     @property
@@ -159,7 +159,7 @@ class Play:
 
     @restitution.setter
     def restitution(self, restitution: float | None) -> None:
-        _bouncing(self.friction, self.contact, restitution)
+        _check_bounces(self.friction, self.contact, restitution)
         self._set(words_of_restitution(restitution), gone=("restitution",))
 
     @property
@@ -169,7 +169,7 @@ class Play:
 
     @losses.setter
     def losses(self, losses: Loss | None) -> None:
-        _needed(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
+        _check_contents(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
         self._set(words_of_loss(losses) or {"law": "none"})
 
     @property
@@ -179,7 +179,7 @@ class Play:
         For a measured body the motion is in SI. If the page shows the rattleback, the motion lasts 20 s.
         """
         if self._told.get("stone"):
-            return _rattling(self._told)
+            return _rattleback_motion(self._told)
         body = self.body
         t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
         how: dict[str, Any] = {"contact": self.contact, "losses": self.losses}
@@ -212,7 +212,7 @@ class Play:
             "style": style(["play.first.css"]),
             "picture": picture,
             "given": _json(self._told),
-            "packed": _packed(self.friction),
+            "packed": _packed_page(self.friction),
             "loader": script(["page.night.js", "play.loader.js"]),
         }
         return filled("play.html", fields)
@@ -238,7 +238,7 @@ class Play:
         if path.suffix.lower() != ".html":
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in .html")
         made = self.html.encode()
-        with replaced(path) as part:
+        with writing_whole(path) as part:
             part.write_bytes(made)
         return path
 
@@ -259,7 +259,9 @@ class Play:
     def __repr__(self) -> str:
         if self._told.get("stone"):
             return "<Play of a rattleback, rolling; .save('play.html') writes the page>"
-        return f"<Play of {self.body!r}, {named(self.contact)}; .save('play.html') writes the page>"
+        return (
+            f"<Play of {self.body!r}, {contact_in_words(self.contact)}; .save('play.html') writes the page>"
+        )
 
 
 def play(
@@ -347,41 +349,43 @@ def play(
             raise ValueError("state: cannot be combined with theta or kick; give one or the other")
         told |= words_of_state(state)
     else:
-        theta = within("theta", steep if theta is None else theta, 1e-3, np.pi, "radians")
-        told |= {"theta": theta, "kick": within("kick", kick, -3, 3)}
+        theta = in_range("theta", steep if theta is None else theta, 1e-3, np.pi, "radians")
+        told |= {"theta": theta, "kick": in_range("kick", kick, -3, 3)}
     if t is None:
         told |= {"until": 60.0}
     else:
         unit = body._second
-        told |= {"until": within("t", si("t", t, "second"), unit, 2000 * unit) / unit}
-    told |= {"slow": within("slow", slow, 1, 1000)}
+        told |= {"until": in_range("t", si("t", t, "second"), unit, 2000 * unit) / unit}
+    told |= {"slow": in_range("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
-    _needed(friction, contact, losses, body)
-    _bouncing(friction, contact, restitution)
+    _check_contents(friction, contact, losses, body)
+    _check_bounces(friction, contact, restitution)
     return Play(told, line("title", title), friction, body)
 
 
-def _rattling(words: dict[str, Any]) -> EllipsoidMotion:
+def _rattleback_motion(words: dict[str, Any]) -> EllipsoidMotion:
     """The motion of the rattleback described by `words`, for the time that the page computes."""
     stone = Ellipsoid.rattleback(words["stone"], twist=words["twist"]).in_metres(
         gravity=words.get("gravity") or Scale.gravity
     )
-    push, unit = np.radians(0.02), made("scale", stone.scale, Scale).seconds(1.0)
+    push, unit = np.radians(0.02), instance_of("scale", stone.scale, Scale).seconds(1.0)
     start = stone.spinning(words["spin"] * unit, pitch=push, roll=push)
     return roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
 
 
-def _needed(friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None) -> None:
+def _check_contents(
+    friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None
+) -> None:
     """Check that the page includes friction and losses if needed, and that numbers have a fitting unit."""
     if losses is not None:
-        made_law(losses, body)
+        checked_law(losses, body)
     if body is not None:
-        fitting(contact, body.scale)
+        check_contact_scale(contact, body.scale)
     if not friction and (losses is not None or not isinstance(contact, str)):
         raise ValueError("friction = False: a law of friction or losses need friction=True")
 
 
-def _bouncing(friction: bool, contact: AnyContact, restitution: float | None) -> None:
+def _check_bounces(friction: bool, contact: AnyContact, restitution: float | None) -> None:
     """Raise ValueError for a restitution on a page without friction, or with a contact patch."""
     if not friction and restitution is not None:
         raise ValueError("friction = False: a restitution needs friction=True")
@@ -398,16 +402,19 @@ def _json(what: Any) -> str:
 
 def _body(friction: bool) -> str:
     """The elements of the page, with the names of the loss laws and the scenes."""
-    laws = _json([*map(typed, KINDS.values())])
+    laws = _json([*map(command_line_name, KINDS.values())])
     presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
     return filled("play.body.html", {"laws": laws, "presets": presets})
 
 
 @cache
-def _packed(friction: bool) -> str:
+def _packed_page(friction: bool) -> str:
     """The core and all text of the page, in the format that the loader unpacks."""
     core = decompress(files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes())
     shown = _body(friction)
     return packed(
-        core, "\0".join([style(["play.css"]), shown, script(_SCRIPTS if friction else _LEAN)]).encode()
+        core,
+        "\0".join(
+            [style(["play.css"]), shown, script(_SCRIPTS if friction else _SCRIPTS_WITHOUT_FRICTION)]
+        ).encode(),
     )

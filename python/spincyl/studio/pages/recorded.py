@@ -6,7 +6,7 @@ import numpy as np
 
 from spincyl._ending import Ending
 from spincyl._motion import Motion
-from spincyl._phases import rubs
+from spincyl._phases import has_friction
 from spincyl._scale import Scale
 from spincyl.studio.aloft import goes_up
 from spincyl.studio.look import Look
@@ -53,7 +53,7 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
 
 def slips_or_flies(m: Motion) -> bool:
     """Whether the page shows slip and contact forces."""
-    return rubs(m.contact) or goes_up(m)
+    return has_friction(m.contact) or goes_up(m)
 
 
 def turns(look: Look) -> str:

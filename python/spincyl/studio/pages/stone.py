@@ -15,8 +15,8 @@ from spincyl.studio.poses import seen
 from spincyl.studio.shape import Letter, Profile, marks, profiles, reach
 from spincyl.studio.stone_shape import turned_marks
 
-_SHARE = 0.1  # a reversed spin counts from this share of the first spin on
-_BETWEEN = 8  # samples between two knots
+_REVERSAL_SHARE = 0.1  # a reversed spin counts from this share of the first spin on
+_SAMPLES_PER_KNOT = 8  # samples between two knots
 
 
 @singledispatch
@@ -68,10 +68,10 @@ def turns_back(m: EllipsoidMotion, t: Floats) -> list[float]:
 
     The spin is sampled between ascending times, of which there have to be a few per rocking.
     """
-    share = np.arange(_BETWEEN) / _BETWEEN
+    share = np.arange(_SAMPLES_PER_KNOT) / _SAMPLES_PER_KNOT
     t = np.append((t[:-1, np.newaxis] + np.diff(t)[:, np.newaxis] * share).ravel(), t[-1])
     (spin,) = seen(m, t, "spin")
-    far = np.flatnonzero(np.abs(spin) >= _SHARE * abs(spin[0])) if spin[0] else np.empty(0, int)
+    far = np.flatnonzero(np.abs(spin) >= _REVERSAL_SHARE * abs(spin[0])) if spin[0] else np.empty(0, int)
     found = []
     for before, after in pairwise(far):
         if spin[before] * spin[after] < 0:

@@ -7,10 +7,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from spincyl._contact import named
-from spincyl._input.files import path_of, replaced
-from spincyl._input.numbers import one_of, within
-from spincyl._input.progress import Progress, telling
+from spincyl._contact import contact_in_words
+from spincyl._input.files import path_of, writing_whole
+from spincyl._input.numbers import in_range, one_of
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import goes_up
@@ -74,7 +74,7 @@ class View:
         self.motions, self.labels, self.title = tuple(motions), tuple(labels), title
         self.scale, self.upper, self.look = scale, upper, look
         found = []
-        with telling(None, "page") as told:
+        with reporting_progress(None, "page") as told:
             for m in self.motions:
                 found.append(shown(m, self._slips))
                 if told:
@@ -187,7 +187,7 @@ class View:
         if suffix in (".mp4", ".gif"):
             from spincyl.studio.film import film, reel
 
-            seconds = None if seconds is None else within("seconds", seconds, 0.1, 600.0)
+            seconds = None if seconds is None else in_range("seconds", seconds, 0.1, 600.0)
             made_of = reel(self, [edges(m) for m in self.motions], suffix, fps, size, seconds)
             film(made_of, path, progress)
             return path
@@ -197,7 +197,7 @@ class View:
             made = self.html.encode()
         else:
             made = glb(self.motions, self.labels, self.scale, self.upper)
-        with replaced(path) as part:
+        with writing_whole(path) as part:
             part.write_bytes(made)
         return path
 
@@ -382,7 +382,7 @@ def view(
     if slow is not None:
         one_of("slow", slow, SLOW)
     if labels is None:
-        labels = [""] if len(motions) == 1 else [named(m.contact) for m in motions]
+        labels = [""] if len(motions) == 1 else [contact_in_words(m.contact) for m in motions]
     elif isinstance(labels, str) or not isinstance(labels, Sequence):
         raise TypeError(f"labels: expected a list of texts, not {type(labels).__name__}")
     if len(labels) != len(motions):

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import AnyContact, Coulomb, Viscous, code, table
+from spincyl._contact import AnyContact, Coulomb, Viscous, code_of, table_for_core
 from spincyl._ellipsoid import Ellipsoid
-from spincyl._input.numbers import is_scalar, made, within
-from spincyl._loss import Loss, sized, typed
+from spincyl._input.numbers import in_range, instance_of, is_scalar
+from spincyl._loss import Loss, command_line_name, marked_as_si
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
@@ -24,7 +24,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
     """Words for a body: half length, bore and fillet of a tube; the numbers of any other body."""
     if isinstance(body, Ellipsoid):
         raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
-    made("body", body, Body)
+    instance_of("body", body, Body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
         raise ValueError("body: expected a single body, not a family")
@@ -60,7 +60,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 def words_of_state(state: State) -> dict[str, Any]:
     """Words for a state: the inclination, and w1, w2, w3 with the slip."""
-    made("state", state, State)
+    instance_of("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
         raise ValueError("state: expected a single state, not a family")
@@ -71,7 +71,7 @@ def words_of_state(state: State) -> dict[str, Any]:
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
     """Words for a contact, with its coefficient."""
     if not isinstance(contact, str) and isinstance(contact, Coulomb | Viscous):
-        table(contact, 0.0)  # raises an error for a custom law
+        table_for_core(contact, 0.0)  # raises an error for a custom law
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
         raise ValueError(f"contact = {contact!r}: expected single numbers, not arrays")
     if isinstance(contact, Coulomb):
@@ -79,17 +79,17 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
             raise ValueError(
                 f"contact = {contact!r}: expected static = mu, since a page has no separate static friction"
             )
-        patch = {"patch": within("patch", contact.patch, 0, 0.5)} if contact.patch else {}
+        patch = {"patch": in_range("patch", contact.patch, 0, 0.5)} if contact.patch else {}
         return {"contact": "coulomb", "mu": float(contact.mu)} | patch
     if isinstance(contact, Viscous):
         return {"contact": "viscous", "c": float(contact.c)}
-    code(contact, rubs=True)
+    code_of(contact, rubs=True)
     return {"contact": contact}
 
 
 def words_of_restitution(restitution: float | None) -> dict[str, Any]:
     """Words for a coefficient of restitution; none if the motion ends at lift-off."""
-    return {} if restitution is None else {"restitution": within("restitution", restitution, 0, 1)}
+    return {} if restitution is None else {"restitution": in_range("restitution", restitution, 0, 1)}
 
 
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
@@ -103,7 +103,7 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
             f"losses = {losses!r}: expected one loss with a single coefficient, since a page has only one"
         )
     (law,) = losses.laws
-    return {"law": typed(type(law)), "loss": float(law.coefficient)}
+    return {"law": command_line_name(type(law)), "loss": float(law.coefficient)}
 
 
 def body_of(words: Mapping[str, Any]) -> Body:
@@ -161,8 +161,8 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
-    (kind,) = (kind for kind in KINDS.values() if typed(kind) == name)
-    return sized(kind(words["loss"]))  # its unit was checked when it was set
+    (kind,) = (kind for kind in KINDS.values() if command_line_name(kind) == name)
+    return marked_as_si(kind(words["loss"]))  # its unit was checked when it was set
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:

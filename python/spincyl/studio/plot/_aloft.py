@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, extra
+from spincyl._input.numbers import Floats, optional_library
 from spincyl._phases import Phase
 from spincyl.studio.aloft import aloft
 from spincyl.studio.plot._style import BLACK, ORANGE, RED, SKY
@@ -75,7 +75,7 @@ def height(
     if not high.any():
         right.set_axis_off()  # the body only rolls on its side
     right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
-    patch: Any = extra("matplotlib.patches", "plot").Patch
+    patch: Any = optional_library("matplotlib.patches", "plot").Patch
     there = dict.fromkeys(filter(None, map(_shade_of, m.phases)))
     shown = [patch(facecolor=_SHADES[x][0], alpha=_SHADES[x][1], label=_SHADES[x][2]) for x in there]
     shown += [marks] if times.size else []

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._drift import Drift
-from spincyl._input.numbers import extra, made
-from spincyl._loss import titled
+from spincyl._input.numbers import instance_of, optional_library
+from spincyl._loss import losses_in_words
 from spincyl.studio.plot._style import BLUE, ORANGE, new_axes, sized
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     >>> sc.plot.drift(found).get_xlabel()[:4]
     'time'
     """
-    if made("found", found, Drift)._shape:
+    if instance_of("found", found, Drift)._shape:
         raise ValueError(f"found: expected a single drift, not a family of shape {found._shape}")
     first, last = float(np.asarray(found.start.theta)), float(found.ends_at_theta)
     # equal steps of inclination; inclinations where the loss law is no longer valid are left out
@@ -65,8 +65,8 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     fast.plot(t[: rate.size], rate, "--", color=ORANGE, lw=2)
     if rate.max() > 10 * rate.min() > 0:
         fast.set_yscale("log")
-        plain: Any = extra("matplotlib.ticker", "plot").ScalarFormatter()
-        few: Any = extra("matplotlib.ticker", "plot").LogFormatter(minor_thresholds=(2, 0.5))
+        plain: Any = optional_library("matplotlib.ticker", "plot").ScalarFormatter()
+        few: Any = optional_library("matplotlib.ticker", "plot").LogFormatter(minor_thresholds=(2, 0.5))
         fast.yaxis.set_major_formatter(plain)
         fast.yaxis.set_minor_formatter(few)
     ax.set_xlabel("time (s)" if measured else r"time  $t$ ($\sqrt{R/g}$)")
@@ -74,5 +74,5 @@ def drift(found: Drift, ax: "Axes | None" = None) -> "Axes":
     unit = "turns per second" if measured else r"$\sqrt{g/R}$"
     fast.set_ylabel(rf"precession  $\varphi'$ ({unit})", color=ORANGE)
     kept = "its centre at rest" if found.centre == "rest" else "it rolls"
-    ax.set_title(f"{titled(found.losses, found.body.scale)}, {kept}; {found.ended}")
+    ax.set_title(f"{losses_in_words(found.losses, found.body.scale)}, {kept}; {found.ended}")
     return ax

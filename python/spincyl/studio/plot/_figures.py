@@ -8,8 +8,8 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._input.files import path_of
-from spincyl._input.numbers import extra, flag, one_of
-from spincyl._input.progress import Progress, telling
+from spincyl._input.numbers import flag, one_of, optional_library
+from spincyl._input.progress import Progress, reporting_progress
 from spincyl._roll import roll
 from spincyl._state import State
 from spincyl._swing import swing
@@ -73,16 +73,16 @@ def figures(
     """
     folder, slides = path_of("folder", folder), flag("slides", slides)
     one_of("suffix", suffix, SUFFIXES)
-    extra("matplotlib.pyplot", "plot")
+    optional_library("matplotlib.pyplot", "plot")
     folder = Path(folder)
-    with telling(progress, "figures") as told:
+    with reporting_progress(progress, "figures") as told:
         folder.mkdir(parents=True, exist_ok=True)
         return _written(folder, suffix, slides, told)
 
 
 def _written(folder: Path, suffix: str, slides: bool, progress: Progress | None) -> list[Path]:
     """The paths of the figures, after they are drawn."""
-    plt: Any = extra("matplotlib.pyplot", "plot")
+    plt: Any = optional_library("matplotlib.pyplot", "plot")
     critical = float(Body.critical_aspect())
     contacts: tuple[Contact, Contact] = ("smooth", "rolling")
     pairs: dict[str, tuple[float, ...]] = {

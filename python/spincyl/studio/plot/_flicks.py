@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._input.numbers import extra
+from spincyl._input.numbers import optional_library
 from spincyl.studio.plot._style import FORBIDDEN, SMOOTH, UNSTABLE, hatching, new_axes, sized
 from spincyl.sweep._flicks import Outcome
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 #: A tube whose last slip is within this share of the time before the end probably slips in every nod.
-_SHORTLY = 0.05
+_LAST_SLIP_SHARE = 0.05
 _AXES = {
     "hertz": "turns per second about the vertical, at first",
     "spin_hertz": "turns per second about the axis, at first",
@@ -24,7 +24,7 @@ _AXES = {
 #: Hatching of flicks that hop first: it shows without colours, and over the colours of those that settle.
 _HOPS, _INK = "////", "0.3"
 #: Upper end of the colours, in medians: few tubes slip much longer than most without slipping to the end.
-_MEDIANS = 2.0
+_MEDIANS_SHOWN = 2.0
 
 
 @sized
@@ -66,7 +66,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     >>> sc.plot.flicks(ends).get_ylabel()[:13]
     'launch number'
     """
-    lib: Any = extra("xarray", "sweep")
+    lib: Any = optional_library("xarray", "sweep")
     if not isinstance(found, lib.Dataset):
         raise TypeError(f"found: expected a Dataset of sweep.flicks, not {type(found).__name__}")
     if not {"outcome", "rolling_time"} <= set(found):
@@ -77,8 +77,8 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
         raise ValueError(
             f"found: expected two dimensions of at least two values, not {sizes}; use .sel or .isel"
         )
-    colormap: Any = extra("matplotlib.colors", "plot").ListedColormap
-    patch: Any = extra("matplotlib.patches", "plot").Patch
+    colormap: Any = optional_library("matplotlib.colors", "plot").ListedColormap
+    patch: Any = optional_library("matplotlib.patches", "plot").Patch
     followed = "air_time" in found  # those that hop are followed in the air
     found = found[["outcome", "rolling_time"]].sortby(list(axes)).transpose(*reversed(axes))
     across, up = (found[name].values for name in axes)
@@ -86,7 +86,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     ax = new_axes(ax)
     hops_on, hops_down = (outcome == x for x in (Outcome.HOPS_AND_SETTLES, Outcome.HOPS_AND_LIES))
     settles, times = hops_on | (outcome == Outcome.SETTLES), found["rolling_time"].values
-    rolls = settles & (times <= (1 - _SHORTLY) * found.attrs.get("t", np.inf))
+    rolls = settles & (times <= (1 - _LAST_SLIP_SHARE) * found.attrs.get("t", np.inf))
     others = {
         "lies down": (FORBIDDEN, hops_down | (outcome == Outcome.LIES_DOWN)),
         "in the air at the end" if followed else "lifts off": (UNSTABLE, outcome == Outcome.LIFTS_OFF),
@@ -103,7 +103,7 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
             shown.append(patch(facecolor=colour, label=words, **look))
     times = np.where(rolls, times, np.nan)
     if np.isfinite(times).any():
-        most = min(float(np.nanmax(times)), _MEDIANS * float(np.nanmedian(times)))
+        most = min(float(np.nanmax(times)), _MEDIANS_SHOWN * float(np.nanmedian(times)))
         colours = ax.pcolormesh(across, up, times, cmap="viridis", vmin=0.0, vmax=most, rasterized=True)
         unit = "s" if "radius" in found.attrs else r"$\sqrt{R/g}$"
         beyond = "max" if np.nanmax(times) > most else "neither"

@@ -39,7 +39,7 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
     False
     """
     ax = new_axes(ax)
-    lean, across = _level(_PHI), _level(_PHI + np.pi / 2)
+    lean, across = _horizontal(_PHI), _horizontal(_PHI + np.pi / 2)
     up = np.array([0.0, 0.0, 1.0])
     e1 = np.cos(_THETA) * lean + np.sin(_THETA) * up
     e2 = across
@@ -52,11 +52,11 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
     _cylinder(ax, top, low, e1, e2)
 
     # phi, on the table
-    x = 2.6 * _level(0.0)
+    x = 2.6 * _horizontal(0.0)
     _line(ax, 0 * up, x, color=_GREY, ls="--", lw=1.2)
     _line(ax, 0 * up, 3 * contact, color=_GREY, ls="--", lw=1.2)
-    _word(ax, x, "$x$", (10, -3), _GREY)
-    _arc(ax, 0 * up, _level(0.0), across=_level(np.pi / 2), radius=2.0, to=_PHI, name=r"$\varphi$")
+    _write_word(ax, x, "$x$", (10, -3), _GREY)
+    _arc(ax, 0 * up, _horizontal(0.0), across=_horizontal(np.pi / 2), radius=2.0, to=_PHI, name=r"$\varphi$")
     # theta, between the vertical and the axis
     _line(ax, 0 * up, centre, color=_GREY, ls="--", lw=1.2)
     _arrow(ax, centre, centre + 2.3 * up, BLACK, "$z$", (0, 9))
@@ -81,55 +81,55 @@ def frame(*, ax: "Axes | None" = None) -> "Axes":
         (centre, "$C$", BLACK, (-10, -9)),
     )
     for place, name, colour, off in points:
-        ax.plot(*_seen(place), "o", color=colour, ms=7, zorder=6)
-        _word(ax, place, name, off, colour)
-    ax.plot(*_seen(contact), "o", color=ORANGE, ms=7, zorder=6)
+        ax.plot(*_projected(place), "o", color=colour, ms=7, zorder=6)
+        _write_word(ax, place, name, off, colour)
+    ax.plot(*_projected(contact), "o", color=ORANGE, ms=7, zorder=6)
     thin: dict[str, Any] = {"arrowstyle": "-", "color": ORANGE, "lw": 0.8, "shrinkB": 5}
     how: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "color": ORANGE, "arrowprops": thin}
-    ax.annotate("contact point $P$", _spot(contact), (-45, -48), zorder=7, **how)
+    ax.annotate("contact point $P$", _projected_point(contact), (-45, -48), zorder=7, **how)
     ax.set_aspect("equal")
     ax.axis("off")
     return ax
 
 
-def _level(angle: float) -> Floats:
+def _horizontal(angle: float) -> Floats:
     """The horizontal direction at this angle from x."""
     return np.array([np.cos(angle), np.sin(angle), 0.0])
 
 
 def _view() -> Floats:
     """The direction of view."""
-    view: Floats = np.cos(_ELEVATION) * _level(_AZIMUTH) + np.array([0.0, 0.0, np.sin(_ELEVATION)])
+    view: Floats = np.cos(_ELEVATION) * _horizontal(_AZIMUTH) + np.array([0.0, 0.0, np.sin(_ELEVATION)])
     return view
 
 
-def _seen(places: Floats) -> Floats:
+def _projected(places: Floats) -> Floats:
     """Projection of points (..., 3) to picture coordinates: right and up."""
-    right = _level(_AZIMUTH + np.pi / 2)
+    right = _horizontal(_AZIMUTH + np.pi / 2)
     found: Floats = np.array([places @ right, places @ np.cross(_view(), right)])
     return found
 
 
-def _spot(place: Floats) -> tuple[float, float]:
+def _projected_point(place: Floats) -> tuple[float, float]:
     """Projection of one point."""
-    right, above = _seen(place).tolist()
+    right, above = _projected(place).tolist()
     return right, above
 
 
 def _line(ax: "Axes", start: Floats, end: Floats, **style: Any) -> None:
-    ax.plot(*_seen(np.array([start, end])), **style)
+    ax.plot(*_projected(np.array([start, end])), **style)
 
 
-def _word(ax: "Axes", at: Floats, word: str, off: tuple[float, float], colour: str) -> None:
+def _write_word(ax: "Axes", at: Floats, word: str, off: tuple[float, float], colour: str) -> None:
     how: dict[str, Any] = {"color": colour, "ha": "center", "va": "center", "zorder": 7, "fontsize": "large"}
-    ax.annotate(word, _spot(at), off, textcoords="offset points", **how)
+    ax.annotate(word, _projected_point(at), off, textcoords="offset points", **how)
 
 
 def _arrow(ax: "Axes", start: Floats, end: Floats, colour: str, word: str, off: tuple[float, float]) -> None:
     style: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "lw": 2, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", _spot(end), _spot(start), arrowprops=style, zorder=5)
-    ax.plot(*_seen(end), alpha=0)  # an invisible point, so that the limits of the axes include the arrow
-    _word(ax, end, word, off, colour)
+    ax.annotate("", _projected_point(end), _projected_point(start), arrowprops=style, zorder=5)
+    ax.plot(*_projected(end), alpha=0)  # an invisible point, so that the limits of the axes include the arrow
+    _write_word(ax, end, word, off, colour)
 
 
 def _arc(
@@ -146,20 +146,20 @@ def _arc(
     """Draw an angle: an arc with an arrow in the positive direction, and its name outside near the middle."""
     angle = np.linspace(0, to, 60)[:, np.newaxis]
     place = centre + radius * (np.cos(angle) * along + np.sin(angle) * across)
-    ax.plot(*_seen(place), color=colour, lw=1.8, zorder=4)
+    ax.plot(*_projected(place), color=colour, lw=1.8, zorder=4)
     style: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "lw": 1.8, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", _spot(place[-1]), _spot(place[-5]), arrowprops=style, zorder=4)
+    ax.annotate("", _projected_point(place[-1]), _projected_point(place[-5]), arrowprops=style, zorder=4)
     middle = np.cos(0.4 * to) * along + np.sin(0.4 * to) * across
-    _word(ax, centre + (radius + 0.22) * middle, name, (0, 0), colour)
+    _write_word(ax, centre + (radius + 0.22) * middle, name, (0, 0), colour)
 
 
 def _table(ax: "Axes", radius: float) -> None:
     """Draw the table, and the circle of the contact point on it."""
     corners = np.array([[3.0, -2.2], [3.0, 2.6], [-2.6, 2.6], [-2.6, -2.2]])
-    ax.fill(*_seen(np.column_stack([corners, np.zeros(4)])), color="#F3F0EA", lw=0, zorder=0)
+    ax.fill(*_projected(np.column_stack([corners, np.zeros(4)])), color="#F3F0EA", lw=0, zorder=0)
     angle = np.linspace(0, 2 * np.pi, 200)
     circle = radius * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
-    ax.plot(*_seen(circle), color=GREEN, lw=1.2, ls=":", zorder=1)
+    ax.plot(*_projected(circle), color=GREEN, lw=1.2, ls=":", zorder=1)
 
 
 def _cylinder(ax: "Axes", top: Floats, low: Floats, e1: Floats, e2: Floats) -> None:
@@ -174,10 +174,10 @@ def _cylinder(ax: "Axes", top: Floats, low: Floats, e1: Floats, e2: Floats) -> N
     near, far = order[front[order]], order[~front[order]]
     lit = low + out[near]
     body = np.concatenate([lit, top + out[near[::-1]]])
-    ax.fill(*_seen(body), color="#DCE9F3", alpha=0.75, lw=0, zorder=2)
-    ax.fill(*_seen(top + out[:720]), color="#EEF5FA", alpha=0.85, lw=0, zorder=2)
-    ax.plot(*_seen(top + out), color=BLACK, lw=1.8, zorder=3)
-    ax.plot(*_seen(lit), color=BLACK, lw=1.8, zorder=3)
-    ax.plot(*_seen(low + out[far]), color=BLACK, lw=1, ls="--", zorder=3)
+    ax.fill(*_projected(body), color="#DCE9F3", alpha=0.75, lw=0, zorder=2)
+    ax.fill(*_projected(top + out[:720]), color="#EEF5FA", alpha=0.85, lw=0, zorder=2)
+    ax.plot(*_projected(top + out), color=BLACK, lw=1.8, zorder=3)
+    ax.plot(*_projected(lit), color=BLACK, lw=1.8, zorder=3)
+    ax.plot(*_projected(low + out[far]), color=BLACK, lw=1, ls="--", zorder=3)
     for edge in edges:
         _line(ax, low + edge, top + edge, color=BLACK, lw=1.8, zorder=3)

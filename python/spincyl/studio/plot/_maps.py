@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from spincyl._body import Body
-from spincyl._contact import Contact, code
-from spincyl._input.numbers import flag, is_scalar, number, one_of, within
-from spincyl._measured import with_size
+from spincyl._contact import Contact, code_of
+from spincyl._input.numbers import flag, in_range, is_scalar, number, one_of
+from spincyl._measured import sized_body
 from spincyl._single import one_body
 from spincyl._state import State
 from spincyl.studio.plot._style import (
@@ -139,14 +139,14 @@ def branches(
     ValueError, TypeError
         If an argument is invalid; the message names it.
     """
-    bore = within("bore", bore, 0.0, 1.0)
+    bore = in_range("bore", bore, 0.0, 1.0)
     bodies = [x if isinstance(x, Body) else Body.tube(x, bore) for x in _ells(ells)]
     bores = {float(body.bore) for body in bodies}
-    code(contact)
+    code_of(contact)
     units = [
-        float(with_size("ells", x, None)[1].hertz(x, 1.0)) if flag("hertz", hertz) else 1.0 for x in bodies
+        float(sized_body("ells", x, None)[1].hertz(x, 1.0)) if flag("hertz", hertz) else 1.0 for x in bodies
     ]
-    rate_max = 3 * max(units) if rate_max is None else within("rate_max", rate_max, 1e-3, 1e3)
+    rate_max = 3 * max(units) if rate_max is None else in_range("rate_max", rate_max, 1e-3, 1e3)
     marks = None if marks is None else flag("marks", marks)
     ax = new_axes(ax)
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
@@ -219,8 +219,8 @@ def portrait(
 
     one_of("contact", contact, (None, "rolling", "smooth"))
     if data is None:
-        bore, fillet = within("bore", bore, 0.0, 1.0), within("fillet", fillet, 0.0, 1.0)
-        ell_max = within("ell_max", ell_max, max(0.01, 1.01 * fillet), 1e3)
+        bore, fillet = in_range("bore", bore, 0.0, 1.0), in_range("fillet", fillet, 0.0, 1.0)
+        ell_max = in_range("ell_max", ell_max, max(0.01, 1.01 * fillet), 1e3)
         theta, ell = np.linspace(0, _HALF_PI, 701)[1:], np.linspace(fillet, ell_max, 701)
         region = Body.tube(ell, bore, fillet).region(theta[:, np.newaxis])
     else:
@@ -303,7 +303,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     """
     from matplotlib.colors import LogNorm
 
-    bore, ell_max = within("bore", bore, 0.0, 1.0), within("ell_max", ell_max, 0.01, 1e3)
+    bore, ell_max = in_range("bore", bore, 0.0, 1.0), in_range("ell_max", ell_max, 0.01, 1e3)
     ax = new_axes(ax)
     theta, ell = np.linspace(0, _HALF_PI, 801)[1:], np.linspace(1e-3, ell_max, 1601)
     body = Body.tube(ell, bore)
@@ -341,7 +341,7 @@ def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
         raise ValueError("ells: expected at least one aspect ratio")
     if any(isinstance(x, Body) and not is_scalar(*x._numbers) for x in given):
         raise ValueError("ells: expected single bodies, not a family; give a list of bodies")
-    return [x if isinstance(x, Body) else within(f"ells[{k}]", x, 0.0, 1e6) for k, x in enumerate(given)]
+    return [x if isinstance(x, Body) else in_range(f"ells[{k}]", x, 0.0, 1e6) for k, x in enumerate(given)]
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from spincyl._contact import Coulomb, Viscous, named
-from spincyl._input.numbers import Floats, extra, made, number, within
-from spincyl._loss import titled
+from spincyl._contact import Coulomb, Viscous, contact_in_words
+from spincyl._input.numbers import Floats, in_range, instance_of, number, optional_library
+from spincyl._loss import losses_in_words
 from spincyl._motion import Motion
-from spincyl._phases import rubs
-from spincyl._scale import unit as unit_of
-from spincyl._told import ends
+from spincyl._phases import has_friction
+from spincyl._scale import unit_of_output as unit_of
+from spincyl._told import end_in_words
 from spincyl.studio.aloft import FLIES, SLIPS, aloft, goes_up
 from spincyl.studio.exposure import exposure as photograph
 from spincyl.studio.exposure import frame
@@ -74,11 +74,11 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     >>> [ax.get_title() for ax in axes[1:]]
     ['on the table, from dot to square', 'contact force']
     """
-    made("m", m, Motion)
-    asked, scale, (m, close) = m, m.scale, _close(m.natural)
+    instance_of("m", m, Motion)
+    asked, scale, (m, close) = m, m.scale, _with_close_times(m.natural)
     up = goes_up(m)
     t, (x, y), centre, normal, friction = (
-        _in(scale, name, values)
+        _in_plot_units(scale, name, values)
         for name, values in (
             ("t", m.t),
             ("contact_point", m.contact_point.T),
@@ -88,7 +88,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         )
     )
     if axes is None:
-        plt: Any = extra("matplotlib.pyplot", "plot")
+        plt: Any = optional_library("matplotlib.pyplot", "plot")
         _, axes = plt.subplots(1, 3, figsize=(16, 4.8), layout="constrained")
         own_ticks(*axes)
     tilt, path, force = axes
@@ -101,16 +101,16 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         "markerscale": 1 if close else 8,
     }
     jumps = _aloft.breaks(m) if up else np.zeros(m.t.size, bool)
-    far = _straight(m)
+    far = _straight_distance(m)
     if far is None:
         tilt.plot(*_aloft.parted(jumps, t, np.degrees(m.theta)), color=BLUE, **thick)
         tilt.set_ylabel(r"inclination  $\theta$ (degrees)")
     else:
-        tilt.plot(t, _in(scale, "centre", far), color=BLUE, **thick)
-        tilt.set_ylabel(f"distance of the centre ({_said('centre', scale)})")
-    how = {"rolling": "rolling", "smooth": "smooth table"}.get(named(m.contact)) or _law(m)
+        tilt.plot(t, _in_plot_units(scale, "centre", far), color=BLUE, **thick)
+        tilt.set_ylabel(f"distance of the centre ({_unit_label('centre', scale)})")
+    how = {"rolling": "rolling", "smooth": "smooth table"}.get(contact_in_words(m.contact)) or _law(m)
     if m.losses is not None:
-        how = f"{how}, {titled(m.losses, scale)}"
+        how = f"{how}, {losses_in_words(m.losses, scale)}"
     if not m._nods:
         _spin(tilt, m, t, scale, thick)
         if float(m.theta.max()) < np.pi / 3:
@@ -120,7 +120,11 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
         tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     if up:
-        units = float(_in(scale, "t", 1.0)), float(_in(scale, "centre", 1.0)), _said("centre", scale)
+        units = (
+            float(_in_plot_units(scale, "t", 1.0)),
+            float(_in_plot_units(scale, "centre", 1.0)),
+            _unit_label("centre", scale),
+        )
         _aloft.height(tilt, m, t, units, thin)
         tilt.yaxis.label.set_color(BLUE)
     # at least one radian high, so that a constant theta does not show rounding
@@ -128,7 +132,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     if high - low < 1e-3 and far is None:
         tilt.set_ylim(low - 0.5, high + 0.5)
 
-    if rubs(m.contact) or up:
+    if has_friction(m.contact) or up:
         slips = np.isin(m.phase, SLIPS)
         rolls = ~slips & (m.phase != FLIES)
         for mask, colour, label in ((slips, RED, "contact slips"), (rolls, BLUE, "contact rolls")):
@@ -140,39 +144,39 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         path.plot(x, y, color=BLUE, label="contact point", **thin)
     path.plot(centre[:, 0], centre[:, 1], color=ORANGE, label="centre, from above", **thin)
     if up and m.impacts:
-        where = _in(scale, "contact_point", _aloft.strikes(m))
+        where = _in_plot_units(scale, "contact_point", _aloft.strikes(m))
         path.plot(*where, "x", color=BLACK, ms=6, label="impact")
     path.plot(x[0], y[0], "o", color=BLACK, ms=6)
     path.plot(x[-1], y[-1], "s", color=BLACK, ms=6)
     path.plot(*centre[-1, :2], "P", color=ORANGE, ms=7)
     path.set_aspect("equal", adjustable="datalim")
-    path.set_xlabel(rf"$x$ ({_said('centre', scale)})")
-    path.set_ylabel(rf"$y$ ({_said('centre', scale)})")
+    path.set_xlabel(rf"$x$ ({_unit_label('centre', scale)})")
+    path.set_ylabel(rf"$y$ ({_unit_label('centre', scale)})")
     path.set_title("on the table, from dot to square")
     path.legend(**below)
 
     force.plot(t, normal, color=BLUE, label=r"normal force $N$", **thick)
     dashed = thick | {"ls": "--"} if close else thick
-    name = "friction" if rubs(m.contact) else "friction demand"
+    name = "friction" if has_friction(m.contact) else "friction demand"
     force.plot(t, friction, color=ORANGE, label=name, **dashed)
     if up and (on_both := m.phase > FLIES).any():
-        other = np.where(on_both, _in(scale, "normal", m.normal_other), np.nan)
+        other = np.where(on_both, _in_plot_units(scale, "normal", m.normal_other), np.nan)
         dotted = thick | {"ls": ":"} if close else thick
         force.plot(t, other, color=BLACK, label="$N$, other rim", **dotted)
     if up:
-        _aloft.shades((tilt, force), m, float(_in(scale, "t", 1.0)))
-    elif rubs(m.contact):
-        _shade_the_slip((tilt, force), m, float(_in(scale, "t", 1.0)))
-    force.axhline(float(_in(scale, "normal", 1.0)), color="#888888", lw=0.8, ls=":")
+        _aloft.shades((tilt, force), m, float(_in_plot_units(scale, "t", 1.0)))
+    elif has_friction(m.contact):
+        _shade_the_slip((tilt, force), m, float(_in_plot_units(scale, "t", 1.0)))
+    force.axhline(float(_in_plot_units(scale, "normal", 1.0)), color="#888888", lw=0.8, ls=":")
     if float(np.max(m.normal)) > 20:
         force.set_yscale("log")
     else:
         force.set_ylim(bottom=min(0.0, float(np.min(normal))))
-    force.set_ylabel(f"force ({_said('normal', scale)})")
+    force.set_ylabel(f"force ({_unit_label('normal', scale)})")
     force.set_title("contact force")
     force.legend(**below)
     for ax in (tilt, force):
-        ax.set_xlabel(rf"time  $t$ ({_said('t', scale)})")
+        ax.set_xlabel(rf"time  $t$ ({_unit_label('t', scale)})")
         _mark_the_end(ax, asked)
     return [tilt, path, force]
 
@@ -180,9 +184,9 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 def _spin(ax: "Axes", m: Any, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
     """Draw the spin of a stone on a second axis of the inclination; the spin reverses at zero."""
     right = ax.twinx()
-    right.plot(t, _in(scale, "w", m.spin), color=ORANGE, **style)
+    right.plot(t, _in_plot_units(scale, "w", m.spin), color=ORANGE, **style)
     right.axhline(0.0, color="#888888", lw=0.8, ls=":")
-    right.set_ylabel(f"spin about the vertical ({_said('w', scale)})", color=ORANGE)
+    right.set_ylabel(f"spin about the vertical ({_unit_label('w', scale)})", color=ORANGE)
     ax.yaxis.label.set_color(BLUE)
 
 
@@ -198,7 +202,7 @@ def _rockings(ax: "Axes", m: Any, t: Any, legend: dict[str, Any]) -> None:
     ax.legend(**legend)
 
 
-def _straight(m: "Motion") -> "Floats | None":
+def _straight_distance(m: "Motion") -> "Floats | None":
     """Distance of the centre of a body that rolls straight at constant inclination; None for others."""
     if not m._nods or np.ptp(m.theta) > 1e-6 or np.ptp(m.phi) > 1e-6:
         return None
@@ -215,10 +219,10 @@ def _straight(m: "Motion") -> "Floats | None":
 _MOST = 100_000
 
 
-def _close(m: "Motion") -> "tuple[Motion, bool]":
+def _with_close_times(m: "Motion") -> "tuple[Motion, bool]":
     """The motion with all drawn outputs, and whether its times are close enough for curves."""
     asked = m._asked
-    if rubs(m.contact) or m.losses is not None:
+    if has_friction(m.contact) or m.losses is not None:
         asked = asked._replace(tol=None)  # the default tolerance, unlike a given one, does not fix the times
     if asked.step is not None or asked.tol is not None:
         if m.t.size < 2:
@@ -256,7 +260,7 @@ def _close(m: "Motion") -> "tuple[Motion, bool]":
     return m.at(first + share * (last - first)), False
 
 
-def _in(scale: "Scale | None", name: str, values: Any) -> Any:
+def _in_plot_units(scale: "Scale | None", name: str, values: Any) -> Any:
     """Convert an output of a motion to the units of the plot."""
     factor, _ = _unit(name, scale)
     return values if factor is None else values * factor
@@ -269,7 +273,7 @@ def _unit(name: str, scale: "Scale | None") -> tuple[float | None, str]:
     return (1e3 * factor, "mm") if factor is not None and small else (factor, said)
 
 
-def _said(name: str, scale: "Scale | None") -> str:
+def _unit_label(name: str, scale: "Scale | None") -> str:
     """The unit of an output, for a label."""
     said = _unit(name, scale)[1]
     known = {"sqrt(R/g)": r"$\sqrt{R/g}$", "sqrt(g/R)": r"$\sqrt{g/R}$", "R": "$R$", "M g": "$Mg$"}
@@ -302,7 +306,7 @@ def _mark_the_end(ax: "Axes", m: "Motion") -> None:
     ax.axvspan(end, last, color="#DDDDDD", lw=0, zorder=0)
     ax.axvline(end, color="#888888", lw=1)
     unit = "" if m.scale is None else " s"
-    ax.set_title(f"{ax.get_title()}\nended: it {ends(m)}, $t = {end:.4g}${unit}")
+    ax.set_title(f"{ax.get_title()}\nended: it {end_in_words(m)}, $t = {end:.4g}${unit}")
 
 
 @sized
@@ -347,15 +351,15 @@ def exposure(
     >>> sc.plot.exposure(sc.roll(coin, coin.steady(0.3), 5.0), samples=1e5).get_xlabel()
     '$x$ ($R$)'
     """
-    made("m", m, Motion)
-    gamma = within("gamma", gamma, 0.01, 100.0)
+    instance_of("m", m, Motion)
+    gamma = in_range("gamma", gamma, 0.01, 100.0)
     width = how.pop("width", None)
     width = None if width is None else number("width", width)
     half = (frame(m, seconds, how.get("scale")) if width is None else width) / 2
     light = photograph(m, seconds, width=2 * half, **how)
     ax = new_axes(ax)
     brightest = np.percentile(light[light > 0], 99.7) if light.any() else 1.0
-    half *= float(_in(m.scale, "centre", 1.0)) / (1.0 if m.scale is None else m.scale.radius)
+    half *= float(_in_plot_units(m.scale, "centre", 1.0)) / (1.0 if m.scale is None else m.scale.radius)
     ax.imshow(
         np.clip(light / brightest, 0, 1) ** gamma,
         cmap="gray",
@@ -363,6 +367,6 @@ def exposure(
         vmax=1,
         extent=(-half, half, -half, half),
     )
-    ax.set_xlabel(f"$x$ ({_said('centre', m.scale)})")
-    ax.set_ylabel(f"$y$ ({_said('centre', m.scale)})")
+    ax.set_xlabel(f"$x$ ({_unit_label('centre', m.scale)})")
+    ax.set_ylabel(f"$y$ ({_unit_label('centre', m.scale)})")
     return ax

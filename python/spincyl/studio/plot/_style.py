@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 import numpy as np
 
 from spincyl._contact import Contact
-from spincyl._input.files import replaced
-from spincyl._input.numbers import extra
+from spincyl._input.files import writing_whole
+from spincyl._input.numbers import optional_library
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
             _refuse(axes, bound)
             return draw(*args, **kwargs)
         # Restore only these settings: the first figure in a notebook switches others to interactive mode.
-        now: Any = extra("matplotlib", "plot").rcParams
+        now: Any = optional_library("matplotlib", "plot").rcParams
         before = {key: now[key] for key in SIZES}
         now.update(SIZES)
         try:
@@ -67,7 +67,7 @@ def sized(draw: Callable[_Given, _Drawn]) -> Callable[_Given, _Drawn]:
 
 def _refuse(name: str, value: Any) -> None:
     """Raise TypeError unless `value` is a matplotlib Axes, or three of them for the argument `axes`."""
-    kind = extra("matplotlib.axes", "plot").Axes
+    kind = optional_library("matplotlib.axes", "plot").Axes
     if name == "ax":
         if not isinstance(value, kind):
             raise TypeError(f"{name}: expected an Axes of matplotlib, not {type(value).__name__}")
@@ -83,7 +83,7 @@ def _refuse(name: str, value: Any) -> None:
 def new_axes(ax: "Axes | None") -> "Axes":
     """The given axes, or new ones."""
     if ax is None:
-        plt: Any = extra("matplotlib.pyplot", "plot")
+        plt: Any = optional_library("matplotlib.pyplot", "plot")
         _, ax = plt.subplots(figsize=(8, 5.6), layout="constrained")
         own_ticks(ax)
     return ax
@@ -104,7 +104,7 @@ def saved(figure: "Figure", path: Path, *, slide: bool = False, dpi: float = 150
         dpi = 1080.001 / height
     made = BytesIO()  # in memory first: matplotlib hides errors of a full disk while it writes a PDF
     figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)
-    with replaced(path) as part:
+    with writing_whole(path) as part:
         part.write_bytes(made.getvalue())
 
 

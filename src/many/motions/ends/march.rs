@@ -9,7 +9,7 @@ use crate::numbers::side_by_side::{MOST, SideBySide};
 const PANELS_PER_BREATH: usize = 64;
 
 /// Computes panels of all runs until each run is over, or until `go_on` returns false.
-fn queue<T: SideBySide, P: Copy>(
+fn advance_all<T: SideBySide, P: Copy>(
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
     panels: impl Fn(&RunLanes<Run>, &mut RunLanes<P>),
@@ -48,7 +48,7 @@ pub(super) fn march<T: SideBySide, const N: usize>(
     go_on: &mut dyn FnMut() -> bool,
     mut tell: impl FnMut(&Run, RunOutcome),
 ) {
-    queue::<T, _>(
+    advance_all::<T, _>(
         runs,
         go_on,
         |lanes, met| panels::<T, N>(like, kind, rule, lanes, met),
@@ -64,14 +64,14 @@ pub(super) fn march<T: SideBySide, const N: usize>(
 }
 
 /// Computes the forces along all runs, panel by panel; `tell` is called with each panel.
-pub(super) fn look<T: SideBySide, const N: usize>(
+pub(super) fn forces_along<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
     mut tell: impl FnMut(&Run, &PanelForces),
 ) {
-    queue::<T, _>(
+    advance_all::<T, _>(
         runs,
         go_on,
         |lanes, seen| extents::<T, N>(like, kind, lanes, seen),

@@ -11,12 +11,12 @@
 
 use crate::laws::contact::FLAT;
 use crate::laws::state::State;
-use crate::motions::exact::lanes::march::{Comes, Knot};
-use crate::numbers::larger;
+use crate::motions::exact::lanes::march::{Knot, PanelEvent};
+use crate::numbers::larger_or_nan;
 use core::f64::consts::PI;
 
 /// Greatest number of panels in one direction; a march that needs more gives no result.
-const MOST: u32 = 48;
+const MOST_PANELS: u32 = 48;
 
 /// A motion to be marched: its body, its start and its direction.
 #[derive(Debug, Clone, Copy)]
@@ -47,9 +47,9 @@ pub(super) struct Target {
     /// The time of a march from the start to the place of the motion at that time, and whether the motion
     /// returns through this place from a turning point.
     pub time: f64,
-    pub back: bool,
+    pub returning: bool,
     /// Factor by which the uncertainty of half a swing enters the time of the target.
-    pub share: f64,
+    pub uncertainty_factor: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -66,14 +66,14 @@ pub(super) struct Run {
     turned: Option<f64>,
     panels: u32,
     /// Inclinations of the first and of the second turning point; the precession along the march and its uncertainty.
-    turns: [f64; 2],
+    turning_inclinations: [f64; 2],
     turn: [f64; 2],
 }
 
 /// The outcome of a panel for one lane; `exact::lanes::march::Met` has the meaning of the numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelOutcome {
-    pub comes: Comes,
+    pub comes: PanelEvent,
     pub time: f64,
     pub late: f64,
     pub off: f64,
@@ -97,7 +97,7 @@ pub(super) enum RunOutcome {
 /// The end of a march: its event, its time, the state there, and the error of these.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EventState {
-    pub comes: Comes,
+    pub comes: PanelEvent,
     pub time: f64,
     pub state: State,
     pub error: f64,
@@ -113,16 +113,21 @@ pub(super) struct FreeMotion {
     /// The uncertainty of `first` and `second` together.
     pub late: f64,
     /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
-    pub turns: [f64; 2],
+    pub turning_inclinations: [f64; 2],
     /// The precession between the turning points, and its uncertainty.
     pub turn: [f64; 2],
 }
 
 impl EventState {
     /// The end of a motion that is over at its start.
-    pub fn at_once(comes: Comes, state: State) -> Self {
-        let before =
-            FreeMotion { first: None, second: None, late: 0.0, turns: [f64::NAN; 2], turn: [0.0; 2] };
+    pub fn at_once(comes: PanelEvent, state: State) -> Self {
+        let before = FreeMotion {
+            first: None,
+            second: None,
+            late: 0.0,
+            turning_inclinations: [f64::NAN; 2],
+            turn: [0.0; 2],
+        };
         Self { comes, time: 0.0, state, error: 0.0, before }
     }
 }
@@ -138,16 +143,16 @@ impl FreeMotion {
         let rounded = 4.0 * f64::EPSILON;
         let time = if timed { 2.0 * self.late + rounded * self.period() } else { 0.0 };
         let turn = if turned { 2.0 * (self.turn[1] + rounded * self.turn[0].abs()) } else { 0.0 };
-        larger(time, turn)
+        larger_or_nan(time, turn)
     }
 
     /// The uncertainty of the motion after the time `time`, as a time.
-    pub fn doubt(&self, time: f64) -> f64 {
-        self.late * self.share(time)
+    pub fn time_uncertainty(&self, time: f64) -> f64 {
+        self.late * self.uncertainty_factor(time)
     }
 
     /// Factor by which the uncertainty of half a swing enters a time.
-    fn share(&self, time: f64) -> f64 {
+    fn uncertainty_factor(&self, time: f64) -> f64 {
         2.0 + 2.0 * time / self.period()
     }
 
@@ -155,7 +160,7 @@ impl FreeMotion {
     pub fn inclinations(&self, start: f64, last: f64, time: f64) -> [f64; 2] {
         let first = self.first.unwrap_or(f64::INFINITY);
         let second = self.second.map_or(f64::INFINITY, |second| 2.0 * first + second);
-        let passed = [(first, self.turns[0]), (second, self.turns[1])];
+        let passed = [(first, self.turning_inclinations[0]), (second, self.turning_inclinations[1])];
         let all = passed.into_iter().filter(|(at, _)| *at <= time).map(|(_, theta)| theta);
         all.chain([last]).fold([start; 2], |[low, high], theta| [low.min(theta), high.max(theta)])
     }
@@ -163,7 +168,7 @@ impl FreeMotion {
 
 impl Run {
     pub fn new(task: &MarchTask) -> Self {
-        let target = Target { slot: 0, time: f64::INFINITY, back: false, share: 1.0 };
+        let target = Target { slot: 0, time: f64::INFINITY, returning: false, uncertainty_factor: 1.0 };
         Self {
             task: *task,
             knot: task.start,
@@ -173,7 +178,7 @@ impl Run {
             late: 0.0,
             turned: None,
             panels: 0,
-            turns: [f64::NAN; 2],
+            turning_inclinations: [f64::NAN; 2],
             turn: [0.0; 2],
         }
     }
@@ -181,7 +186,7 @@ impl Run {
     /// The march to the place of a free motion at `time`.
     pub fn to(task: &MarchTask, free: &FreeMotion, slot: usize, time: f64) -> Self {
         let mut run = Self::new(task);
-        let (mut left, mut back) = (time, false);
+        let (mut left, mut returning) = (time, false);
         let period = free.period();
         if let Some(first) = free.first {
             if period.is_finite() {
@@ -190,14 +195,19 @@ impl Run {
             if left > 2.0 * first {
                 (left, run.way) = (left - 2.0 * first, -run.way);
                 if let Some(second) = free.second.filter(|second| left > *second) {
-                    (left, back) = (2.0 * second - left, true);
+                    (left, returning) = (2.0 * second - left, true);
                 }
             } else if left > first {
-                (left, back) = (2.0 * first - left, true);
+                (left, returning) = (2.0 * first - left, true);
             }
         }
         run.late = free.late;
-        run.target = Target { slot, time: left.max(0.0), back, share: free.share(time) };
+        run.target = Target {
+            slot,
+            time: left.max(0.0),
+            returning,
+            uncertainty_factor: free.uncertainty_factor(time),
+        };
         run
     }
 
@@ -205,36 +215,36 @@ impl Run {
     pub fn passes(&mut self, knot: Knot<f64>) -> bool {
         self.panels += 1;
         self.knot = knot;
-        self.panels > MOST
+        self.panels > MOST_PANELS
     }
 
     /// Continues after a panel, up to the time `span`, or to the target if `span` is None.
     pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
         self.panels += 1;
         // A ball has no face: so close to its pole its numbers need the time of the passage (`exact`).
-        let pole = met.comes == Comes::Face && self.task.shape[3] == 1.0;
-        if self.panels > MOST || met.comes == Comes::Unknown || pole {
+        let pole = met.comes == PanelEvent::Face && self.task.shape[3] == 1.0;
+        if self.panels > MOST_PANELS || met.comes == PanelEvent::Unknown || pole {
             return RunOutcome::Unknown;
         }
         self.late += met.late;
         (self.turn[0], self.turn[1]) = (self.turn[0] + met.turn[0], self.turn[1] + met.turn[1]);
         let time = self.time + met.time;
-        let Some(span) = span else { return self.seeks(met, time) };
+        let Some(span) = span else { return self.seek_target(met, time) };
         let gone = self.turned.map_or(0.0, |first| 2.0 * first);
         match met.comes {
-            Comes::Edge => {
+            PanelEvent::Edge => {
                 (self.time, self.knot) = (time, met.knot);
                 if gone + time > span { self.free(None) } else { RunOutcome::On }
             }
-            Comes::Turn => {
-                self.turns[usize::from(self.turned.is_some())] = met.knot.theta;
+            PanelEvent::Turn => {
+                self.turning_inclinations[usize::from(self.turned.is_some())] = met.knot.theta;
                 let Some(_) = self.turned else {
                     self.turned = Some(time);
                     if 2.0 * time > span {
                         return self.free(None);
                     }
                     if self.task.start.force == 0.0 {
-                        self.turns[1] = self.task.start.theta;
+                        self.turning_inclinations[1] = self.task.start.theta;
                         return self.free(Some(0.0));
                     }
                     (self.way, self.knot, self.time, self.panels) = (-self.way, self.task.start, 0.0, 0);
@@ -243,50 +253,64 @@ impl Run {
                 self.free(Some(time))
             }
             _ if gone + time > span => self.free(None),
-            _ => self.there(met, gone + time, 1.0 + f64::from(u8::from(self.turned.is_some())), 1.0),
+            _ => self.outcome_at(met, gone + time, 1.0 + f64::from(u8::from(self.turned.is_some())), 1.0),
         }
     }
 
     fn free(&self, second: Option<f64>) -> RunOutcome {
-        RunOutcome::Free(self.way_so_far(second))
+        RunOutcome::Free(self.free_motion_so_far(second))
     }
 
-    fn way_so_far(&self, second: Option<f64>) -> FreeMotion {
-        FreeMotion { first: self.turned, second, late: self.late, turns: self.turns, turn: self.turn }
+    fn free_motion_so_far(&self, second: Option<f64>) -> FreeMotion {
+        FreeMotion {
+            first: self.turned,
+            second,
+            late: self.late,
+            turning_inclinations: self.turning_inclinations,
+            turn: self.turn,
+        }
     }
 
-    fn seeks(&mut self, met: &PanelOutcome, time: f64) -> RunOutcome {
+    fn seek_target(&mut self, met: &PanelOutcome, time: f64) -> RunOutcome {
         let left = self.target.time - time;
         match met.comes {
-            Comes::Edge => {
+            PanelEvent::Edge => {
                 (self.time, self.knot) = (time, met.knot);
                 RunOutcome::On
             }
             // A time that lies behind the end of the motion by rounding alone counts as the time of the end.
-            Comes::Turn | Comes::Side | Comes::Face if left > 1e-12 * (1.0 + time) => RunOutcome::Unknown,
-            _ => self.there(
+            PanelEvent::Turn | PanelEvent::Side | PanelEvent::Face if left > 1e-12 * (1.0 + time) => {
+                RunOutcome::Unknown
+            }
+            _ => self.outcome_at(
                 met,
                 self.target.time,
-                self.target.share,
-                if self.target.back { -1.0 } else { 1.0 },
+                self.target.uncertainty_factor,
+                if self.target.returning { -1.0 } else { 1.0 },
             ),
         }
     }
 
-    /// The outcome at an event or at the time of the target; `share` is the factor of the march's uncertainty
+    /// The outcome at an event or at the time of the target; `uncertainty_factor` is the factor of the march's uncertainty
     /// in that time, and `sign` is -1 where the motion returns from a turning point, else 1.
-    fn there(&self, met: &PanelOutcome, time: f64, share: f64, sign: f64) -> RunOutcome {
+    fn outcome_at(&self, met: &PanelOutcome, time: f64, uncertainty_factor: f64, sign: f64) -> RunOutcome {
         let Knot { theta, w1, w3, .. } = met.knot;
         let (theta, time) = match met.comes {
-            Comes::Side => (self.task.theta_end, time),
+            PanelEvent::Side => (self.task.theta_end, time),
             // From this inclination to the face the body falls at the speed `met.tilt`.
-            Comes::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
+            PanelEvent::Face => (if self.way > 0.0 { PI } else { 0.0 }, time + FLAT / met.tilt),
             _ => (theta, time),
         };
-        let late = share * self.late;
+        let late = uncertainty_factor * self.late;
         let state = State { theta, w1, w2: -sign * self.way * met.tilt, w3 };
-        let sought = met.comes == Comes::Time || met.comes == Comes::Turn;
+        let sought = met.comes == PanelEvent::Time || met.comes == PanelEvent::Turn;
         let error = met.off + late * if sought { met.rate } else { 1.0 };
-        RunOutcome::There(EventState { comes: met.comes, time, state, error, before: self.way_so_far(None) })
+        RunOutcome::There(EventState {
+            comes: met.comes,
+            time,
+            state,
+            error,
+            before: self.free_motion_so_far(None),
+        })
     }
 }

@@ -4,7 +4,7 @@ use super::run::{PanelOutcome, Run};
 use crate::laws::body::Shape;
 use crate::laws::contact::Contact;
 use crate::laws::contact::reduced::Reduced;
-use crate::motions::exact::lanes::march::{Comes, Extent, Knot, March, Met, Rule, Sought};
+use crate::motions::exact::lanes::march::{Extent, Knot, March, Met, PanelEvent, Rule, Sought};
 use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 
 /// The properties that all marches of a set share.
@@ -33,13 +33,13 @@ pub(super) const FEW: usize = 32;
 pub(super) const MANY: usize = 56;
 
 /// Number of inputs of a march, and greatest number of its outputs.
-const IN: usize = 16;
-const OUT: usize = 15;
+const MARCH_INPUTS: usize = 16;
+const MARCH_OUTPUTS: usize = 15;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
 /// The inputs of the runs in rows; a lane without a run repeats another run. None if no lane has a run.
-fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
-    let mut rows = [[0.0; MOST]; IN];
+fn gather_inputs(runs: &RunLanes<Run>, count: usize) -> Option<Rows<MARCH_INPUTS>> {
+    let mut rows = [[0.0; MOST]; MARCH_INPUTS];
     let spare = runs.iter().flatten().next()?;
     for k in 0..count {
         let run = runs[k].as_ref().unwrap_or(spare);
@@ -58,7 +58,11 @@ fn gathered(runs: &RunLanes<Run>, count: usize) -> Option<Rows<IN>> {
 
 /// The inputs in lanes: the march, its knot, its direction and the time that is left to the target.
 #[inline(always)]
-fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>, Knot<T>, T, T) {
+fn load_inputs<T: SideBySide>(
+    like: T,
+    kind: MarchKind,
+    rows: &Rows<MARCH_INPUTS>,
+) -> (March<T>, Knot<T>, T, T) {
     let shape =
         Shape::of([like.load(&rows[0]), like.load(&rows[1]), like.load(&rows[2]), like.load(&rows[3])]);
     let march = March {
@@ -80,7 +84,7 @@ fn loaded<T: SideBySide>(like: T, kind: MarchKind, rows: &Rows<IN>) -> (March<T>
 
 /// Writes lanes into rows.
 #[inline(always)]
-fn unloaded<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<OUT>) {
+fn unload_outputs<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<MARCH_OUTPUTS>) {
     for (row, x) in rows.iter_mut().zip(&all) {
         for (k, cell) in row.iter_mut().enumerate().take(T::COUNT) {
             *cell = x.lane(k);
@@ -96,20 +100,20 @@ fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
 
 /// The outputs of a kernel for all lanes; None if no lane has a run.
 #[inline(always)]
-fn through<T: SideBySide, const M: usize>(
+fn run_kernel<T: SideBySide, const M: usize>(
     like: T,
     kind: MarchKind,
     runs: &RunLanes<Run>,
     kernel: impl FnOnce(&March<T>, &Knot<T>, T, T) -> [T; M],
-) -> Option<Rows<OUT>> {
-    let rows = gathered(runs, T::COUNT)?;
-    let mut found = [[0.0; MOST]; OUT];
+) -> Option<Rows<MARCH_OUTPUTS>> {
+    let rows = gather_inputs(runs, T::COUNT)?;
+    let mut found = [[0.0; MOST]; MARCH_OUTPUTS];
     apart(
         like,
         #[inline(always)]
         || {
-            let (march, knot, way, left) = loaded(like, kind, &rows);
-            unloaded(kernel(&march, &knot, way, left), &mut found);
+            let (march, knot, way, left) = load_inputs(like, kind, &rows);
+            unload_outputs(kernel(&march, &knot, way, left), &mut found);
         },
     );
     Some(found)
@@ -124,7 +128,7 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
     runs: &RunLanes<Run>,
     out: &mut RunLanes<PanelOutcome>,
 ) {
-    let found = through(
+    let found = run_kernel(
         like,
         kind,
         runs,
@@ -140,7 +144,7 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
     for (k, out) in out.iter_mut().enumerate().take(T::COUNT) {
         let at = |i: usize| found[i][k];
         *out = runs[k].as_ref().map(|_| PanelOutcome {
-            comes: Comes::of(at(0)),
+            comes: PanelEvent::of(at(0)),
             time: at(1),
             late: at(2),
             off: at(3),
@@ -160,7 +164,7 @@ pub(super) fn extents<T: SideBySide, const N: usize>(
     runs: &RunLanes<Run>,
     out: &mut RunLanes<PanelForces>,
 ) {
-    let found = through(
+    let found = run_kernel(
         like,
         kind,
         runs,

@@ -1,6 +1,6 @@
 //! The phases in which a body loses energy while it rolls, or slides on a smooth table.
 
-use super::FEW_STEPS;
+use super::BRIEF_ROLLING_STEPS;
 use super::lossy::LossyFlow;
 use crate::error::Error;
 use crate::laws::contact::Table;
@@ -16,7 +16,7 @@ use crate::motions::walk::numbers::{Halt, SIN, TIME, U2, UH};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
 /// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
-const EXACTLY: f64 = 0.1;
+const EXACT_TOLERANCE_SHARE: f64 = 0.1;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
@@ -30,7 +30,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let (on, y) = ((&self.of.body, self.contact()), self.of.state);
         // Such steps add little to the error.
-        let tol = if self.of.by_steps { EXACTLY * self.of.slide.tol } else { self.of.slide.tol };
+        let tol =
+            if self.of.by_steps { EXACT_TOLERANCE_SHARE * self.of.slide.tol } else { self.of.slide.tol };
         let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y);
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
@@ -42,7 +43,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 Ok(None)
             }
             Some(halt) => self.meets_halt(halt),
-            None if self.slows_evenly() => {
+            None if self.is_slowing_known() => {
                 self.of.lossy = None;
                 self.rolls_to_rest(&flow);
                 Ok(None)
@@ -67,9 +68,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let mut write = |y: &[f64; N]| made.lossy(&ask, (&body, &start, flow), y, kind);
         let times = &self.since[first..];
         let by_steps = self.of.by_steps;
-        let steps = if by_steps { Steps { most: steps.most.min(FEW_STEPS), ..steps } } else { steps };
+        let steps =
+            if by_steps { Steps { most: steps.most.min(BRIEF_ROLLING_STEPS), ..steps } } else { steps };
         let flown = flow.run(place, steps, times, &mut write, go_on);
-        let erred = if by_steps { EXACTLY * flown.spent.erred } else { flown.spent.erred };
+        let erred = if by_steps { EXACT_TOLERANCE_SHARE * flown.spent.erred } else { flown.spent.erred };
         self.has_spent(Spent { erred, ..flown.spent });
         self.of.lately[1] = flown.step;
         self.heeds_laws(flow, &flown, || flow.on_the_way().enter(&flown.y))?;

@@ -19,20 +19,20 @@ use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{COS, HEAT, PHI, TIME, W2, lost, poses};
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Motion, Start};
-use crate::numbers::larger;
+use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
 /// The first integrals lose their digits where the axis is nearer to the vertical than this angle: a face has landed
 /// there, and a ball is integrated.
-const LEAST: f64 = 1e-8;
+const LEAST_ANGLE_FROM_VERTICAL: f64 = 1e-8;
 
 /// A phase of rolling that ends with a slip after less than so many radians of its rotation or nutation is brief. The next
-/// one takes fewer steps, within a tolerance of at least `BY_STEPS`, than the first integrals take work; a phase with more
-/// than `FEW_STEPS` is continued by the first integrals, since it may last for ever.
-const BRIEFLY: f64 = 20.0;
-const BY_STEPS: f64 = 3e-10;
-pub(crate) const FEW_STEPS: u64 = 64;
+/// one takes fewer steps, within a tolerance of at least `BRIEF_ROLLING_TOLERANCE`, than the first integrals take work; a phase with more
+/// than `BRIEF_ROLLING_STEPS` is continued by the first integrals, since it may last for ever.
+const BRIEF_ROLLING_ANGLE: f64 = 20.0;
+const BRIEF_ROLLING_TOLERANCE: f64 = 3e-10;
+pub(crate) const BRIEF_ROLLING_STEPS: u64 = 64;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
@@ -55,10 +55,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let mu = if at_limit { fixed * (1.0 + GRACE) } else { fixed };
         let (body, y) = (self.of.body, self.of.state);
-        let upright = y.theta.min(PI - y.theta) < LEAST;
+        let upright = y.theta.min(PI - y.theta) < LEAST_ANGLE_FROM_VERTICAL;
         // A ball may pass nearer to its pole than the first integrals can follow.
-        self.of.by_steps =
-            self.of.rolls_briefly && self.of.slide.tol > BY_STEPS && !upright && !self.of.planar;
+        self.of.by_steps = self.of.rolls_briefly
+            && self.of.slide.tol > BRIEF_ROLLING_TOLERANCE
+            && !upright
+            && !self.of.planar;
         if self.of.integrates || self.hops_low() || upright && body.is_ball() || self.of.by_steps {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }
@@ -71,7 +73,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if self.of.rolls_among {
             return Ok(Some(WalkStep::Rolls(mu)));
         }
-        self.rolls_alone(mu, go_on)?;
+        self.roll_by_first_integrals(mu, go_on)?;
         Ok(None)
     }
 
@@ -83,17 +85,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The same walk, whose caller computes the phases of rolling that the first integrals solve.
     #[cfg(feature = "many")]
-    pub fn rolling_among(mut self, others: bool) -> Self {
+    pub fn leaving_rolling_to_caller(mut self, others: bool) -> Self {
         self.of.rolls_among = others;
         self
     }
 
     /// Computes a phase of rolling with the coefficient `mu` of static friction by the first integrals.
-    pub(crate) fn rolls_alone(&mut self, mu: f64, go_on: &mut dyn FnMut() -> bool) -> Result<(), Error> {
+    pub(crate) fn roll_by_first_integrals(
+        &mut self,
+        mu: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
         let (from, ask) = self.rolling(mu);
         let times = &self.since[self.made.motion.states.len()..];
         let rolled = by_first_integrals(&self.of.body, &from, times, &ask, &mut *go_on)?;
-        self.has_rolled(rolled, mu, go_on)
+        self.continue_after_rolling(rolled, mu, go_on)
     }
 
     /// The start of a phase of rolling with the coefficient `mu` of static friction, and its options.
@@ -104,7 +110,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// Continues after a phase of rolling, which is known at the next times and up to its event.
-    pub(crate) fn has_rolled(
+    pub(crate) fn continue_after_rolling(
         &mut self,
         mut rolled: Motion,
         mu: f64,
@@ -112,7 +118,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     ) -> Result<(), Error> {
         let (body, rubs) = (self.of.body, self.ask.table.rubs());
         self.claims(rolled.error);
-        self.made.motion.pose_error = larger(self.made.motion.pose_error, rolled.pose_error);
+        self.made.motion.pose_error = larger_or_nan(self.made.motion.pose_error, rolled.pose_error);
         let spent = [self.at[HEAT], lost(&self.at)];
         if self.of.planar {
             rolled.states.iter_mut().chain(rolled.event.iter_mut().map(|e| &mut e.state)).for_each(|y| {
@@ -145,7 +151,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let State { w1, w2, w3, .. } = event.state;
         self.at[..8].copy_from_slice(&[s, c, w1, w2, w3, 0.0, 0.0, event.time]);
         self.of.state = event.state;
-        self.of.rolls_briefly = 3.0 * (event.time - began) < BRIEFLY * self.of.slide.calm(&self.at);
+        self.of.rolls_briefly =
+            3.0 * (event.time - began) < BRIEF_ROLLING_ANGLE * self.of.slide.calm(&self.at);
         let next = match event.ending {
             Ending::Slip if rubs => after_rest(Phases::lets_go(self)),
             ending => Next::Ends(ending),

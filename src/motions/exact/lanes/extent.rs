@@ -1,6 +1,6 @@
 //! Extreme inclinations, the contact force and the precession of a motion in lanes.
 
-use super::series::turned_since;
+use super::series::change_of_theta;
 use super::{LanePhase, Midpoints, Swings};
 use crate::laws::contact::force_of;
 use crate::laws::contact::reduced::Rates;
@@ -49,12 +49,15 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     fn passed(&self, t: T) -> [T; 2] {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
-        let LanePhase { u, .. } = self.place(t);
+        let LanePhase { u, .. } = self.phase_at(t);
         let u = u.max(zero).min(number(PI));
         let turns = one / self.period();
         let (from, to) = (self.phase.min(self.phase + t) * turns, self.phase.max(self.phase + t) * turns);
         let (half, top) = (number(0.5), number(PI));
-        [meets(from, to, zero, zero, self.start.min(u)), meets(from, to, half, top, self.start.max(u))]
+        [
+            passes_between(from, to, zero, zero, self.start.min(u)),
+            passes_between(from, to, half, top, self.start.max(u)),
+        ]
     }
 
     /// The value of a [`Grip`] at u.
@@ -63,7 +66,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let (sin, cos) = sin_cos(u);
         let (_, [s, c, w1, w2, w3]) = self.motion(sin, cos);
         let w = [w1, w2, w3];
-        let [normal, along, across] = force_of(rates.reduced(), (s, c), w, rates.at_on::<ROUND>(s, c, w));
+        let [normal, along, across] =
+            force_of(rates.reduced(), (s, c), w, rates.at_rim_kind::<ROUND>(s, c, w));
         let zero = self.theta.splat(0.0);
         match grip {
             Grip::Normal => normal,
@@ -84,7 +88,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     #[inline(always)]
     fn inclination(&self, u: T) -> T {
         let (_, cos) = sin_cos(u);
-        self.theta + turned_since(self.sin, self.cos, self.mid - self.amp * cos)
+        self.theta + change_of_theta(self.sin, self.cos, self.mid - self.amp * cos)
     }
 
     /// The least value of a [`Grip`] from time 0 to `t`; or, if `roughly`, a lower bound, which is enough for a
@@ -93,14 +97,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
         // The kind of the rim is a constant, so that each kind is compiled separately.
         if self.law.round {
-            self.least_on::<true>(grip, t, roughly)
+            self.least_on_rim::<true>(grip, t, roughly)
         } else {
-            self.least_on::<false>(grip, t, roughly)
+            self.least_on_rim::<false>(grip, t, roughly)
         }
     }
 
     #[inline(always)]
-    fn least_on<const ROUND: bool>(&self, grip: Grip, t: T, roughly: bool) -> T {
+    fn least_on_rim<const ROUND: bool>(&self, grip: Grip, t: T, roughly: bool) -> T {
         let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
         let number = |x: f64| self.theta.splat(x);
         let [first, last] = self.passed(t);
@@ -120,14 +124,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
         // Between two samples the function may dip by a small part of its range, since the series resolves
         // it.
-        if roughly { least - number(HIDDEN) * (most - least) } else { least }
+        if roughly { least - number(LARGEST_HIDDEN_DIP) * (most - least) } else { least }
     }
 }
 
 /// `yes` where a whole number plus `offset` lies between two times, else `no`. The times are in periods since the lower
 /// turning point.
 #[inline(always)]
-fn meets<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
+fn passes_between<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
     floor(to - offset).select_lt(-floor(offset - from), no, yes)
 }
 
@@ -161,13 +165,13 @@ impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
             }
         }
         // As in `least_on`, the function may dip between two samples by a part of its range.
-        least - HIDDEN * (most - least)
+        least - LARGEST_HIDDEN_DIP * (most - least)
     }
 }
 
 /// Greatest dip of a [`Grip`] between two samples, as a fraction of its range; a smaller one would miss an
 /// event.
-const HIDDEN: f64 = 0.25;
+const LARGEST_HIDDEN_DIP: f64 = 0.25;
 
 /// A quantity that must stay large enough for a body to keep rolling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

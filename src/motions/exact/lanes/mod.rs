@@ -34,13 +34,14 @@ use crate::numbers::{Real, arctan2, sin_cos};
 use core::f64::consts::{PI, TAU};
 pub(crate) use extent::Grip;
 use series::{
-    angle_at, lane_lines, left_out, parabola, square_of_rate, steepness, turned_since, turning_points,
+    angle_at, change_of_theta, lane_lines, parabola, slope_bound, square_of_rate, truncation_bound,
+    turning_points,
 };
-pub(crate) use single::{QuickMotion, QuickTask, quick};
+pub(crate) use single::{QuickMotion, QuickTask, roll_narrow_swing};
 
 /// Capacity from which on the number of terms is chosen at run time, so that one code serves series of
 /// several lengths. A series with less capacity always uses all of it, and the compiler unrolls its loops.
-const LONG: usize = 32;
+const RUNTIME_TERMS: usize = 32;
 
 /// Cosines at the midpoints of equal parts of a half turn, with a capacity of K.
 #[derive(Debug, Clone)]
@@ -51,16 +52,16 @@ pub(crate) struct Midpoints<const K: usize> {
 }
 
 impl<const K: usize> Midpoints<K> {
-    /// The midpoints of this number of parts: K, or fewer where K is at least `LONG`.
+    /// The midpoints of this number of parts: K, or fewer where K is at least `RUNTIME_TERMS`.
     pub fn new(parts: usize) -> Self {
-        debug_assert!(parts == K || (parts < K && K >= LONG));
+        debug_assert!(parts == K || (parts < K && K >= RUNTIME_TERMS));
         let cosine = |k: usize, j: usize| (PI * (k * (2 * j + 1)) as f64 / (2 * parts) as f64).cos();
         Self { parts, cosines: core::array::from_fn(|k| core::array::from_fn(|j| cosine(k, j))) }
     }
 
     #[inline(always)]
     fn parts(&self) -> usize {
-        if K < LONG { K } else { self.parts.min(K) }
+        if K < RUNTIME_TERMS { K } else { self.parts.min(K) }
     }
 }
 
@@ -165,10 +166,10 @@ impl<T: Real, const K: usize> Clock<T, K> {
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The motions through (theta, w1, w2, w3) at time 0, from one series of `terms` terms about the start;
-    /// of N terms where N is below `LONG`.
+    /// of N terms where N is below `RUNTIME_TERMS`.
     #[inline(always)]
-    pub fn near(points: &Midpoints<K>, terms: usize, law: Reduced<T>, start: [T; 4]) -> Self {
-        let (n, parts) = (if N < LONG { N } else { terms.min(N) }, points.parts());
+    pub fn about_start(points: &Midpoints<K>, terms: usize, law: Reduced<T>, start: [T; 4]) -> Self {
+        let (n, parts) = (if N < RUNTIME_TERMS { N } else { terms.min(N) }, points.parts());
         let [theta, w1_0, w2, w3_0] = start;
         let (sin, cos) = sin_cos(theta);
         let number = |x: f64| theta.splat(x);
@@ -210,7 +211,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
             + force[0];
         let noise = number(f64::EPSILON) * terms;
         let depth = amp * amp * weakest;
-        let cut = left_out(&force[..n], reach) / depth.max(number(f64::MIN_POSITIVE));
+        let cut = truncation_bound(&force[..n], reach) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = (misfit_low.abs() + misfit_high.abs() * amp) / depth.max(number(f64::MIN_POSITIVE));
         let misfit = zero.select_lt(amp, misfit, zero);
         let cut = zero.select_lt(amp, cut, zero);
@@ -235,7 +236,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         let apart = number(4.0 * f64::EPSILON) * reach;
         let still = force[1].abs().select_lt(number(8.0 * f64::EPSILON) * terms, per_time, nan);
         let per_time = apart.select_lt(amp, per_time, still);
-        let state_per_y = two * sin * left * left + steepness(&w1[..n], reach) + steepness(&w3[..n], reach);
+        let state_per_y =
+            two * sin * left * left + slope_bound(&w1[..n], reach) + slope_bound(&w3[..n], reach);
         let y_rate = amp / fastest;
         let mut clock_slope = zero;
         for (k, rate) in rate[..parts].iter().enumerate() {
@@ -260,7 +262,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
                 noise: off + number(4.0 * f64::EPSILON),
                 place: off
                     + amp * (cut + misfit)
-                    + (left_out(&w1[..n], reach) + left_out(&w3[..n], reach)) / state_per_y,
+                    + (truncation_bound(&w1[..n], reach) + truncation_bound(&w3[..n], reach)) / state_per_y,
                 time: series + half * per_time + slowest * off,
                 per_time: per_time + last / half * ratio * ratio + number(4.0 * f64::EPSILON),
                 clock_slope,
@@ -274,13 +276,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// The number of terms in y.
     #[inline(always)]
     fn terms(&self) -> usize {
-        if N < LONG { N } else { self.terms[0].min(N) }
+        if N < RUNTIME_TERMS { N } else { self.terms[0].min(N) }
     }
 
     /// The number of terms in u.
     #[inline(always)]
     fn parts(&self) -> usize {
-        if K < LONG { K } else { self.terms[1].min(K) }
+        if K < RUNTIME_TERMS { K } else { self.terms[1].min(K) }
     }
 
     /// A number with the same lanes, from which others can be splatted.
@@ -301,7 +303,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
 
     /// The place of the motion at time `t`.
     #[inline(always)]
-    fn place(&self, t: T) -> LanePhase<T> {
+    fn phase_at(&self, t: T) -> LanePhase<T> {
         let number = |x: f64| self.theta.splat(x);
         let (zero, one) = (number(0.0), number(1.0));
         let period = self.period();
@@ -349,7 +351,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     /// terms would not reduce.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
-        self.state_at(t, &self.place(t))
+        self.state_at(t, &self.phase_at(t))
     }
 
     /// The state and its errors at time `t`, from the place at that time.
@@ -368,14 +370,14 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
                 + place * doubt.y_rate
                 + size
         };
-        let error = of(doubt.place, self.late(t, at));
+        let error = of(doubt.place, self.time_error_at(t, at));
         let least = of(doubt.noise, doubt.noise * (t.abs() + self.period()) + rounded);
-        ([self.theta + turned_since(self.sin, self.cos, y), w1, w2, w3], error, least)
+        ([self.theta + change_of_theta(self.sin, self.cos, y), w1, w2, w3], error, least)
     }
 
     /// Error of the time at which the motion reaches a place.
     #[inline(always)]
-    fn late(&self, t: T, at: &LanePhase<T>) -> T {
+    fn time_error_at(&self, t: T, at: &LanePhase<T>) -> T {
         let rounded = self.theta.splat(f64::EPSILON) * (t.abs() + self.period());
         self.doubt.time + at.miss + self.doubt.per_time * t.abs() + rounded
     }

@@ -17,7 +17,7 @@ pub fn angle_at<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
 /// kept, and the other is computed from it. Along a chain of series an error of 1e-16 in s^2 + c^2 would otherwise stay
 /// in 1 -+ c, which may be as small as 1e-16 itself.
 #[inline(always)]
-pub fn on_circle<T: Real>((s, c): (T, T)) -> (T, T) {
+pub fn normalized<T: Real>((s, c): (T, T)) -> (T, T) {
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
     let left = |x: T| ((one - x) * (one + x)).max(zero).sqrt();
     let large = left(s);
@@ -28,7 +28,7 @@ pub fn on_circle<T: Real>((s, c): (T, T)) -> (T, T) {
 
 /// theta - theta0 at y, computed as 2 atan(s0 y/(1 - c0 y)).
 #[inline(always)]
-pub fn turned_since<T: Real>(sin: T, cos: T, y: T) -> T {
+pub fn change_of_theta<T: Real>(sin: T, cos: T, y: T) -> T {
     let half = arctan2(sin * y.abs(), (-cos).fma(y, y.splat(1.0)));
     let turn = half + half;
     y.select_lt(y.splat(0.0), -turn, turn)
@@ -36,7 +36,7 @@ pub fn turned_since<T: Real>(sin: T, cos: T, y: T) -> T {
 
 /// Bound of the terms left out of a series within `reach`, for a function whose singularities are on the unit circle.
 #[inline(always)]
-pub fn left_out<T: Real>(series: &[T], reach: T) -> T {
+pub fn truncation_bound<T: Real>(series: &[T], reach: T) -> T {
     let n = series.len();
     let left = reach.splat(1.0) / (reach.splat(1.0) - reach);
     series[n - 1].abs().max(series[n - 2].abs()).max(series[n - 3].abs()) * power(reach, n) * left * left
@@ -44,7 +44,7 @@ pub fn left_out<T: Real>(series: &[T], reach: T) -> T {
 
 /// Bound of the derivative of a series with respect to y within `reach`.
 #[inline(always)]
-pub fn steepness<T: Real>(series: &[T], reach: T) -> T {
+pub fn slope_bound<T: Real>(series: &[T], reach: T) -> T {
     let mut sum = reach.splat(0.0);
     for k in (1..series.len()).rev() {
         sum = sum.fma(reach, series[k].abs() * reach.splat(k as f64));
@@ -98,7 +98,7 @@ pub fn lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: 
 
 /// Terms of the series of the height of the centre, (ell C + a S)/Q. The first is -2 s g and the second contains -2 a
 /// s; the general recurrence would compute both as differences of ell and 2 ell, and a long pipe would lose digits.
-struct Lift<T> {
+struct HeightTerms<T> {
     turn: T,
     first: T,
     second: T,
@@ -106,7 +106,7 @@ struct Lift<T> {
     before: T,
 }
 
-impl<T: Real> Lift<T> {
+impl<T: Real> HeightTerms<T> {
     #[inline(always)]
     fn of(law: &Reduced<T>, sin: T, cos: T) -> Self {
         let (zero, rim) = (sin.splat(0.0), &law.shape.rim);
@@ -209,7 +209,7 @@ fn rounded_balance<T: Real, const N: usize>(
     let zero = number(0.0);
     let of = Quadratics::of(law, sin, cos);
     let depth = of.depth.map(|x| -x);
-    let mut lift = Lift::of(law, sin, cos);
+    let mut lift = HeightTerms::of(law, sin, cos);
     let (mut slide, mut heavy) = ([zero; N], [[zero; N]; 2]);
     for k in 0..force.len().min(N) {
         let mut next = term(&depth, w1, k, term(&of.radius, w3, k, zero));
@@ -252,7 +252,7 @@ pub fn square_of_rate<T: Real, const N: usize>(
     if law.round {
         return rounded_balance::<_, N>(law, sin, cos, (w1, w3), force);
     }
-    let mut lift = Lift::of(law, sin, cos);
+    let mut lift = HeightTerms::of(law, sin, cos);
     let of = law.at((sin, cos));
     // The quadratic form is al w^2 + b n^2 - 2 k n w = al g^2 + (b - k^2/al) n^2 with g = w - (k/al) n.
     let share = of.k / of.al;

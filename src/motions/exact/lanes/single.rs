@@ -1,22 +1,22 @@
 //! One motion at eight times side by side: the fast method for narrow swings without an event.
 
-use super::turns::{PeriodPoint, Turns};
+use super::turns::{PeriodAngleSeries, PeriodPoint};
 use super::{Grip, Midpoints, Swings};
 use crate::laws::body::{Body, Shape};
 use crate::laws::contact::Contact;
 use crate::laws::contact::reduced::Reduced;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
-use crate::numbers::{LANES, in_lanes, larger, level};
+use crate::numbers::{LANES, in_lanes, larger_or_nan, level};
 use core::f64::consts::PI;
 use fearless_simd::{Simd, SimdBase, f64x8};
 use std::sync::LazyLock;
 
 /// Numbers of terms in y and in u, enough for swings a quarter as wide as the reach of the series.
 const TERMS: usize = 20;
-const PARTS_ALONE: usize = 16;
+const MIDPOINTS_OF_ONE: usize = 16;
 
-static POINTS: LazyLock<Midpoints<PARTS_ALONE>> = LazyLock::new(|| Midpoints::new(PARTS_ALONE));
+static POINTS: LazyLock<Midpoints<MIDPOINTS_OF_ONE>> = LazyLock::new(|| Midpoints::new(MIDPOINTS_OF_ONE));
 
 /// A motion and the outputs that are wanted.
 pub(crate) struct QuickTask<'a> {
@@ -43,7 +43,7 @@ pub(crate) struct QuickMotion {
 /// Computes states and poses at the times, after those already found. Returns false unless their estimated errors are accepted and the motion
 /// surely stays in the model up to the last time: no other rim lands, N > 0, and rolling needs no more friction than
 /// `mu`.
-pub(crate) fn quick(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
+pub(crate) fn roll_narrow_swing(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
     // The kind of the rim is a constant, so that each kind is compiled separately.
     if asked.body.is_sharp() || asked.contact == Contact::Smooth {
         on_rim::<false>(asked, found)
@@ -57,13 +57,17 @@ fn on_rim<const ROUND: bool>(asked: &QuickTask<'_>, found: &mut QuickMotion) -> 
 }
 
 #[inline(always)]
-fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mut QuickMotion) -> Option<()> {
+fn compute_in_lanes<S: Simd, const ROUND: bool>(
+    simd: S,
+    asked: &QuickTask<'_>,
+    found: &mut QuickMotion,
+) -> Option<()> {
     let &QuickTask { contact, body, start, times, mu, tol, pose } = asked;
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
     let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
     let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
-    let swing = Swings::<f64x8<S>, TERMS, PARTS_ALONE>::near(&POINTS, TERMS, law, y);
+    let swing = Swings::<f64x8<S>, TERMS, MIDPOINTS_OF_ONE>::about_start(&POINTS, TERMS, law, y);
     let (last, span) = (*times.last()?, number(*times.last()?));
     // The last times come first, since the error grows with time.
     let (mut k, mut turns, before) = (times.len(), None, found.states.len());
@@ -74,14 +78,14 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
         let some = &times[first..k];
         let mut t = [last; LANES];
         t[..some.len()].copy_from_slice(some);
-        let at = swing.place(f64x8::from_slice(simd, &t));
+        let at = swing.phase_at(f64x8::from_slice(simd, &t));
         let ([theta, w1, w2, w3], error, _) = swing.state_at(f64x8::from_slice(simd, &t), &at);
         for (i, to) in found.states[before + first..before + k].iter_mut().enumerate() {
             // The state at time 0 is the given start.
             if t[i] != 0.0 {
                 *to = State { theta: theta[i], w1: w1[i], w2: w2[i], w3: w3[i] };
             }
-            found.error = larger(found.error, error[i]);
+            found.error = larger_or_nan(found.error, error[i]);
         }
         if found.error > tol || found.error.is_nan() {
             return None;
@@ -89,9 +93,15 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
         if let Some(enough) = pose {
             let turns = turns.get_or_insert_with(
                 #[inline(always)]
-                || Turns::of(&swing, &POINTS, PeriodPoint::start(swing.start[0], swing.phase[0] >= 0.0)),
+                || {
+                    PeriodAngleSeries::of(
+                        &swing,
+                        &POINTS,
+                        PeriodPoint::start(swing.start[0], swing.phase[0] >= 0.0),
+                    )
+                },
             );
-            let late = swing.late(f64x8::from_slice(simd, &t), &at);
+            let late = swing.time_error_at(f64x8::from_slice(simd, &t), &at);
             for i in (0..some.len()).rev().filter(|i| t[*i] != 0.0) {
                 let way = if at.since[i] < 0.0 { -1.0 } else { 1.0 };
                 let spot = PeriodPoint {
@@ -102,11 +112,16 @@ fn answer<S: Simd, const ROUND: bool>(simd: S, asked: &QuickTask<'_>, found: &mu
                 };
                 let mut pose = turns.pose(&spot);
                 if contact == Contact::Smooth {
-                    pose.contact_point =
-                        Pose::below_centre(body, start, &found.states[before + first + i], pose.phi.rest);
+                    pose.contact_point = Pose::contact_point_below_centre(
+                        body,
+                        start,
+                        &found.states[before + first + i],
+                        pose.phi.rest,
+                    );
                 }
                 found.poses[before + first + i] = pose;
-                found.pose_error = larger(found.pose_error, turns.error(&spot, t[i], late[i]) + found.error);
+                found.pose_error =
+                    larger_or_nan(found.pose_error, turns.error(&spot, t[i], late[i]) + found.error);
                 if found.pose_error > enough || found.pose_error.is_nan() {
                     return None;
                 }

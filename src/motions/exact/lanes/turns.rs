@@ -23,7 +23,7 @@ use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 use nalgebra::{Complex, Point2};
 
 /// The series of the angles and of the path of a motion.
-pub(super) struct Turns<const K: usize> {
+pub(super) struct PeriodAngleSeries<const K: usize> {
     /// The cosine series of dphi/du and of dpsi/du.
     p: [f64; K],
     q: [f64; K],
@@ -35,7 +35,7 @@ pub(super) struct Turns<const K: usize> {
     drift: (f64, f64),
     /// The place at which the motion starts.
     start: PeriodPoint,
-    doubt: Unsure,
+    doubt: AngleErrors,
 }
 
 /// A place on a swing: whole periods; u since the lower turning point, negative before it; and e^(i u).
@@ -48,7 +48,7 @@ pub(super) struct PeriodPoint {
 }
 
 /// The uncertainties of the series.
-struct Unsure {
+struct AngleErrors {
     /// Error of an angle: per unit of time, per error of the time, and a constant.
     per_time: f64,
     fastest: f64,
@@ -77,14 +77,14 @@ fn sine<const K: usize>(points: &Midpoints<K>, k: usize, j: usize) -> f64 {
 
 /// The truncation error of a series, extrapolated from its last terms; and the size of the first pair of terms left
 /// out.
-fn tail<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
+fn truncation_error<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
     let pair = |k: usize| (size(K - k) + size(K - k - 1)).max(f64::MIN_POSITIVE);
     let (last, before, earlier) = (pair(1), pair(3), pair(5));
     let ratio = (last / before).max(before / earlier).clamp(0.1, 0.9);
     [last * ratio / (1.0 - ratio), last * ratio * ratio]
 }
 
-impl<const K: usize> Turns<K> {
+impl<const K: usize> PeriodAngleSeries<K> {
     /// The series for a motion that is the same in all lanes; `start` is its place at time 0.
     #[inline(always)]
     pub fn of<S: Simd, const N: usize>(
@@ -120,8 +120,8 @@ impl<const K: usize> Turns<K> {
         let of = &swing.doubt;
         let unsure = of.state_per_y[0] * of.place[0] + 2.0 * f64::EPSILON * swiftest;
         let per_time = unsure * steepest * (2.0 + fastest);
-        let [p_tail, q_tail] = [tail::<K>(|k| p[k].abs()), tail::<K>(|k| q[k].abs())];
-        let mut doubt = Unsure {
+        let [p_tail, q_tail] = [truncation_error::<K>(|k| p[k].abs()), truncation_error::<K>(|k| q[k].abs())];
+        let mut doubt = AngleErrors {
             per_time: per_time + p_tail[1].max(q_tail[1]) / swing.rate[0][0],
             fastest,
             angle: 4.0 / K as f64 * p_tail[0].max(q_tail[0]) + 4.0 * f64::EPSILON,
@@ -143,7 +143,7 @@ impl<const K: usize> Turns<K> {
                     down[k] += (even - odd) / K as f64;
                 }
             }
-            let [left, next] = tail::<K>(|k| up[k].abs() + down[k].abs());
+            let [left, next] = truncation_error::<K>(|k| up[k].abs() + down[k].abs());
             let nearest = (-p[0]).round_ties_even();
             let size: f64 = up.iter().chain(&down).map(|c| c.abs()).sum();
             // The error of a term that drifts grows with u if the term is among the last or is left out.

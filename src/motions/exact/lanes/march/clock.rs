@@ -15,9 +15,9 @@ use crate::numbers::power::{divide, horner};
 use crate::numbers::{Lane, arctan2, sin_cos};
 
 /// Nodes and weights of the Gauss rule of four nodes on [-1, 1].
-const FOUR: [f64; 4] =
+const GAUSS_NODES: [f64; 4] =
     [-0.861_136_311_594_052_6, -0.339_981_043_584_856_26, 0.339_981_043_584_856_26, 0.861_136_311_594_052_6];
-const WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
+const GAUSS_WEIGHTS: [f64; 2] = [0.347_854_845_137_453_85, 0.652_145_154_862_546_2];
 
 pub(super) struct PanelClock<'a, T, const N: usize> {
     law: &'a Reduced<T>,
@@ -92,7 +92,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
 
     /// eta at the phase whose cosine is given.
     #[inline(always)]
-    fn place(&self, cosine: T) -> T {
+    fn eta_at_phase(&self, cosine: T) -> T {
         let half = cosine.splat(0.5);
         half * (self.high + self.low) - half * (self.high - self.low) * cosine
     }
@@ -103,7 +103,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         let one = self.sin.splat(1.0);
         let mut eta = cosines;
         for eta in &mut eta {
-            *eta = self.place(*eta);
+            *eta = self.eta_at_phase(*eta);
         }
         let mut rest = [self.rest[N - 3]; 4];
         for c in self.rest[..N - 3].iter().rev() {
@@ -164,7 +164,7 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
             let cosines = [centre + a, centre - a, centre + b, centre - b].map(|x| sin_cos(x).1);
             let mut rates = self.rates(cosines, &mut weakest);
             for i in 0..4 {
-                let y = self.place(cosines[i]) * self.way;
+                let y = self.eta_at_phase(cosines[i]) * self.way;
                 let q = (y - (self.cos + self.cos)).fma(y, y.splat(1.0));
                 let (sine, _) = angle_at(self.sin, self.cos, y, q);
                 rates[i] = rates[i] * (horner(w1, y) / sine);
@@ -201,11 +201,11 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
                 let next = (phase + (target - time) / slope).max(low).min(high);
                 let (centre, width) = (half * (phase + next), half * (next - phase));
                 let mut nodes = [cosine; 4];
-                for (node, x) in nodes.iter_mut().zip(FOUR) {
+                for (node, x) in nodes.iter_mut().zip(GAUSS_NODES) {
                     *node = sin_cos(centre + width * number(x)).1;
                 }
                 let rates = self.rates(nodes, &mut weakest);
-                let [outer, inner] = WEIGHTS;
+                let [outer, inner] = GAUSS_WEIGHTS;
                 let more = number(outer) * (rates[0] + rates[3]) + number(inner) * (rates[1] + rates[2]);
                 time = time + width * more;
                 phase = next;
@@ -216,6 +216,6 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         let (sin, cos) = sin_cos(half * phase);
         let (width, least) = (self.high - self.low, number(1e-30));
         let apart = [sin, cos].map(|x| (width * (x * x)).max(least));
-        SoughtTime { time, at: self.place(cosine), apart, tail, weakest }
+        SoughtTime { time, at: self.eta_at_phase(cosine), apart, tail, weakest }
     }
 }

@@ -3,7 +3,9 @@
 use super::{Knot, March, here};
 use crate::laws::contact::force_of;
 use crate::laws::contact::reduced::Rates;
-use crate::motions::exact::lanes::series::{angle_at, lane_lines, on_circle, square_of_rate, turned_since};
+use crate::motions::exact::lanes::series::{
+    angle_at, change_of_theta, lane_lines, normalized, square_of_rate,
+};
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
@@ -68,9 +70,9 @@ impl<T: Lane> March<T> {
         }
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = on_circle(angle_at(s, c, y, q));
+        let (sin, cos) = normalized(angle_at(s, c, y, q));
         let knot = Knot {
-            theta: knot.theta + turned_since(s, c, y),
+            theta: knot.theta + change_of_theta(s, c, y),
             sin,
             cos,
             w1: horner(&w1, y),

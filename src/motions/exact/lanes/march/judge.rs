@@ -9,9 +9,13 @@
 //! `many_ends` they are never below half the true error.
 
 use super::clock::PanelClock;
-use super::{Between, Comes, Knot, March, Met, PanelSeries, Reached, here, is, press};
+use super::{
+    EventInProgress, Knot, March, Met, PanelEvent, PanelSeries, TurningPlaces, here, press, where_event_is,
+};
 use crate::laws::contact::FLAT;
-use crate::motions::exact::lanes::series::{angle_at, left_out, on_circle, steepness, turned_since};
+use crate::motions::exact::lanes::series::{
+    angle_at, change_of_theta, normalized, slope_bound, truncation_bound,
+};
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
@@ -20,7 +24,7 @@ pub(super) struct JudgedState<T> {
     knot: Knot<T>,
     tilt: T,
     /// J at that state.
-    jay: T,
+    inertia: T,
     /// dtheta/dy there; bounds of the slopes of w1, w3 and F in y on the way; and a bound of the state's rate in time.
     per_y: T,
     slopes: [T; 3],
@@ -30,13 +34,13 @@ pub(super) struct JudgedState<T> {
 impl<T: Lane> March<T> {
     /// The state that is reached, and its rate of change.
     #[inline(always)]
-    pub(super) fn there<const N: usize>(
+    pub(super) fn state_reached<const N: usize>(
         &self,
         knot: &Knot<T>,
         way: T,
         of: &PanelSeries<T, N>,
         clock: &PanelClock<'_, T, N>,
-        reached: &Reached<T>,
+        reached: &EventInProgress<T>,
     ) -> JudgedState<T> {
         let number = here(
             #[inline(always)]
@@ -44,25 +48,25 @@ impl<T: Lane> March<T> {
         );
         let (zero, one, two) = (number(0.0), number(1.0), number(2.0));
         let (law, s, c) = (&self.law, knot.sin, knot.cos);
-        let &Reached { code, out, apart, .. } = reached;
+        let &EventInProgress { code, out, apart, .. } = reached;
         let y = out * way;
         let q = (y - (c + c)).fma(y, one);
-        let (sin, cos) = on_circle(angle_at(s, c, y, q));
-        let jay = law.inertia(|| (sin, cos));
-        let force = is(code, Comes::Turn, zero, clock.force(out, apart).max(zero));
+        let (sin, cos) = normalized(angle_at(s, c, y, q));
+        let inertia = law.inertia(|| (sin, cos));
+        let force = where_event_is(code, PanelEvent::Turn, zero, clock.force(out, apart).max(zero));
         // The fall from here to the face increases w2 when the face lands.
         let left = number(2.0 * FLAT) * law.shape.rim.lever((sin, cos)).abs();
         let lies = law.inertia(|| (zero, cos.select_lt(zero, number(-1.0), one)));
-        let tilt = is(code, Comes::Face, (force + left) / lies, force / jay).sqrt();
+        let tilt = where_event_is(code, PanelEvent::Face, (force + left) / lies, force / inertia).sqrt();
         let per_y = (s + s) / q;
-        let slopes = [steepness(&of.w1, out), steepness(&of.w3, out), steepness(&of.force, out)];
+        let slopes = [slope_bound(&of.w1, out), slope_bound(&of.w3, out), slope_bound(&of.force, out)];
         let [w1_slope, w3_slope, force_slope] = slopes;
         let y_rate = tilt / per_y;
-        let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * jay * per_y);
-        let theta = knot.theta + turned_since(s, c, y);
+        let rate = tilt + y_rate * (w1_slope + w3_slope) + force_slope / (two * inertia * per_y);
+        let theta = knot.theta + change_of_theta(s, c, y);
         let doubt = knot.doubt;
         let knot = Knot { theta, sin, cos, w1: horner(&of.w1, y), w3: horner(&of.w3, y), force, doubt };
-        JudgedState { knot, tilt, jay, per_y, slopes, rate }
+        JudgedState { knot, tilt, inertia, per_y, slopes, rate }
     }
 
     /// The event with its uncertainties: rounding and truncation of F, and the error of the series that vanishes.
@@ -71,8 +75,8 @@ impl<T: Lane> March<T> {
         &self,
         knot: &Knot<T>,
         of: &PanelSeries<T, N>,
-        ends: &Between<T>,
-        reached: &Reached<T>,
+        ends: &TurningPlaces<T>,
+        reached: &EventInProgress<T>,
         there: &JudgedState<T>,
         turn: [T; 2],
     ) -> Met<T> {
@@ -82,47 +86,55 @@ impl<T: Lane> March<T> {
         );
         let (zero, one, two, half, never) = (number(0.0), number(1.0), number(2.0), number(0.5), number(9.0));
         let (law, angle) = (&self.law, (knot.sin, knot.cos));
-        let &Reached { code, out, miss, steep, time, late, weakest, .. } = reached;
-        let &JudgedState { tilt, jay, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } = there;
+        let &EventInProgress { code, out, miss, steep, time, late, weakest, .. } = reached;
+        let &JudgedState { tilt, inertia, per_y, slopes: [w1_slope, w3_slope, force_slope], rate, .. } =
+            there;
         // The larger speeds of both places count, since w1 grows towards small inclinations.
         let (most_w1, most_w3) =
             (knot.w1.abs().max(there.knot.w1.abs()), knot.w3.abs().max(there.knot.w3.abs()));
         // F at this knot has the roundings of the earlier panels as well. They are independent, so that their squares add.
-        let noise = number(8.0 * f64::EPSILON) * self.sizes(knot, [most_w1, most_w3]);
+        let noise = number(8.0 * f64::EPSILON) * self.size_of_terms(knot, [most_w1, most_w3]);
         let noise = noise.mac(noise, knot.doubt * knot.doubt).sqrt();
-        let cut = left_out(&of.force, out);
+        let cut = truncation_bound(&of.force, out);
         let amp = half * (ends.high - ends.low);
         // If both ends are divided out, only the slope and the curvature of F are uncertain near the start.
         let both = number(1.5).select_lt(ends.is_low + ends.is_high, amp, amp * amp);
         let share = (noise / both + cut / (amp * amp)) / weakest;
         let late = late + time * share + number(4.0 * f64::EPSILON) * time;
-        let which = is(code, Comes::Slip, one, zero);
+        let which = where_event_is(code, PanelEvent::Slip, one, zero);
         let mut size = zero;
         for k in (0..N).rev() {
             size = size.fma(out, zero.select_lt(which, of.grip[k], of.press[k]).abs());
         }
-        let left = zero.select_lt(which, left_out(&of.grip, out), left_out(&of.press, out));
+        let left = zero.select_lt(which, truncation_bound(&of.grip, out), truncation_bound(&of.press, out));
         // An error of F at the knot is also an error of the forces.
-        let blur = press::blur(law, angle, noise) * is(code, Comes::Slip, two * (one + self.mu_square), one);
-        let vanishing = (number(16.0 * f64::EPSILON) * size + left + blur) / steep + miss;
+        let error_of_press = press::error_of_press(law, angle, noise)
+            * where_event_is(code, PanelEvent::Slip, two * (one + self.mu_square), one);
+        let vanishing = (number(16.0 * f64::EPSILON) * size + left + error_of_press) / steep + miss;
         let on_side = number(4.0 * f64::EPSILON);
-        let place = is(
+        let place = where_event_is(
             code,
-            Comes::Side,
+            PanelEvent::Side,
             on_side,
-            is(code, Comes::LiftOff, vanishing, is(code, Comes::Slip, vanishing, zero)),
+            where_event_is(
+                code,
+                PanelEvent::LiftOff,
+                vanishing,
+                where_event_is(code, PanelEvent::Slip, vanishing, zero),
+            ),
         );
         let late = late + zero.select_lt(place, place * per_y / tilt, zero);
         let blurred = noise + cut + force_slope * place;
-        let at_end = (blurred / (two * jay * tilt)).min((blurred / jay).sqrt());
+        let at_end = (blurred / (two * inertia * tilt)).min((blurred / inertia).sqrt());
         // If a time is sought, the place follows from the phase, as precisely as the turning points are known.
-        let timed = is(code, Comes::Time, one, is(code, Comes::Turn, one, zero));
+        let timed =
+            where_event_is(code, PanelEvent::Time, one, where_event_is(code, PanelEvent::Turn, one, zero));
         let tilt_off = zero.select_lt(timed, tilt * share, at_end);
         let place = zero.select_lt(timed, (noise + cut) / (two * amp * weakest), place);
         let off = place * (per_y + w1_slope + w3_slope)
             + tilt_off
-            + left_out(&of.w1, out)
-            + left_out(&of.w3, out)
+            + truncation_bound(&of.w1, out)
+            + truncation_bound(&of.w3, out)
             + number(8.0 * f64::EPSILON) * (one + most_w1 + most_w3);
         // When a spinning body lands, w1 = P/s has the absolute error of P's terms, which almost cancel, divided by s. So has
         // the precession w1/s on the way.
@@ -132,9 +144,10 @@ impl<T: Lane> March<T> {
         let fastest = (knot.w1 / knot.sin).abs().max((there.knot.w1 / there.knot.sin).abs());
         let turn = [turn[0], turn[1] + slack * time + two * fastest * late];
         let left = number(4.0 * f64::EPSILON) * turning / there.knot.sin;
-        let off = off + is(code, Comes::Face, left, zero);
+        let off = off + where_event_is(code, PanelEvent::Face, left, zero);
         // A motion that has ended at its start has no error.
-        let over = is(code, Comes::LiftOff, one, is(code, Comes::Slip, one, zero));
+        let over =
+            where_event_is(code, PanelEvent::LiftOff, one, where_event_is(code, PanelEvent::Slip, one, zero));
         let begun = out.select_lt(number(f64::MIN_POSITIVE), over, zero);
         let known = here(
             #[inline(always)]

@@ -20,7 +20,7 @@ mod judge;
 mod press;
 mod signs;
 
-use super::series::{lane_lines, left_out, square_of_rate};
+use super::series::{lane_lines, square_of_rate, truncation_bound};
 use crate::laws::contact::FLAT;
 use crate::laws::contact::reduced::Reduced;
 pub(crate) use crate::methods::gauss::Rule;
@@ -36,7 +36,7 @@ const MORE: usize = 10;
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
 /// Greatest error of Newton's method with which a turning point is divided out of F and counts as an event.
-const SURE: f64 = 1e-13;
+const TURNING_POINT_ERROR: f64 = 1e-13;
 
 /// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F
 /// accumulated so far.
@@ -64,7 +64,7 @@ pub(crate) struct Sought {
 
 /// The first event of a panel; [`Met::code`] is its number in a lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Comes {
+pub(crate) enum PanelEvent {
     /// The edge of the panel, before any other event.
     Edge,
     Turn,
@@ -79,7 +79,7 @@ pub(crate) enum Comes {
     Unknown,
 }
 
-impl Comes {
+impl PanelEvent {
     const ALL: [Self; 7] =
         [Self::Edge, Self::Turn, Self::Side, Self::LiftOff, Self::Slip, Self::Time, Self::Face];
 
@@ -97,7 +97,7 @@ impl Comes {
 /// The first event of a panel, and the state there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met<T> {
-    /// The number of the event, [`Comes::code`]; 9 where it is unknown.
+    /// The number of the event, [`PanelEvent::code`]; 9 where it is unknown.
     pub code: T,
     /// The time from the start of the panel to the event.
     pub time: T,
@@ -135,7 +135,7 @@ struct PanelSeries<T, const N: usize> {
 
 /// The turning points of a panel, or the edges in place of missing ones: the places, 1 where a place is a turning
 /// point, and the search results.
-struct Between<T> {
+struct TurningPlaces<T> {
     low: T,
     high: T,
     is_low: T,
@@ -144,7 +144,7 @@ struct Between<T> {
 }
 
 /// The first event of a panel in computation: its code, its place `out` in eta and its time.
-struct Reached<T> {
+struct EventInProgress<T> {
     code: T,
     out: T,
     /// The distances of the place from the turning points, or from the edges in their place.
@@ -183,10 +183,10 @@ impl<T: Lane> March<T> {
             [ends.is_low, ends.is_high],
         );
         let start = clock.phase(zero);
-        let stop = is(code, Comes::Turn, way.splat(core::f64::consts::PI), clock.phase(at));
+        let stop = where_event_is(code, PanelEvent::Turn, way.splat(core::f64::consts::PI), clock.phase(at));
         let (time, late, weakest) = clock.between(rule, start, stop);
         let mut reached =
-            Reached { code, out: at, apart: clock.distances(at), miss, steep, time, late, weakest };
+            EventInProgress { code, out: at, apart: clock.distances(at), miss, steep, time, late, weakest };
         if !sought.ends {
             reached.at_time(rule, &clock, [start, stop], target);
         }
@@ -199,7 +199,7 @@ impl<T: Lane> March<T> {
         } else {
             [zero; 2]
         };
-        let there = self.there(knot, way, &of, &clock, &reached);
+        let there = self.state_reached(knot, way, &of, &clock, &reached);
         self.judged(knot, &of, &ends, &reached, &there, turn)
     }
 
@@ -245,9 +245,9 @@ impl<T: Lane> March<T> {
             return edge;
         }
         let turning = number(8.0) * (number(1.0) + knot.w1.abs() + knot.w3.abs());
-        let balanced = number(12.0) * self.sizes(knot, [knot.w1.abs(), knot.w3.abs()]);
+        let balanced = number(12.0) * self.size_of_terms(knot, [knot.w1.abs(), knot.w3.abs()]);
         for part in [0.75, 0.5, 0.25] {
-            let left = |series: &[T; N]| left_out(series, edge);
+            let left = |series: &[T; N]| truncation_bound(series, edge);
             let fits = left(w1).max(left(w3)) / turning;
             let fits = fits.max(left(force) / balanced);
             edge = number(f64::EPSILON).select_lt(fits, number(part * REACH), edge);
@@ -257,7 +257,7 @@ impl<T: Lane> March<T> {
 
     /// The size of the terms of which F is the sum, for the given |w1| and |w3|.
     #[inline(always)]
-    fn sizes(&self, knot: &Knot<T>, [w1, w3]: [T; 2]) -> T {
+    fn size_of_terms(&self, knot: &Knot<T>, [w1, w3]: [T; 2]) -> T {
         let of = self.law.at((knot.sin, knot.cos));
         let two = w1.splat(2.0);
         of.al * w1 * w1
@@ -275,7 +275,7 @@ impl<T: Lane> March<T> {
         way: T,
         sought: Sought,
         of: &PanelSeries<T, N>,
-        ends: &Between<T>,
+        ends: &TurningPlaces<T>,
     ) -> FirstEvent<T> {
         let number = here(
             #[inline(always)]
@@ -285,33 +285,35 @@ impl<T: Lane> March<T> {
         let (s, c) = (knot.sin, knot.cos);
         let [sin_side, cos_side] = self.side;
         let side = way * (sin_side * c - cos_side * s) / (sin_side + s);
-        let mut next = FirstEvent { code: number(Comes::Edge.code()), at: of.edge, miss: zero, steep: one };
-        next.meets(zero.select_lt(way, side, never), number(Comes::Side.code()));
+        let mut next =
+            FirstEvent { code: number(PanelEvent::Edge.code()), at: of.edge, miss: zero, steep: one };
+        next.record(zero.select_lt(way, side, never), number(PanelEvent::Side.code()));
         // The body counts as flat, on either face, where tan(theta/2) or its inverse is this small.
         let flat = number(0.5 * FLAT);
         let (slope, steep) = (s / (one + c), s / (one - c));
         let (below, above) = ((slope - flat) / (slope + flat), (steep - flat) / (steep + flat));
-        next.meets(zero.select_lt(way, above, below), number(Comes::Face.code()));
-        let turns_back = number(Comes::Turn.code());
+        next.record(zero.select_lt(way, above, below), number(PanelEvent::Face.code()));
+        let turns_back = number(PanelEvent::Turn.code());
         let ahead = &ends.seen[0];
-        let code = ahead.miss.select_lt(number(SURE), turns_back, never);
-        next.meets(half.select_lt(ends.is_high, ends.high, never), code);
+        let code = ahead.miss.select_lt(number(TURNING_POINT_ERROR), turns_back, never);
+        next.record(half.select_lt(ends.is_high, ends.high, never), code);
         // Beyond a possible pair of zeros of F the event is unknown.
-        next.meets(ahead.doubt, never);
+        next.record(ahead.doubt, never);
         if sought.ends {
-            let all = [(&of.press, Comes::LiftOff), (&of.grip, Comes::Slip)];
+            let all = [(&of.press, PanelEvent::LiftOff), (&of.grip, PanelEvent::Slip)];
             for (series, what) in all.into_iter().take(1 + usize::from(sought.slips)) {
                 let found = EtaSeries::of(series).first(next.at);
                 let lifted = series[0].select_lt(zero, one, zero);
-                let at = zero.select_lt(lifted, zero, half.select_lt(found.found, found.at, never));
+                let at = zero.select_lt(lifted, zero, half.select_lt(found.is_found, found.at, never));
                 let hit = at.select_lt(next.at, one, zero);
                 next.miss = zero.select_lt(hit, found.miss, next.miss);
                 next.steep = zero.select_lt(hit, found.steep, next.steep);
                 // Slip comes before lift-off, so that a lift-off without an earlier slip means that the slip was
                 // missed.
-                let code = if sought.slips && what == Comes::LiftOff { never } else { number(what.code()) };
-                next.meets(at, code);
-                next.meets(zero.select_lt(lifted, never, found.doubt), never);
+                let code =
+                    if sought.slips && what == PanelEvent::LiftOff { never } else { number(what.code()) };
+                next.record(at, code);
+                next.record(zero.select_lt(lifted, never, found.doubt), never);
             }
         }
         next
@@ -320,7 +322,7 @@ impl<T: Lane> March<T> {
 
 /// The turning points ahead and behind; the edge of the series replaces a turning point beyond its reach.
 #[inline(always)]
-fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
+fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> TurningPlaces<T> {
     let number = here(
         #[inline(always)]
         |x: f64| force[0].splat(x),
@@ -329,15 +331,19 @@ fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> Between<T> {
     let seen = EtaSeries::of(force).turns();
     let edge = number(MORE as f64 * WIDTH);
     let rests = force[0].abs().select_lt(number(f64::MIN_POSITIVE), one, zero);
-    let high = seen[0].found.select_lt(half, edge, seen[0].at);
-    let behind = seen[1].found.select_lt(half, number(-1.0) * edge, seen[1].at.min(zero));
+    let high = seen[0].is_found.select_lt(half, edge, seen[0].at);
+    let behind = seen[1].is_found.select_lt(half, number(-1.0) * edge, seen[1].at.min(zero));
     let low = zero.select_lt(rests, zero, behind);
     // A zero is not divided out if Newton's method has not converged to it, as happens near another zero.
-    let is_low = zero.select_lt(rests, one, seen[1].miss.select_lt(number(SURE), seen[1].found, zero));
-    Between { low, high, is_low, is_high: seen[0].found, seen }
+    let is_low = zero.select_lt(
+        rests,
+        one,
+        seen[1].miss.select_lt(number(TURNING_POINT_ERROR), seen[1].is_found, zero),
+    );
+    TurningPlaces { low, high, is_low, is_high: seen[0].is_found, seen }
 }
 
-impl<T: Lane> Reached<T> {
+impl<T: Lane> EventInProgress<T> {
     /// In each lane where the time that is sought comes before the event, replaces the event by the arrival at that
     /// time.
     #[inline(always)]
@@ -365,19 +371,19 @@ impl<T: Lane> Reached<T> {
         for (apart, found) in self.apart.iter_mut().zip(found.apart) {
             *apart = zero.select_lt(hit, found, *apart);
         }
-        self.code = zero.select_lt(hit, target.splat(Comes::Time.code()), self.code);
+        self.code = zero.select_lt(hit, target.splat(PanelEvent::Time.code()), self.code);
     }
 }
 
 /// `yes` where a code is the code of `what`, else `no`.
 #[inline(always)]
-fn is<T: Real>(code: T, what: Comes, yes: T, no: T) -> T {
-    equals(code, what.code(), yes, no)
+fn where_event_is<T: Real>(code: T, what: PanelEvent, yes: T, no: T) -> T {
+    where_equal(code, what.code(), yes, no)
 }
 
 /// `yes` where the whole number `number` is `other`, else `no`.
 #[inline(always)]
-fn equals<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
+fn where_equal<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
     (number - number.splat(other)).abs().select_lt(number.splat(0.5), yes, no)
 }
 
@@ -392,7 +398,7 @@ struct FirstEvent<T> {
 impl<T: Real> FirstEvent<T> {
     /// Records an event at a place, unless another event comes before.
     #[inline(always)]
-    fn meets(&mut self, at: T, code: T) {
+    fn record(&mut self, at: T, code: T) {
         self.code = at.select_lt(self.at, code, self.code);
         self.at = at.select_lt(self.at, at, self.at);
     }

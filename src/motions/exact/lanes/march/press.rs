@@ -124,12 +124,12 @@ fn press_series<T: Real, const A: usize, const B: usize, const C: usize>(
 
 /// Error of X at a place where F and its slope have the error `noise`.
 #[inline(always)]
-pub(super) fn blur<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
+pub(super) fn error_of_press<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
     let rim = &law.shape.rim;
-    let jay = law.inertia(|| (s, c));
-    let scale = if law.contact == Contact::Rolling && !law.round { s.splat(1.0) } else { jay * jay };
+    let inertia = law.inertia(|| (s, c));
+    let scale = if law.contact == Contact::Rolling && !law.round { s.splat(1.0) } else { inertia * inertia };
     let quarter = s.splat(0.25) / s;
-    scale * noise / jay * (rim.lever((s, c)).abs() * quarter + rim.slope((s, c)).abs())
+    scale * noise / inertia * (rim.lever((s, c)).abs() * quarter + rim.slope((s, c)).abs())
 }
 
 /// The series Z of a sharp rim that rolls (see the head of this module), which is positive while friction prevents slip.
@@ -144,12 +144,12 @@ pub(super) fn grip<T: Real, const N: usize>(
     let Levers { q, lever, slope } = Levers::of(law, (s, c));
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
     let of = law.at((s, c));
-    let jay = law.inertia(|| (s, c));
+    let inertia = law.inertia(|| (s, c));
     // `bow` is 1 - y^2; the others are the factors of F, F' and of the product of velocities in Fh.
     let bow = [one, zero, -one];
-    let with_force: [T; 5] = scaled(times(&bow, &lever), one / jay);
+    let with_force: [T; 5] = scaled(times(&bow, &lever), one / inertia);
     let wide: [T; 5] = times(&bow, &q);
-    let with_slope: [T; 7] = scaled(times(&wide, &slope), -(s.splat(0.25) / (s * jay)));
+    let with_slope: [T; 7] = scaled(times(&wide, &slope), -(s.splat(0.25) / (s * inertia)));
     let (mut across, mut spin, mut slip) = ([zero; N], [zero; N], [zero; N]);
     let square: [T; 5] = times(&q, &q);
     let turned = scaled(square, -(one / s));
@@ -169,7 +169,7 @@ pub(super) fn grip<T: Real, const N: usize>(
         square_on(&mut spin_square, &spin, k);
         multiply_on(&mut drift, &spin_square, force, k);
     }
-    let weigh = scaled(square, -(law.shape.i3 * law.shape.i3 / jay));
+    let weigh = scaled(square, -(law.shape.i3 * law.shape.i3 / inertia));
     let (mut press_square, mut across_square, mut held) = ([zero; N], [zero; N], [zero; N]);
     let twice: [T; 5] = times(&bow, &bow);
     for k in 0..N {

@@ -12,21 +12,21 @@
 //!
 //! Lanes are independent: a computation for one lane changes no other lane.
 
-use super::{MORE, PARTS, REACH, WIDTH, equals, here};
+use super::{MORE, PARTS, REACH, WIDTH, here, where_equal};
 use crate::numbers::{Lane, Real};
 
 /// Number of dips behind which a search continues; behind more of them the zero is unknown.
-const DIPS: usize = 3;
+const MOST_DIPS: usize = 3;
 /// Greatest last step of Newton's method to the bottom of a dip; the error of the value is the square of the step.
 const REACHED: f64 = 1e-6;
 /// A place beyond every panel, for a zero that does not exist.
-const NEVER: f64 = 9.0;
+const NO_ZERO: f64 = 9.0;
 
 /// The first zero of a series, as far as it is known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FirstZero<T> {
     /// 1 where a zero has been found, else 0.
-    pub found: T,
+    pub is_found: T,
     pub at: T,
     /// The error of the zero from Newton's method, and the slope of the series there.
     pub miss: T,
@@ -112,16 +112,25 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         let fore = flagged(&ahead, self.bound, zero);
         let back = flagged(&behind, self.bound, zero);
         let width = number(WIDTH);
-        let mut x = equals(fore.kind, 1.0, fore.from + guess(fore.begin, fore.end, width), number(0.1));
-        let mut x_back =
-            equals(back.kind, 1.0, zero - (back.from + guess(back.begin, back.end, width)), number(-0.1));
+        let mut x = where_equal(
+            fore.kind,
+            1.0,
+            fore.from + zero_of_parabola(fore.begin, fore.end, width),
+            number(0.1),
+        );
+        let mut x_back = where_equal(
+            back.kind,
+            1.0,
+            zero - (back.from + zero_of_parabola(back.begin, back.end, width)),
+            number(-0.1),
+        );
         let (mut steps, mut before) = ([zero; 2], [number(1.0); 2]);
         for _ in 0..5 {
             let [(value, slope), (value_back, slope_back)] = self.at([x, x_back]);
             before = steps;
             steps = [
-                equals(fore.kind, 1.0, value / slope, zero),
-                equals(back.kind, 1.0, value_back / slope_back, zero),
+                where_equal(fore.kind, 1.0, value / slope, zero),
+                where_equal(back.kind, 1.0, value_back / slope_back, zero),
             ];
             (x, x_back) = (x - steps[0], x_back - steps[1]);
         }
@@ -129,11 +138,11 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             #[inline(always)]
             |of: &Flag<T>, at: T, distance: T, step: T, before: T| {
                 let inside = of.lies_within(distance);
-                let found = equals(of.kind, 1.0, inside, zero);
+                let found = where_equal(of.kind, 1.0, inside, zero);
                 // A zero in a flagged part that is not found there is unknown.
                 let doubt =
-                    zero.select_lt(of.kind, zero.select_lt(found, number(NEVER), of.from), number(NEVER));
-                FirstZero { found, at, miss: missed(step, before), steep: number(1.0), doubt }
+                    zero.select_lt(of.kind, zero.select_lt(found, number(NO_ZERO), of.from), number(NO_ZERO));
+                FirstZero { is_found: found, at, miss: newton_error(step, before), steep: number(1.0), doubt }
             },
         );
         [seen(&fore, x, x, steps[0], before[0]), seen(&back, x_back, zero - x_back, steps[1], before[1])]
@@ -153,12 +162,12 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             values[j..j + 4].copy_from_slice(&four);
         }
         let mut seen =
-            FirstZero { found: zero, at: number(NEVER), miss: zero, steep: one, doubt: number(NEVER) };
+            FirstZero { is_found: zero, at: number(NO_ZERO), miss: zero, steep: one, doubt: number(NO_ZERO) };
         let (mut from, mut open) = (zero, one);
-        for _ in 0..DIPS {
+        for _ in 0..MOST_DIPS {
             let mut flag = flagged(&values, self.bound, from);
             flag.kind = flag.from.select_lt(limit, zero.select_lt(open, flag.kind, zero), zero);
-            let dips = equals(flag.kind, 2.0, one, zero);
+            let dips = where_equal(flag.kind, 2.0, one, zero);
             let again = dips.any();
             // 1 in `open` marks the lanes in which the search continues.
             open = zero;
@@ -166,7 +175,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             if again {
                 let (bottom, value, step) = zero.aside(
                     #[inline(always)]
-                    move || self.bottom(dips, flag.from + flag.share * width),
+                    move || self.minimum_of_dip(dips, flag.from + flag.share * width),
                 );
                 // The bottom must lie in its part, and the series must not fall below zero behind it.
                 let reached = step.abs().select_lt(number(REACHED), flag.lies_within(bottom), zero);
@@ -184,8 +193,8 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
             }
             // Near a double zero the first estimate is that of a parabola about the bottom.
             let near = reach - reach * (flag.end / (flag.end - flag.begin.0)).max(zero).sqrt();
-            let first = zero.select_lt(crossing, near, guess(flag.begin, flag.end, reach));
-            let met = equals(flag.kind, 1.0, one, zero);
+            let first = zero.select_lt(crossing, near, zero_of_parabola(flag.begin, flag.end, reach));
+            let met = where_equal(flag.kind, 1.0, one, zero);
             if met.any() {
                 let (at, miss, slope) = self.newton(met, zero.select_lt(met, flag.from + first, number(0.1)));
                 let inside = flag.lies_within(at);
@@ -194,7 +203,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                 let scale = number(1e-3) * (flag.begin.0.abs() + self.bound) / width;
                 let falls = slope.select_lt(zero - scale, inside, zero);
                 let (hit, lost) = (zero.select_lt(met, falls, zero), zero.select_lt(met, one - falls, zero));
-                seen.found = zero.select_lt(hit, one, seen.found);
+                seen.is_found = zero.select_lt(hit, one, seen.is_found);
                 seen.at = zero.select_lt(hit, at, seen.at);
                 seen.miss = zero.select_lt(hit, miss, seen.miss);
                 seen.steep = zero.select_lt(hit, slope.abs(), seen.steep);
@@ -212,7 +221,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
 
     /// The bottom of a dip by Newton's method for the slope, the value there, and the last step.
     #[inline(always)]
-    fn bottom(&self, dips: T, guess: T) -> (T, T, T) {
+    fn minimum_of_dip(&self, dips: T, guess: T) -> (T, T, T) {
         let zero = guess.splat(0.0);
         let (mut x, mut step) = (zero.select_lt(dips, guess, zero), zero);
         for _ in 0..4 {
@@ -250,7 +259,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
                 break;
             }
         }
-        (x, missed(step, before), slope)
+        (x, newton_error(step, before), slope)
     }
 }
 
@@ -266,7 +275,7 @@ impl<T: Real> Flag<T> {
 
 /// The error of Newton's method after its last two steps: C step^2, with C estimated from the two.
 #[inline(always)]
-fn missed<T: Real>(step: T, before: T) -> T {
+fn newton_error<T: Real>(step: T, before: T) -> T {
     let one = step.splat(1.0);
     let ratio = (step / before.abs().max(step.splat(1e-300))).abs().min(one);
     step.abs() * ratio * ratio + step * step
@@ -315,7 +324,7 @@ fn flagged<T: Real>(values: &[ValueSlope<T>], bound: T, from: T) -> Flag<T> {
 
 /// The zero, at most `h` ahead, of the parabola through a value, its slope and a value at `h` that is not positive.
 #[inline(always)]
-fn guess<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
+fn zero_of_parabola<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
     let zero = value.splat(0.0);
     let bend = ((end - value) / h - slope) / h;
     let root = (slope * slope - value.splat(4.0) * bend * value).max(zero).sqrt();
@@ -340,7 +349,7 @@ mod tests {
         for zeros in [[0.005, 0.01, 0.045], [0.005, 0.01, 0.035], [0.0501, 0.0503, 0.1]] {
             let terms = cubic(zeros);
             let seen = EtaSeries::of(&terms).first(1.0);
-            assert!(seen.found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
+            assert!(seen.is_found > 0.5 && (seen.at - zeros[0]).abs() < 1e-12, "{zeros:?}: {}", seen.at);
         }
         // The same dips are lifted above zero: the fall behind them is found, or the search reports a doubt.
         for (zeros, lift) in
@@ -349,7 +358,7 @@ mod tests {
             let mut terms = cubic(zeros);
             terms[0] += lift;
             let seen = EtaSeries::of(&terms).first(1.0);
-            let late = seen.found > 0.5 && seen.at > zeros[2];
+            let late = seen.is_found > 0.5 && seen.at > zeros[2];
             assert!(late || seen.doubt <= zeros[0], "{zeros:?}: {} {}", seen.at, seen.doubt);
         }
     }
