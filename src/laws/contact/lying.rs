@@ -190,7 +190,7 @@ impl<T: Real> Lying<T> {
         }
         let ell = self.shape.rim.ell;
         let back = |[m1, m2, m3]: [T; 3]| [m1, ell.splat(0.0) - m2, ell.splat(0.0) - m3];
-        let losses = self.losses.as_ref().map(Couples::from_other_rim);
+        let losses = self.losses.as_ref().map(Couples::with_other_rim_below);
         let seen = Self { own: self.own.map(back), losses, ..*self };
         let Lain { force: [there, here], w: [d1, d3], couple: [m1, m3], .. } =
             seen.pivots_here(from_other(ell, y), self.strength[0], turn);

@@ -343,7 +343,7 @@ impl<T: Real, G: Copy> Couples<T, G> {
 
 impl<T: Real> Couples<T> {
     /// These losses with the signs as seen from the other rim, where psi' has the other sign.
-    pub fn from_other_rim(&self) -> Self {
+    pub fn with_other_rim_below(&self) -> Self {
         let back = |ways: Ways<T>| Ways { contour: -ways.contour, ..ways };
         Self { ways: self.ways.map(back), ..*self }
     }

@@ -6,7 +6,6 @@ use crate::error::{Error, spare};
 use crate::laws::custom::Custom;
 use crate::many::threads::share_with_large_stacks;
 use crate::methods::beat::Beat;
-use crate::motions::Start;
 use crate::motions::custom::{check_options, followed};
 use std::sync::OnceLock;
 

@@ -40,7 +40,7 @@ pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
-pub(crate) use body_walk::{BodyPhases, BodyWalk};
+pub(crate) use body_walk::BodyWalk;
 
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
 const AXIS_ERROR_SHARE: f64 = 0.25;

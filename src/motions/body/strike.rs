@@ -9,7 +9,7 @@
 //! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
 //! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
-use super::body_walk::{BodyPhases, BodyWalk, LONGER};
+use super::body_walk::{BodyWalk, LONGER};
 use super::fly::{Aloft, Takeoff};
 use super::own::Own;
 use crate::laws::body::Shape;

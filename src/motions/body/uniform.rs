@@ -6,7 +6,7 @@
 //! ```
 //! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
 
-use super::body_walk::{BodyPhases, BodyWalk};
+use super::body_walk::BodyWalk;
 use super::fly::Aloft;
 use super::own::Own;
 use super::roll::lossy::LossyFlow;

@@ -281,7 +281,7 @@ impl Lines {
             let place = from.place_in_full(self.origin, x);
             let carried = self
                 .panel_about(x, from.centre(&place))
-                .with_exact_centre(from.g_and_slope(&place), Certainty::PrecisePlace);
+                .with_exact_centre(from.g_and_slope(&place), Certainty::Carried);
             if !carried.is_finite() {
                 return None;
             }

@@ -37,7 +37,7 @@ pub(super) enum Certainty {
     /// At the start of the motion: G to full relative precision, G' to 2^-100 of its terms.
     Start,
     /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
-    PrecisePlace,
+    Carried,
 }
 
 /// The motion as functions of x in a neighbourhood of `centre`.
@@ -302,7 +302,7 @@ impl Panel {
         match self.known {
             Certainty::Rounded => f64::EPSILON * terms,
             Certainty::Start => known + KEPT * terms * y.abs().min(1.0),
-            Certainty::PrecisePlace => known + KEPT * terms,
+            Certainty::Carried => known + KEPT * terms,
         }
     }
 

@@ -2,10 +2,8 @@
 //!
 //! Error: that of [`creep`](crate::motions::dry::creep).
 
-use super::flow::{
-    ALL, HOLD, SLID_X, STONE_HEAT, STONE_MARGINS, Seen, StoneFlow, StoneNumbers, Touch, slip_of,
-};
-use crate::laws::stone::law::{laboratory, turning};
+use super::flow::{HOLD, SLID_X, STONE_HEAT, STONE_MARGINS, Seen, StoneFlow, StoneNumbers, Touch, slip_of};
+use crate::laws::stone::law::turning;
 use crate::methods::SHORT_CODE;
 use crate::motions::dry::creep::{Creeps, DRILLS, RestingPatch, derivatives, hardly_drills};
 use crate::numbers::vector::{dot, plus};

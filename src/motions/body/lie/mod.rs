@@ -13,7 +13,7 @@
 pub(crate) mod flow;
 mod rocks;
 
-use super::body_walk::{BodyPhases, BodyWalk};
+use super::body_walk::BodyWalk;
 use super::fly::Aloft;
 use super::fly::flies::pose_from;
 use super::own::Own;

@@ -9,7 +9,7 @@
 
 use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::state::State;
-use crate::motions::body::body_walk::{BodyPhases, BodyWalk};
+use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
 use crate::motions::walk::Phases;
 use crate::motions::walk::numbers::{

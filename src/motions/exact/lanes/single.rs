@@ -53,7 +53,7 @@ pub(crate) fn roll_narrow_swing(asked: &QuickTask<'_>, found: &mut QuickMotion) 
 }
 
 fn on_rim<const ROUND: bool>(asked: &QuickTask<'_>, found: &mut QuickMotion) -> bool {
-    in_lanes!(level(), simd => answer::<_, ROUND>(simd, asked, found).is_some(), else false)
+    in_lanes!(level(), simd => compute_in_lanes::<_, ROUND>(simd, asked, found).is_some(), else false)
 }
 
 #[inline(always)]
