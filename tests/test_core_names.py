@@ -60,7 +60,7 @@ def calls(text):
 
 def test_the_options_of_a_motion_cross_to_the_core_in_one_place():
     text = pathlib.Path(_asked.__file__).read_text("utf-8")
-    (maker,) = (x for x in ast.parse(text).body if isinstance(x, ast.FunctionDef) and x.name == "crossing")
+    (maker,) = (x for x in ast.parse(text).body if isinstance(x, ast.FunctionDef) and x.name == "options_for_core")
     keys = {key.value for x in ast.walk(maker) if isinstance(x, ast.Dict) for key in x.keys}
     keys |= {
         x.slice.value
@@ -85,10 +85,10 @@ def test_single_motions_and_sweeps_take_their_options_from_there():
     ]
     for name, arguments in found:
         # the options of a sweep come from `swept`, which makes them by `options_for_core`
-        asks = any(x.startswith("crossing(") for x in arguments) or arguments[2] == "asked"
+        asks = any(x.startswith("options_for_core(") for x in arguments) or arguments[2] == "asked"
         assert asks or arguments[3] == "asked | given", name  # the first motion that a sweep refused
     swept = (PACKAGE / "sweep" / "_swept.py").read_text("utf-8")
-    assert swept.count("crossing(") == 1 and "asked=options" in swept
+    assert swept.count("options_for_core(") == 1 and "asked=options" in swept
 
 
 @pytest.mark.parametrize("name", _core.motion_options())

@@ -61,20 +61,20 @@ def test_every_call_lives_in_a_thread_with_a_small_stack():
 
 ROOMY = """
 import os, resource, threading, numpy as np, spincyl as sc
-from spincyl._input.threads import is_roomy
+from spincyl._input.threads import has_large_stack
 
 body, state = sc.Body.solid(np.linspace(0.5, 3, 500)), sc.State(1.2, 0.3, 0.4, 0.5)
 found = lambda: sc.sweep.roll(body, state, 20.0, tol=1e-12, beyond=True).theta.values
-said, states = [is_roomy()], [found()]
-thread = threading.Thread(target=lambda: (said.append(is_roomy()), states.append(found())))
+said, states = [has_large_stack()], [found()]
+thread = threading.Thread(target=lambda: (said.append(has_large_stack()), states.append(found())))
 thread.start()
 thread.join()
 child = os.fork()
 if child == 0:
-    os._exit(is_roomy())
+    os._exit(has_large_stack())
 said.append(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 resource.setrlimit(resource.RLIMIT_STACK, (256 << 10, resource.getrlimit(resource.RLIMIT_STACK)[1]))
-said.append(is_roomy())
+said.append(has_large_stack())
 states.append(found())
 print(*map(int, said), all((x == states[0]).all() for x in states))
 """
