@@ -60,7 +60,9 @@ def calls(text):
 
 def test_the_options_of_a_motion_cross_to_the_core_in_one_place():
     text = pathlib.Path(_asked.__file__).read_text("utf-8")
-    (maker,) = (x for x in ast.parse(text).body if isinstance(x, ast.FunctionDef) and x.name == "options_for_core")
+    (maker,) = (
+        x for x in ast.parse(text).body if isinstance(x, ast.FunctionDef) and x.name == "options_for_core"
+    )
     keys = {key.value for x in ast.walk(maker) if isinstance(x, ast.Dict) for key in x.keys}
     keys |= {
         x.slice.value
