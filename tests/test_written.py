@@ -233,13 +233,13 @@ def test_what_goes_to_the_output_goes_where_the_output_goes(tmp_path):
 
 FORBIDDEN = """
 import os
-from spincyl._input.files import replaced
+from spincyl._input.files import writing_whole
 if not os.getuid():
     os.setgid(65534), os.setuid(65534)
 os.close(os.open("../mine.html", os.O_CREAT, 0o444))
 for name in ("old.html", "new.html", "fixed.html", "../theirs.html", "../mine.html", "../full.html"):
     try:
-        with replaced(name) as part:
+        with writing_whole(name) as part:
             part.write_text("newer")
         print("saved")
     except OSError as e:
@@ -304,7 +304,7 @@ ALLOWED = {
 
 
 def writing(tree):
-    """The calls of a module that write a file, except to the part of a `with replaced(...)`."""
+    """The calls of a module that write a file, except to the part of a `with writing_whole(...)`."""
     for call in (x for x in ast.walk(tree) if isinstance(x, ast.Call)):
         name = getattr(call.func, "attr", getattr(call.func, "id", ""))
         words = [x.value for x in call.args if isinstance(x, ast.Constant) and isinstance(x.value, str)]
