@@ -29,8 +29,7 @@ const DYING: f64 = 1e-3;
 /// The first step along an impact.
 pub(super) const FIRST: f64 = 0.3;
 
-/// The numbers of the slip: u, the impulse so far, the normal velocity, and the work of the normal force.
-pub(super) type SlipNumbers = [f64; 7];
+/// The places of the numbers of the slip after u: the impulse so far, the normal velocity, and the work of the normal force.
 const P_1: usize = 2;
 const P_2: usize = 3;
 const PUSHED: usize = 4;

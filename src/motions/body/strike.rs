@@ -21,8 +21,8 @@ use crate::laws::contact::{FLAT, Table};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
+use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3};
-use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::FRAC_PI_2;
 

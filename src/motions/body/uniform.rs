@@ -18,12 +18,12 @@ use crate::laws::loss::{Holds, Law};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::dry::creep::Creeping;
+use crate::motions::walk::Next;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W3, loses, lost, poses,
 };
 use crate::motions::walk::two_runs::Followed;
-use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind, Limit};
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {

@@ -11,7 +11,6 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::state::State;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
-use crate::motions::walk::Phases;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
 };
