@@ -198,6 +198,14 @@ where
         self.rubbing(place).map_or(f64::INFINITY, |rubbing| rubbing.longest(self.allowed()))
     }
 
+    /// Whether the slip grows. Under a law of the user a slip has no series: the smaller it begins, the faster it approaches
+    /// its direction.
+    #[inline(always)]
+    fn slip_grows<const N: usize>(place: &FlowPlace<N>) -> bool {
+        let ([u, v], [du, dv]) = (Self::sliding(&place.y), Self::sliding(&place.rate));
+        u * du + v * dv > 0.0
+    }
+
     /// Whether u follows the motion much faster than the body turns.
     #[inline(never)]
     fn creeps_fast<const N: usize>(&self, place: &FlowPlace<N>) -> bool {

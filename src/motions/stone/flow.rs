@@ -431,12 +431,8 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         if N < ALL || self.touch != Touch::Slips {
             return false;
         }
-        // A slip under a law of the user has no series. The smaller it begins, the faster it approaches its direction.
-        let begins = || {
-            let ([u, v], [du, dv]) = (slip_of(&place.y), slip_of(&place.rate));
-            u * du + v * dv > 0.0
-        };
-        (self.law.patch().is_some() || self.own.is_some() && begins()) && self.creeps_fast(place)
+        let creeps = self.law.patch().is_some() || self.own.is_some() && Self::slip_grows(place);
+        creeps && self.creeps_fast(place)
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {

@@ -141,9 +141,8 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
 
     #[inline(always)]
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        // A slip under a law of the user has no series. The smaller it begins, the faster it approaches its direction.
-        let begins = || place.y[UH] * place.rate[UH] + place.y[U2] * place.rate[U2] > 0.0;
-        let creeps = self.law.patch().is_some() && !self.died || L::IS && !self.settled && begins();
+        let creeps =
+            self.law.patch().is_some() && !self.died || L::IS && !self.settled && Self::slip_grows(place);
         creeps && self.creeps_fast(place)
     }
 

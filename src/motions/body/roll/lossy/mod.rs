@@ -433,3 +433,32 @@ impl<G: Own> LossyFlow<G> {
         (left, if s > 2.0 * FLAT { left } else { left * left })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::state::spin_of;
+
+    #[test]
+    fn where_a_body_at_rest_begins_to_roll_dry_friction_along_the_rim_resists_the_way_it_begins() {
+        // Without a drag on the drilling nothing pushes the body along its rim, by symmetry.
+        let losses =
+            Losses::of(Law::RollingResistance, 1e-3).with(Law::DryContour, 1e-4).with(Law::Drilling, 0.1);
+        let mut begun = 0;
+        for k in 0..200 {
+            let part = |i: u32| (0.618_033_988_75 * f64::from(7 * k + i)).fract();
+            let body = Body::solid(0.05 + part(1)).unwrap();
+            let (theta, drilling) = (0.3 + part(2), 6.0 * part(3) - 3.0);
+            let (s, c) = theta.sin_cos();
+            let y = State { theta, w1: s * drilling, w2: 0.0, w3: c * drilling };
+            let flow = LossyFlow::new((&body, Contact::Rolling), 1.0, (&losses, ()), 1e-10, &y);
+            let [w1, _, w3] = flow.pushed(&y);
+            let spin = spin_of((s, c), w1, w3);
+            if flow.moves && flow.ways().contour != 0.0 {
+                assert!(spin * flow.ways().contour > 0.0, "{body:?} {y:?}: {spin} {:?}", flow.ways());
+                begun += 1;
+            }
+        }
+        assert!(begun > 50, "{begun}");
+    }
+}
