@@ -22,10 +22,11 @@ pub(crate) mod rim;
 mod tube;
 
 use crate::error::{Error, within};
+use crate::laws::state::State;
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
 use core::f64::consts::{FRAC_PI_2, PI};
-pub(crate) use rim::{Rim, Shape};
+pub(crate) use rim::{Border, Rim, Shape, Touching};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
@@ -294,6 +295,19 @@ impl Body {
             (cos * (pull + bend * sin) - sin * ell.into()).hi
         };
         search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
+    }
+
+    /// The circle of the body that lands at theta_end, and the one before it.
+    pub(crate) fn border(&self) -> Border<f64> {
+        let here = self.shape().rim;
+        Border::between([here, Rim { ell: -here.ell, ..here }], landing_angle(self.theta_end))
+    }
+
+    /// The state and the slip of the circle that lands at theta_end, seen from that circle, whose face is at theta = 0:
+    /// phi becomes phi + pi, and psi becomes -psi.
+    pub(crate) fn seen_from_next(&self, y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
+        let theta = if y.theta == FRAC_PI_2 { y.theta } else { PI - y.theta };
+        (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
     }
 
     /// Whether the body can land only on its rim, or on the other of two equal rims.

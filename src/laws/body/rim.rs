@@ -72,6 +72,58 @@ impl<T: Real> Rim<T> {
     }
 }
 
+/// A circle on which a body touches the table at one inclination.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Touching<T> {
+    /// Radius A of the circle of contact.
+    pub radius: T,
+    /// Depth L of the circle of contact.
+    pub depth: T,
+    /// Lever g of the normal force.
+    pub lever: T,
+}
+
+/// Two neighbouring circles at the inclination at which both touch the table.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Border<T> {
+    /// Sine and cosine of that inclination.
+    pub angle: (T, T),
+    /// Height Z of the centre of mass.
+    pub height: T,
+    /// The circle that touches at smaller inclinations, and the other one.
+    pub circles: [Touching<T>; 2],
+    /// Whether both touch with the same radius A.
+    pub even: bool,
+}
+
+impl Border<f64> {
+    pub fn between(rims: [Rim<f64>; 2], angle: (f64, f64)) -> Self {
+        let circles = rims.map(|rim| Touching {
+            radius: rim.radius(angle),
+            depth: rim.depth(angle),
+            lever: rim.lever(angle),
+        });
+        let [here, there] = rims.map(|rim| rim.height(angle));
+        let even = circles[0].radius == circles[1].radius;
+        Self { angle, height: 0.5 * (here + there), circles, even }
+    }
+}
+
+impl<T: Real> Border<T> {
+    /// The distance D of the two points of contact.
+    pub fn span(&self) -> T {
+        self.circles[0].lever - self.circles[1].lever
+    }
+
+    /// Converts each number with `f`.
+    pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> Border<U> {
+        let circle =
+            |of: Touching<T>| Touching { radius: f(of.radius), depth: f(of.depth), lever: f(of.lever) };
+        let Self { angle: (s, c), height, circles: [here, there], even } = *self;
+        Border { angle: (f(s), f(c)), height: f(height), circles: [circle(here), circle(there)], even }
+    }
+}
+
 /// The numbers of one body, or of eight in lanes, that enter the equations of motion: the rim and the moments.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shape<T> {

@@ -1,17 +1,15 @@
-//! A body on its side: the motion on both rims, and the impact when the other rim lands.
+//! The landing of another circle of a body, and the motion of a body that lies on two.
 //!
 //! ```text
-//! theta = pi/2, ell > 0; the lower rim touches at +ell e_h, the upper one at -ell e_h, and both slip by u_h,
-//!   u_2,low = u_2,   u_2,up = u_2 - 2 ell w1
-//! lying, w2 = 0      N_low, N_up = (1 +- (I3 w1 w3 - Fh)/ell)/2,   Fh = the friction of both along e_h
-//!   it rises where   I3 w1 w3 - Fh > ell,   Fh = -mu u_h/|u|, or of a rim that sticks w1 (ell w1 - w3) within +-mu
-//! landing, w2 = -W   plastic: impulses P_low, P_up >= 0 and Q with |Q| <= mu P
-//!   both stay        P_low + P_up = ell W,   P_up - P_low = (I1 W + Qh)/ell,            w2 -> 0
-//!   it rocks over    P_low = 0,   P_up = ell (2 I1 W + Qh)/(I1 + ell^2),                 w2 -> -W + (ell P_up - Qh)/I1
-//!   u_h  -> u_h + Qh - (change of w2),   u_2 -> u_2 + a Q2 + b (Q2 of the other rim),   a, b = 1 + 1/I3 +- ell^2/I1
-//!   w1   -> w1 + ell (Q2,low - Q2,up)/I1,   w3 -> w3 - (Q2,low + Q2,up)/I3
+//! here the circle that carries, there the one that lands; Z, g, A, L, D, w_z as in contact::lying
+//!   u_2,there = u_2 - D w_z,   lift_there = lift + D w2        lift: the vertical velocity of a circle
+//! lying, w2 = 0      there rises where  (K - Z Fh)/g > 1,   Fh = -mu u_h/|u|, or of a circle at rest -Om v_2 within +-mu
+//! landing            impulses P >= 0 and Q with |Q| <= mu P at each;   Q_h, Q_2 the sums over both
+//!   both stay        P + P' = -(lift + g w2),   D P' = g (P + P') - I1 w2 + Z Q_h,               w2 -> 0
+//!   it hands over    P = 0,   P' = -(I1 lift_there + g' Z Q_h)/(I1 + g'^2),   w2 -> w2 - (g' P' + Z Q_h)/I1
+//!   u_h -> u_h + Q_h - Z (change of w2),   w1 -> w1 + sum L Q_2/I1,   w3 -> w3 - sum A Q_2/I3
 //! bounce of both rims        then P grows by e P, and Q again opposes the slip that remains, with |Q| <= mu e P
-//! seen from the other rim   (w1, w2, w3, u_h, u_2) -> (w1, -w2, -w3, -u_h, 2 ell w1 - u_2),   phi + pi, -psi
+//! two equal rims, seen from the other one   (w1, w2, w3, u_h, u_2) -> (w1, -w2, -w3, -u_h, 2 ell w1 - u_2), phi + pi, -psi
 //! ```
 //! The impulses are those of Newton's and Euler's equations about the centre of mass. Friction is Coulomb's in the form
 //! of Moreau (Unilateral contact and dry friction in finite freedom dynamics, 1988): the impulse at a rim opposes the
@@ -20,21 +18,21 @@
 //! turns it is a model. If both rims come down at once and bounce, the table gives back the share e of the normal
 //! impulse of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy,
 //! not more than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims
-//! gains energy. One rim bounces as in `contact::impact`. Without friction both rims stay if ell^2 >= I1; with
-//! friction if ell^2 - ell Q_up,h/P_up >= I1.
+//! gains energy. One rim bounces as in `contact::impact`. Without friction both stay if -g g' >= I1; with friction if
+//! -g g' - g Z Q'_h/P' >= I1. With g g' > 0 the body always goes on on the circle that lands.
 //!
 //! Under a coefficient that depends on the speed, mu is that of the slip after the impact: this too takes energy, since
 //! the impulse opposes that slip.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
 
-use super::lying::{Lying, from_other};
+use super::lying::Lying;
 use super::slip::Friction;
 use crate::error::{Error, within};
-use crate::laws::body::{Body, LEVEL_ON_UNEQUAL_RIMS};
+use crate::laws::body::{Body, Border, LEVEL_ON_UNEQUAL_RIMS};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of};
 use core::f64::consts::FRAC_PI_2;
 
 /// The motion of a body after its other rim has landed.
@@ -88,14 +86,21 @@ pub(crate) fn equal_rims(body: &Body) -> Result<(), Error> {
 /// Fh is the friction at the lower rim if this rim alone carries the body. At a rim at rest Fh is the friction that
 /// rolling needs, at most `mu`, which then is the static coefficient.
 pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
-    let speed = slip[0].hypot(slip[1]);
+    launch_on(body, 0, y, slip, mu)
+}
+
+/// The launch number (K - Z Fh)/g of a body that lies on two circles, of which this one alone carries it; above 1 the
+/// other one rises. `slip` is that of this circle.
+fn launch_on(body: &Body, circle: usize, y: &State, slip: [f64; 2], mu: f64) -> f64 {
+    let Border { angle: (s, c), height, circles, .. } = body.border();
+    let (on, turns, speed) = (circles[circle], y.w1 / s, slip[0].hypot(slip[1]));
     let along = if speed > 0.0 {
         -mu * (slip[0] / speed)
     } else {
-        let demand = y.w1 * (body.ell() * y.w1 - y.w3);
+        let demand = turns * (on.depth * y.w1 - on.radius * y.w3);
         demand.max(-mu).min(mu)
     };
-    (body.i3() * y.w1 * y.w3 - along) / body.ell()
+    (body.i3() * y.w1 * y.w3 - body.i1() * c * turns * y.w1 - height * along) / on.lever
 }
 
 /// Whether a body at theta = pi/2 and w2 = 0 rises on its lower rim; otherwise the body stays on its side.
@@ -136,33 +141,32 @@ pub(crate) fn land_at(
     own: &impl SpeedLaw,
 ) -> Result<Landed, Error> {
     let most = 1e100;
-    within("theta", y.theta, (FRAC_PI_2, FRAC_PI_2), "pi/2, where the other rim lands")?;
+    within("theta", y.theta, (body.theta_end(), body.theta_end()), "theta_end, where another circle lands")?;
     within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0, for a rim that comes down")?;
     for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
         within(name, x, (-most, most), "-1e100 to 1e100")?;
     }
-    let before = energy(body, y, slip, lift);
-    let end = |outcome, y: State, slip: [f64; 2]| {
-        let lost = before - energy(body, &y, slip, 0.0);
-        Landed { outcome, state: y, slip, lost }
+    let landing = Landing { body, border: body.border(), y: *y, slip, lift, friction, own };
+    let before = energy(&landing.border, body, y, slip, lift);
+    let end = |outcome, Pushed { y, slips: [slip, there], lift, .. }: Pushed| {
+        let lost = before - energy(&landing.border, body, &y, slip, lift);
+        let (state, slip) = if outcome == Outcome::Changes { body.seen_from_next(&y, there) } else { (y, slip) };
+        Landed { outcome, state, slip, lost }
     };
     let mu = |[u, v]: [f64; 2]| coefficient(own, friction.strength(), || u.hypot(v));
-    Ok(match compressed(body, y, (slip, lift), friction, own)? {
-        Compressed { here: true, there: true, end: Pushed { y, slip, .. } } => {
-            let (there, other) = mirrored(body, &y, slip);
-            if rises(body, &y, slip, mu(slip)) {
-                end(Outcome::Rises, y, slip)
-            } else if rises(body, &there, other, mu(other)) {
-                end(Outcome::Changes, there, other)
+    Ok(match landing.compressed()? {
+        Compressed { here: true, there: true, end: pushed } => {
+            let [slip, other] = pushed.slips;
+            if launch_on(body, 0, &pushed.y, slip, mu(slip)) > 1.0 {
+                end(Outcome::Rises, pushed)
+            } else if launch_on(body, 1, &pushed.y, other, mu(other)) > 1.0 {
+                end(Outcome::Changes, pushed)
             } else {
-                end(Outcome::Lies, y, slip)
+                end(Outcome::Lies, pushed)
             }
         }
-        Compressed { here: true, end: Pushed { y, slip, .. }, .. } => end(Outcome::Rises, y, slip),
-        Compressed { end: Pushed { y, slip, .. }, .. } => {
-            let (there, other) = mirrored(body, &y, slip);
-            end(Outcome::Changes, there, other)
-        }
+        Compressed { here: true, end: pushed, .. } => end(Outcome::Rises, pushed),
+        Compressed { end: pushed, .. } => end(Outcome::Changes, pushed),
     })
 }
 
@@ -176,16 +180,17 @@ pub(crate) fn bounced(
     own: &impl SpeedLaw,
     e: f64,
 ) -> Result<(State, [f64; 2], f64, f64), Error> {
-    let Compressed { end, .. } = compressed(body, y, (slip, lift), friction, own)?;
-    let (mu, dry) = strength(friction);
-    let given = Rims::Given(end.push.map(|p| e * p));
-    let again = Impact { body, y: end.y, slip: end.slip, lift: end.lift, mu, dry, own, rims: given }.solved();
-    let Some(after) = again else { return Err(Error::Landing { mu, outcomes: 0 }) };
-    let lost = energy(body, y, slip, lift) - energy(body, &after.y, after.slip, after.lift);
-    Ok((after.y, after.slip, after.lift, lost))
+    let landing = Landing { body, border: body.border(), y: *y, slip, lift, friction, own };
+    let Compressed { end, .. } = landing.compressed()?;
+    let given = Carries::Given(end.push.map(|p| e * p));
+    let again = Landing { y: end.y, slip: end.slips[0], lift: end.lift, ..landing }.solved(given);
+    let Some(after) = again else { return Err(Error::Landing { mu: friction.strength(), outcomes: 0 }) };
+    let energy = |y: &State, slip, lift| energy(&landing.border, body, y, slip, lift);
+    let lost = energy(y, slip, lift) - energy(&after.y, after.slips[0], after.lift);
+    Ok((after.y, after.slips[0], after.lift, lost))
 }
 
-/// The end of a compression, and which rims remain on the table: the lower one, and the other one.
+/// The end of a compression, and which circles remain on the table: the one that carried, and the one that landed.
 struct Compressed {
     here: bool,
     there: bool,
@@ -195,49 +200,6 @@ struct Compressed {
 /// The coefficient of sliding friction, `mu` unless it varies with the speed.
 fn coefficient(own: &impl SpeedLaw, mu: f64, speed: impl Fn() -> f64) -> f64 {
     if own.varies() { own.coefficient_at(speed()) } else { mu }
-}
-
-/// The coefficient of a law of friction, and whether it is dry.
-fn strength(friction: &Friction) -> (f64, bool) {
-    (friction.strength(), matches!(friction, Friction::Coulomb { .. }))
-}
-
-/// The compression of a landing, by the one of its outcomes that is consistent.
-fn compressed(
-    body: &Body,
-    y: &State,
-    (slip, lift): ([f64; 2], f64),
-    friction: &Friction,
-    own: &impl SpeedLaw,
-) -> Result<Compressed, Error> {
-    let (mu, dry) = strength(friction);
-    let comes = y.w2 < 0.0 || lift < 0.0;
-    let on = |y: &State, slip: [f64; 2], lift: f64, rims| {
-        Impact { body, y: *y, slip, lift, mu, dry, own, rims }.solved()
-    };
-    let lies = on(y, slip, lift, Rims::Both);
-    let rocks = if comes { on(y, slip, lift, Rims::Other) } else { None };
-    // Where the lower rim barely stays, both solutions are the same motion up to rounding, and one is
-    // dropped.
-    let rocks = rocks.filter(|after| lies.is_none() || after.y.w2 < SAME * y.w2);
-    // If both rims come down, it may also be the other one that leaves the table.
-    let stands = if lift < 0.0 && lies.is_none() && rocks.is_none() {
-        let (there, other) = mirrored(body, y, slip);
-        on(&there, other, lift + 2.0 * body.ell() * y.w2, Rims::Other)
-    } else {
-        None
-    };
-    match (lies, rocks, stands) {
-        (Some(end), None, _) => Ok(Compressed { here: true, there: true, end }),
-        (None, Some(end), _) => Ok(Compressed { here: false, there: true, end }),
-        (None, None, Some(end)) => {
-            let (seen, slip) = mirrored(body, &end.y, end.slip);
-            let lift = end.lift + 2.0 * body.ell() * end.y.w2;
-            let push = [end.push[1], end.push[0]];
-            Ok(Compressed { here: true, there: false, end: Pushed { y: seen, slip, lift, push } })
-        }
-        (lies, ..) => Err(Error::Landing { mu, outcomes: if lies.is_some() { 2 } else { 0 } }),
-    }
 }
 
 /// The state and the slip after the last impact of a rattle on both rims, whose rim comes down or rises at `lift`.
@@ -252,133 +214,182 @@ pub(crate) fn settled(
     friction: &Friction,
     own: &impl SpeedLaw,
 ) -> (State, [f64; 2]) {
-    let (ell, (mu, dry)) = (body.ell(), strength(friction));
-    let least = REVERSES * (lift.abs() + ell * y.w2.abs());
+    let landing = Landing { body, border: body.border(), y: *y, slip, lift, friction, own };
+    let (Border { height, circles: [here, there], .. }, dry) = (landing.border, landing.is_dry());
+    let least = REVERSES * (lift.abs() + here.lever * y.w2.abs());
     let drag = |[u, v]: [f64; 2]| {
         let size = u.hypot(v);
-        let (per, mu) = (if dry { size } else { 1.0 }, coefficient(own, mu, || size));
+        let (per, mu) = (if dry { size } else { 1.0 }, landing.mu(size));
         [u, v].map(|u| if !dry || size > least { mu * u / per } else { 0.0 })
     };
-    let (low, up) = (drag(slip), drag([slip[0], slip[1] - 2.0 * ell * y.w1]));
-    let (down, turn) = (-(lift + ell * y.w2), -body.i1() * y.w2);
-    let there = (turn + down * (ell - low[0])) / (2.0 * ell + up[0] - low[0]);
-    let q = [low.map(|d| -(down - there) * d), up.map(|d| -there * d)];
-    let (after, slips) = Impact { body, y: *y, slip, lift, mu, dry, own, rims: Rims::Both }.after(&q, 0.0);
-    (State { w2: 0.0, ..after }, if slip == [0.0; 2] { slip } else { slips[0] })
+    let [low, up] = landing.slips([[0.0; 2]; 2], y.w2).map(drag);
+    let (down, turn) = (-(lift + here.lever * y.w2), -body.i1() * y.w2);
+    let [p, q] = [here.lever - height * low[0], height * up[0] - there.lever];
+    let push = (turn + down * p) / (p + q);
+    let impulses = [low.map(|d| -(down - push) * d), up.map(|d| -push * d)];
+    let after = State { w2: 0.0, ..landing.turned(&impulses, 0.0) };
+    (after, if slip == [0.0; 2] { slip } else { landing.slips(impulses, 0.0)[0] })
 }
 
 /// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
-    let theta = if y.theta == FRAC_PI_2 { y.theta } else { core::f64::consts::PI - y.theta };
-    let [w1, w3, u_h, u_2] = from_other(body.ell(), [y.w1, y.w3, slip[0], slip[1]]);
-    (State { theta, w1, w2: 0.0 - y.w2, w3 }, [u_h, u_2])
+    body.seen_from_next(y, [slip[0], slip[1] - body.border().span() * y.w1])
 }
 
-/// Kinetic energy at theta = pi/2, from the state, and the slip and the vertical velocity of the lower rim.
-fn energy(body: &Body, y: &State, [along, across]: [f64; 2], lift: f64) -> f64 {
-    let ell = body.ell();
-    let [forth, aside, up] = [along + y.w2, across - ell * y.w1 + y.w3, lift + ell * y.w2];
+/// Kinetic energy at theta_end, from the state, and the slip and the vertical velocity of the circle that carries.
+fn energy(border: &Border<f64>, body: &Body, y: &State, [along, across]: [f64; 2], lift: f64) -> f64 {
+    let here = border.circles[0];
+    let forth = along + border.height * y.w2;
+    let aside = across - here.depth * y.w1 + here.radius * y.w3;
+    let up = lift + here.lever * y.w2;
     let turning = body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3;
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
 
 /// The normal impulses of an impact.
 #[derive(Clone, Copy, PartialEq)]
-enum Rims {
-    /// Those that keep both rims on the table.
+enum Carries {
+    /// Those that keep both circles on the table.
     Both,
-    /// That which keeps the other rim on the table, while the lower rim leaves it.
-    Other,
-    /// These, of the lower and of the other rim.
+    /// That which keeps this circle on the table, while the other one leaves it.
+    One(usize),
+    /// These, of both circles.
     Given([f64; 2]),
 }
 
-/// An impact with the normal impulses of `rims`.
-struct Impact<'a, L> {
+/// A landing: the state before it, and the slip and the vertical velocity of the circle that carries.
+#[derive(Clone, Copy)]
+struct Landing<'a, L> {
     body: &'a Body,
+    border: Border<f64>,
     y: State,
     slip: [f64; 2],
-    /// The vertical velocity of the lower rim.
     lift: f64,
-    /// The coefficient mu of dry friction, or c of a viscous film.
-    mu: f64,
-    dry: bool,
+    friction: &'a Friction,
     own: &'a L,
-    rims: Rims,
 }
 
-/// The state, the slip and the vertical velocity of the lower rim after an impact, and the normal impulses of both
-/// rims.
+/// The state and the slips of both circles after an impact, the vertical velocity of the first one, and the normal
+/// impulses of both.
 struct Pushed {
     y: State,
-    slip: [f64; 2],
+    slips: [[f64; 2]; 2],
     lift: f64,
     push: [f64; 2],
 }
 
-/// Friction impulses of the lower and the upper rim, each along e_h and e2.
+/// Friction impulses of both circles, each along e_h and e2.
 type Impulses = [[f64; 2]; 2];
 
-impl<L: SpeedLaw> Impact<'_, L> {
-    /// The normal impulses P of both rims, and w2 after the impact.
-    fn pushed(&self, q: &Impulses) -> ([f64; 2], f64) {
-        let (ell, i1, w, along) = (self.body.ell(), self.body.i1(), -self.y.w2, q[0][0] + q[1][0]);
-        match self.rims {
-            Rims::Both => {
-                let (all, apart) = (ell * w - self.lift, (i1 * w + along) / ell);
-                ([0.5 * (all - apart), 0.5 * (all + apart)], 0.0)
+impl<L: SpeedLaw> Landing<'_, L> {
+    fn is_dry(&self) -> bool {
+        matches!(self.friction, Friction::Coulomb { .. })
+    }
+
+    /// The coefficient mu of dry friction at this speed, or c of a viscous film.
+    fn mu(&self, speed: f64) -> f64 {
+        coefficient(self.own, self.friction.strength(), || speed)
+    }
+
+    /// The compression, by the one of its outcomes that is consistent.
+    fn compressed(&self) -> Result<Compressed, Error> {
+        let comes = self.y.w2 < 0.0 || self.lift < 0.0;
+        let lies = self.solved(Carries::Both);
+        let rocks = if comes { self.solved(Carries::One(1)) } else { None };
+        // Where the circle that carried barely stays, both solutions are the same motion up to rounding, and one is
+        // dropped.
+        let rocks = rocks.filter(|after| lies.is_none() || after.y.w2 < SAME * self.y.w2);
+        // If both come down, it may also be the other one that leaves the table.
+        let alone = self.lift < 0.0 && lies.is_none() && rocks.is_none();
+        let stands = if alone { self.solved(Carries::One(0)) } else { None };
+        match (lies, rocks, stands) {
+            (Some(end), None, _) => Ok(Compressed { here: true, there: true, end }),
+            (None, Some(end), _) => Ok(Compressed { here: false, there: true, end }),
+            (None, None, Some(end)) => Ok(Compressed { here: true, there: false, end }),
+            (lies, ..) => {
+                let outcomes = if lies.is_some() { 2 } else { 0 };
+                Err(Error::Landing { mu: self.friction.strength(), outcomes })
             }
-            Rims::Other => {
-                let push = (i1 * (2.0 * ell * w - self.lift) + ell * along) / (i1 + ell * ell);
-                ([0.0, push], (ell * push - along) / i1 - w)
-            }
-            Rims::Given(push) => (push, (ell * (push[1] - push[0]) - along) / i1 - w),
         }
     }
 
-    /// The state after the impact and the slips of both rims.
-    fn after(&self, q: &Impulses, w2: f64) -> (State, [[f64; 2]; 2]) {
-        let (body, y, [low, up]) = (self.body, self.y, *q);
-        let w1 = y.w1 + body.ell() * (low[1] - up[1]) / body.i1();
-        let w3 = y.w3 - (low[1] + up[1]) / body.i3();
-        let along = self.slip[0] + low[0] + up[0] - (w2 - y.w2);
-        let straight = (low[1] + up[1]) * (1.0 + 1.0 / body.i3());
-        let turning = (low[1] - up[1]) * body.ell() * body.ell() / body.i1();
-        let across = [turning, -turning].map(|turning| straight + turning);
-        let slips = [self.slip[1] + across[0], self.slip[1] - 2.0 * body.ell() * y.w1 + across[1]];
-        (State { w1, w2, w3, ..y }, slips.map(|across| [along, across]))
+    /// The normal impulses P of both circles, and w2 after the impact.
+    fn pushed(&self, carries: Carries, q: &Impulses) -> ([f64; 2], f64) {
+        let (Border { height, circles, .. }, i1, w) = (self.border, self.body.i1(), self.y.w2);
+        let ([here, there], along) = (circles.map(|circle| circle.lever), height * (q[0][0] + q[1][0]));
+        match carries {
+            Carries::Both => {
+                let all = -(self.lift + here * w);
+                let push = (here * all - i1 * w + along) / self.border.span();
+                ([all - push, push], 0.0)
+            }
+            Carries::One(k) => {
+                let (lever, comes) = ([here, there][k], self.lift + k as f64 * self.border.span() * w);
+                let push = -(i1 * comes + lever * along) / (i1 + lever * lever);
+                let after = w - (lever * push + along) / i1;
+                (if k == 0 { [push, 0.0] } else { [0.0, push] }, after)
+            }
+            Carries::Given(push) => (push, w - (here * push[0] + there * push[1] + along) / i1),
+        }
+    }
+
+    /// The state after the impact.
+    fn turned(&self, q: &Impulses, w2: f64) -> State {
+        let ([low, up], [here, there]) = (*q, self.border.circles);
+        let w1 = self.y.w1 + (here.depth * low[1] + there.depth * up[1]) / self.body.i1();
+        let w3 = self.y.w3 - (here.radius * low[1] + there.radius * up[1]) / self.body.i3();
+        State { w1, w2, w3, ..self.y }
+    }
+
+    /// How much an impulse across, at a circle, changes the slip across of a circle.
+    fn yields(&self, at: usize, by: usize) -> f64 {
+        let [at, by] = [self.border.circles[at], self.border.circles[by]];
+        1.0 + at.depth * by.depth / self.body.i1() + at.radius * by.radius / self.body.i3()
+    }
+
+    /// The slips of both circles after the impact.
+    fn slips(&self, [low, up]: Impulses, w2: f64) -> [[f64; 2]; 2] {
+        let along = self.slip[0] + low[0] + up[0] - self.border.height * (w2 - self.y.w2);
+        let turning = self.border.span() * drilling_of(self.border.angle, self.y.w1, self.y.w3);
+        let across = |k: usize| self.yields(k, 0) * low[1] + self.yields(k, 1) * up[1];
+        [[along, self.slip[1] + across(0)], [along, self.slip[1] - turning + across(1)]]
     }
 
     /// The end of the impact, if its normal impulses are consistent.
     ///
     /// Each friction impulse is moved against the remaining slip and limited to mu P, until nothing changes.
-    fn solved(&self) -> Option<Pushed> {
-        if self.excluded() {
+    fn solved(&self, carries: Carries) -> Option<Pushed> {
+        if self.excluded(carries) {
             return None;
         }
-        let (ell, i1, i3) = (self.body.ell(), self.body.i1(), self.body.i3());
-        let (straight, turning) = (1.0 + 1.0 / i3, ell * ell / i1);
-        let both = 2.0 * straight.max(turning);
-        let (along, across, given) = match self.rims {
-            Rims::Both => (2.0, both, 0.0),
-            Rims::Other => (1.0 + 1.0 / (i1 + ell * ell), straight + turning, 0.0),
-            Rims::Given([here, there]) => (2.0 + 2.0 / i1, both, here.max(there)),
+        let (Border { height, circles, .. }, i1) = (self.border, self.body.i1());
+        let [here, there, mixed] = [self.yields(0, 0), self.yields(1, 1), self.yields(0, 1)];
+        // The largest factor by which two impulses across change the slips.
+        let both = 0.5 * (here + there) + (0.5 * (here - there)).hypot(mixed);
+        let square = height * height;
+        let (along, across, given) = match carries {
+            Carries::Both => (2.0, both, 0.0),
+            Carries::One(k) => {
+                (1.0 + square / (i1 + circles[k].lever * circles[k].lever), [here, there][k], 0.0)
+            }
+            Carries::Given([here, there]) => (2.0 + 2.0 * square / i1, both, here.max(there)),
         };
         let step = 1.0 / across.max(along);
         // This velocity, as an impulse, is the scale of the rounding errors of the slips.
-        let other = (2.0 * ell * self.y.w1).abs();
+        let other = (self.border.span() * drilling_of(self.border.angle, self.y.w1, self.y.w3)).abs();
         let speeds = [self.slip[0].abs(), self.slip[1].abs(), other, -self.y.w2, -self.lift, given];
         let velocity = step * speeds.into_iter().fold(0.0, f64::max);
+        let (dry, varies) = (self.is_dry(), self.own.varies());
         let mut q: Impulses = [[0.0; 2]; 2];
-        let mut mu = [self.mu; 2];
-        for i in 0..if self.own.varies() { OWN_STEPS } else { STEPS } {
-            let (p, w2) = self.pushed(&q);
-            let (_, slips) = self.after(&q, w2);
+        let mut mu = [self.friction.strength(); 2];
+        for i in 0..if varies { OWN_STEPS } else { STEPS } {
+            let (p, w2) = self.pushed(carries, &q);
+            let slips = self.slips(q, w2);
             let mut moved = 0f64;
             for k in 0..2 {
-                if self.own.varies() {
+                if varies {
                     // Under a coefficient that is steep this search would circle, unless each coefficient follows slowly.
                     let at = self.own.coefficient_at(slips[k][0].hypot(slips[k][1]));
                     mu[k] += (at - mu[k]) / (1 + i / FOLLOWS) as f64;
@@ -386,7 +397,7 @@ impl<L: SpeedLaw> Impact<'_, L> {
                 let most = mu[k] * p[k].max(0.0);
                 let tried = [q[k][0] - step * slips[k][0], q[k][1] - step * slips[k][1]];
                 let size = tried[0].hypot(tried[1]);
-                let share = match self.dry {
+                let share = match dry {
                     true if size <= most => 1.0,
                     true => most / size,
                     false => most / (most + step),
@@ -397,7 +408,7 @@ impl<L: SpeedLaw> Impact<'_, L> {
             }
             let size = q.iter().flatten().fold(velocity, |m, x| m.max(x.abs()));
             if moved <= 4.0 * f64::EPSILON * size {
-                return self.consistent(&q);
+                return self.consistent(carries, &q);
             }
         }
         None
@@ -406,37 +417,39 @@ impl<L: SpeedLaw> Impact<'_, L> {
     /// Whether no friction up to mu can make the assumption consistent, by the criterion at the head of this
     /// module.
     ///
-    /// For mu >= (I1 + ell^2)/ell the criterion excludes nothing.
-    fn excluded(&self) -> bool {
-        let (ell, i1) = (self.body.ell(), self.body.i1());
-        let (square, reach) = (ell * ell, self.mu * ell);
-        let [least, most] = [square - reach - i1, square + reach - i1];
-        let rounding = SAME * (i1 + square);
-        self.dry
+    /// For mu Z |g| >= I1 + g^2 at a circle the criterion excludes nothing.
+    fn excluded(&self, carries: Carries) -> bool {
+        let (Border { height, circles, .. }, i1, mu) = (self.border, self.body.i1(), self.friction.strength());
+        let [here, there] = circles.map(|circle| circle.lever);
+        let reach = mu * height * here.abs();
+        let room = -here * there - i1;
+        let safe = |lever: f64| mu * height * lever.abs() < i1 + lever * lever;
+        let rounding = SAME * (i1 + here * here.max(-there));
+        self.is_dry()
             && !self.own.varies()
             && self.lift == 0.0
-            && reach < i1 + square
-            && match self.rims {
-                Rims::Both => most < -rounding,
-                Rims::Other => least > rounding,
-                Rims::Given(_) => false,
+            && safe(here)
+            && safe(there)
+            && match carries {
+                Carries::Both => room + reach < -rounding,
+                Carries::One(k) => k == 1 && room - reach > rounding,
+                Carries::Given(_) => false,
             }
     }
 
-    /// The result, if no rim pulls and a rim that leaves the table moves upwards.
-    fn consistent(&self, q: &Impulses) -> Option<Pushed> {
-        let (push @ [here, there], w2) = self.pushed(q);
-        let good = match self.rims {
-            Rims::Both => here >= -SAME * there && there >= 0.0,
-            Rims::Other => there >= 0.0 && w2 < 0.0,
-            Rims::Given(_) => true,
+    /// The result, if no circle pulls and one that leaves the table moves upwards.
+    fn consistent(&self, carries: Carries, q: &Impulses) -> Option<Pushed> {
+        let (push @ [here, there], w2) = self.pushed(carries, q);
+        let good = match carries {
+            Carries::Both => here >= -SAME * there && there >= 0.0,
+            Carries::One(k) => push[k] >= 0.0 && if k == 0 { w2 > 0.0 } else { w2 < 0.0 },
+            Carries::Given(_) => true,
         };
-        let (y, slips) = self.after(q, w2);
-        let lift = match self.rims {
-            Rims::Both => 0.0,
-            _ => self.lift + here + there - self.body.ell() * (w2 - self.y.w2),
+        let lift = match carries {
+            Carries::Both => 0.0,
+            _ => self.lift + here + there - self.border.circles[0].lever * (w2 - self.y.w2),
         };
-        good.then_some(Pushed { y, slip: slips[0], lift, push })
+        good.then(|| Pushed { y: self.turned(q, w2), slips: self.slips(*q, w2), lift, push })
     }
 }
 

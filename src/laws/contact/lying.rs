@@ -1,31 +1,38 @@
-//! A body that lies on both rims: its forces and accelerations while the rims slip or stick.
+//! A body that lies on two circles: its forces and accelerations while they slip or stick.
 //!
 //! ```text
-//! theta = pi/2, w2 = 0;   the rim to which the state refers touches at +ell e_h, the other one at -ell e_h
-//! u = (u_h, u_2),   u' = (u_h, u_2 - 2 ell w1);     v_h = u_h,   v_2 = u_2 - ell w1 + w3
-//! N + N' = 1,   ell (N - N') = K - F_h,   K = I3 w1 w3,   F_h the friction of both along e_h
-//! I1 w1' = ell (F_2 - F_2') + m1,   I3 w3' = -(F_2 + F_2') + m3,   v_h' = F_h + w1 v_2,   v_2' = F_2 + F_2' - w1 v_h
-//! both slip      F = -N d,  d = mu u/|u| or c u:   N = (ell + K + d_h')/(2 ell + d_h' - d_h)
-//! one sticks     v_h = 0,  F_h = -w1 v_2 at that rim alone;  F_2 from u_2' = 0
-//! both stick     w1 = 0: a straight line, (1 + I3) w3' = m3, and without losses no friction at all
+//! theta = theta_k, w2 = 0;   circle i touches at g_i e_h - Z z from the centre: g its lever, A its radius, L its depth
+//! Om = w1/s,  w_z = s w1 + c w3,  w_h = c w1 - s w3,  K = I3 w1 w3 - I1 cot w1^2,  D = g - g',  n = (s, c) or (c, -s)
+//! v_h = u_h,  v_2 = u_2 - L w1 + A w3;   u' = (u_h, u_2 - D w_z) at the other circle
+//! N + N' = 1,   g N + g' N' = K - Z F_h + m2,   F_h, F_2 the friction of both
+//! I1 w1' = sum L F_2 + m1,   I3 w3' = -sum A F_2 + m3,   v_h' = F_h + Om v_2,   v_2' = F_2 - Om v_h
+//! both slip      F = -N d,  d = mu u/|u| or c u:   N = (K + q)/(p + q),   p = g - Z d_h,  q = Z d_h' - g'
+//! one sticks     v_h = 0,  F_h = -Om v_2 at that circle alone;  F_2 from u_2' = 0
+//! both stick     w_z = 0:  w = w_h h,  (I1 c^2 + I3 s^2 + Z^2) w_h' = m.h,  F_h = cot Z w_h^2 in all: round the apex
+//! dry losses hold w_z or w_h: then n.(w1', w3') = 0, which takes n from the mobility M = diag(1/I1, 1/I3)
 //! ```
-//! The fillet does not enter: both contact points lie 1 below the centre. The couple of the losses is that of one rim
-//! at theta = pi/2, once, shared as the normal forces are. A line of contact has an undetermined pressure; the model is
-//! that of a tube whose side is slightly hollow, or of a rounded rim. For mu < 2 ell one distribution of the normal
-//! forces exists for any velocities (a linear complementarity problem with positive diagonal).
+//! For two equal rims theta = pi/2, L = -L' = g = ell, A = Z = 1, and the body that rolls moves along a straight line. A
+//! fillet enters by A and L alone. The couple of the losses is shared as the normal forces are. A line of contact has an
+//! undetermined pressure; the model is that of a body whose side is slightly hollow, or of a rounded rim. While both stick,
+//! how they share F_h is not determined; each is given none of it. For mu Z < D one distribution of the normal forces
+//! exists for any velocities (a linear complementarity problem with positive diagonal).
 //!
-//! Error: a few roundings of the terms written above; a test of `laws` compares with Newton's equations.
+//! Error: a few roundings of the terms written above; tests of `laws` compare with Newton's equations.
 
 use super::slip::Friction;
-use crate::laws::body::{Body, Shape};
+use crate::laws::body::{Body, Border, Shape, Touching};
 use crate::laws::loss::{Couples, Holds, Kinematics, Losses};
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::numbers::Real;
 
-/// A body that lies on both rims, on a table with friction.
+/// A body that lies on two circles, on a table with friction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lying<T> {
+    /// The circle from which the state is seen.
     pub shape: Shape<T>,
-    /// The coefficient mu, or c, at the rim from which the state is seen and at the other rim.
+    /// Both circles, this one first.
+    pub border: Border<T>,
+    /// The coefficient mu, or c, at this circle and at the other one.
     pub strength: [T; 2],
     pub dry: bool,
     pub losses: Option<Couples<T>>,
@@ -33,43 +40,42 @@ pub(crate) struct Lying<T> {
     pub own: Option<[T; 3]>,
 }
 
-/// Forces and accelerations on both rims.
+/// Forces and accelerations on both circles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lain<T> {
-    /// N, F_2 and F_h at the rim from which the state is seen, and at the other rim.
+    /// N, F_2 and F_h at the circle from which the state is seen, and at the other one.
     pub force: [[T; 3]; 2],
     /// w1' and w3'.
     pub w: [T; 2],
     /// u_h' and u_2'.
     pub u: [T; 2],
-    /// The couples m1 and m3 of the losses.
+    /// The couples of the losses about the vertical, and along -e_h.
     pub couple: [T; 2],
 }
 
-/// The numbers of a body on both rims: w1, w3, u_h and u_2.
+/// The numbers of a body on two circles: w1, w3, u_h and u_2.
 pub(crate) type Flat<T> = [T; 4];
-
-/// Returns these numbers as seen from the other rim.
-#[inline(always)]
-pub(crate) fn from_other<T: Real>(ell: T, [w1, w3, u_h, u_2]: Flat<T>) -> Flat<T> {
-    let zero = ell.splat(0.0);
-    [w1, zero - w3, zero - u_h, (ell + ell) * w1 - u_2]
-}
 
 impl Lying<f64> {
     pub fn on(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
-        let losses = Couples::some(losses);
-        let strength = [friction.strength(); 2];
-        Self { shape: body.shape(), strength, dry, losses, own: None }
+        Self {
+            shape: body.shape(),
+            border: body.border(),
+            strength: [friction.strength(); 2],
+            dry,
+            losses: Couples::some(losses),
+            own: None,
+        }
     }
 
-    /// The largest couples with which dry losses hold w1 and w3.
-    pub fn limits(&self) -> [f64; 2] {
+    /// The largest couples with which dry losses hold w_z and w_h under these normal forces.
+    pub fn limits(&self, loads: [f64; 2]) -> [f64; 2] {
         // All couples that are not dry vanish at this speed.
         const SLOW: f64 = 1e-100;
-        let [m1, _, m3] = Self { own: None, ..*self }.couple([SLOW, SLOW]);
-        [m1.abs(), m3.abs()]
+        let (s, c) = self.border.angle;
+        let couple = Self { own: None, ..*self }.couple([SLOW * (s - c), SLOW * (c + s)], loads);
+        self.parts(couple).map(f64::abs)
     }
 }
 
@@ -78,6 +84,7 @@ impl<T: Real> Lying<T> {
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Lying<U> {
         Lying {
             shape: self.shape.map(&number),
+            border: self.border.map(&number),
             strength: self.strength.map(&number),
             dry: self.dry,
             losses: self.losses.as_ref().map(|losses| losses.map(&number)),
@@ -85,136 +92,184 @@ impl<T: Real> Lying<T> {
         }
     }
 
-    /// The slip of the other rim.
-    pub fn other_slip(&self, [w1, _, u_h, u_2]: Flat<T>) -> [T; 2] {
-        [u_h, u_2 - (self.shape.rim.ell + self.shape.rim.ell) * w1]
+    /// The slip of the other circle.
+    pub fn other_slip(&self, [w1, w3, u_h, u_2]: Flat<T>) -> [T; 2] {
+        [u_h, u_2 - self.border.span() * drilling_of(self.border.angle, w1, w3)]
     }
 
-    /// The friction per normal force, with its sign reversed, at a rim of this strength that slips with `u`.
+    /// The friction per normal force, with its sign reversed, at a circle of this strength that slips with `u`.
     pub fn drag(&self, strength: T, u: [T; 2]) -> [T; 2] {
         let size = if self.dry { u[0].mac(u[0], u[1] * u[1]).sqrt() } else { u[0].splat(1.0) };
         u.map(|u| strength * u / size)
     }
 
-    /// Whether dry losses hold w1, which drills, and w3, by which the body rolls.
+    /// A couple about the vertical, and along -e_h.
+    fn parts(&self, [m1, _, m3]: [T; 3]) -> [T; 2] {
+        [drilling_of(self.border.angle, m1, m3), -rolling_of(self.border.angle, m1, m3)]
+    }
+
+    /// K, with the couple of the user about e2.
+    fn lift(&self, w1: T, w3: T) -> T {
+        let (s, c) = self.border.angle;
+        let lift = self.shape.i3 * w1 * w3 - self.shape.i1 * (c / s) * w1 * w1;
+        self.own.map_or(lift, |[_, m2, _]| lift + m2)
+    }
+
+    /// Whether dry losses hold w_z, which drills, and w_h, by which the body rolls.
     pub fn held(&self) -> [bool; 2] {
         let Holds { contour, drilling, .. } = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
         [drilling, contour]
     }
 
-    /// The couples m1, m2 and m3 of the losses. Only a user-defined law may have m2, which then takes no power.
-    fn couple(&self, w: [T; 2]) -> [T; 3] {
-        let [m1, m3] = self.couple_of_losses(w);
+    /// The couples m1, m2 and m3 of the losses under these normal forces. Only a user-defined law may have m2, which then
+    /// takes no power.
+    fn couple(&self, w: [T; 2], loads: [T; 2]) -> [T; 3] {
+        let [m1, m3] = self.couple_of_losses(w, loads);
         match self.own {
             Some([o1, o2, o3]) => [m1 + o1, o2, m3 + o3],
             None => [m1, m1.splat(0.0), m3],
         }
     }
 
-    fn couple_of_losses(&self, [w1, w3]: [T; 2]) -> [T; 2] {
+    /// The couple of one circle is that under the whole weight, times its share of it.
+    fn couple_of_losses(&self, [w1, w3]: [T; 2], loads: [T; 2]) -> [T; 2] {
         let zero = w1.splat(0.0);
         let Some(losses) = &self.losses else { return [zero; 2] };
-        let one = w1.splat(1.0);
-        let mut seen = Kinematics::of(&self.shape.rim, (one, zero), w1, [w1, zero, w3]);
+        let (one, angle, [here, there]) = (w1.splat(1.0), self.border.angle, self.border.circles);
+        let mut seen = Kinematics::of(&self.shape.rim, angle, w1 / angle.0, [w1, zero, w3]);
         if let Some(ways) = &losses.ways {
-            // The body can only roll along both rims.
+            // The body can only roll along both circles.
             (seen.signs, seen.only) = ([ways.contour, ways.drilling], Some([zero - ways.contour, zero]));
         }
-        let [m1, _, m3] = losses.at(&seen).under(one);
-        [m1, m3]
+        let under = |radius: T| losses.at(&Kinematics { radius, ..seen }).under(one);
+        let [m1, _, m3] = under(here.radius);
+        if self.border.even {
+            return [m1, m3];
+        }
+        let [other, _, last] = under(there.radius);
+        [loads[0] * m1 + loads[1] * other, loads[0] * m3 + loads[1] * last]
     }
 
-    /// The motion under these normal forces and this friction.
+    /// w1' and w3' under this torque about e1 and e3, where dry losses may hold w_z, or w_h, or both.
+    fn turned(&self, [t1, t3]: [T; 2]) -> [T; 2] {
+        let (Shape { i1, i3, .. }, (s, c)) = (self.shape, self.border.angle);
+        match self.held() {
+            [false, false] => [t1 / i1, t3 / i3],
+            [true, false] => {
+                let d = rolling_of((s, c), t1, t3) / (i1 * c * c + i3 * s * s);
+                [c * d, -(s * d)]
+            }
+            [false, true] => {
+                let d = drilling_of((s, c), t1, t3) / (i1 * s * s + i3 * c * c);
+                [s * d, c * d]
+            }
+            [true, true] => [t1.splat(0.0); 2],
+        }
+    }
+
+    /// The torque of friction across, about e1 and e3.
+    fn torque(&self, across: [T; 2]) -> [T; 2] {
+        let [here, there] = self.border.circles;
+        let ([low, up], zero) = (across, across[0].splat(0.0));
+        [here.depth * low + there.depth * up, zero - (here.radius * low + there.radius * up)]
+    }
+
+    /// The motion under these normal forces, this friction and this couple.
     fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, _, m3]: [T; 3]) -> Lain<T> {
-        let (ell, i1, i3) = (self.shape.rim.ell, self.shape.i1, self.shape.i3);
+        let (Shape { i1, i3, .. }, (s, _), [here, _]) = (self.shape, self.border.angle, self.border.circles);
         let [[_, low, low_h], [_, up, up_h]] = force;
-        let (apart, all) = (ell * (low - up), low + up);
-        let zero = w1.splat(0.0);
-        let [drilling, rolling] = self.held();
-        let m1 = if drilling { zero - apart } else { m1 };
-        let m3 = if rolling { all } else { m3 };
-        let (d1, d3) = ((apart + m1) / i1, (m3 - all) / i3);
-        let aside = u_2 - ell * w1 + w3;
-        let u = [low_h + up_h + w1 * aside, all - w1 * u_h + ell * d1 - d3];
-        Lain { force, w: [d1, d3], u, couple: [m1, m3] }
+        let [t1, t3] = self.torque([low, up]);
+        let w @ [d1, d3] = self.turned([t1 + m1, t3 + m3]);
+        let mut couple = [m1, m1, m3];
+        if self.held() != [false; 2] {
+            couple = [i1 * d1 - t1, m1, i3 * d3 - t3];
+        }
+        let (turns, aside) = (w1 / s, u_2 - here.depth * w1 + here.radius * w3);
+        let across = low + up - turns * u_h + here.depth * d1 - here.radius * d3;
+        Lain { force, w, u: [low_h + up_h + turns * aside, across], couple: self.parts(couple) }
     }
 
-    /// Motion with both rims slipping, for the given friction per normal force (sign reversed).
+    /// Motion with both circles slipping, for the given friction per normal force (sign reversed).
     pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
-        let (ell, zero) = (self.shape.rim.ell, w1.splat(0.0));
-        let couple = self.couple([w1, w3]);
-        let mut lift = self.shape.i3 * w1 * w3;
-        if self.own.is_some() {
-            lift = lift + couple[1];
-        }
-        let room = ell + ell + up[0] - low[0];
-        let (n, m) = ((ell + lift + up[0]) / room, (ell - lift - low[0]) / room);
+        let (zero, lift, [p, q]) = (w1.splat(0.0), self.lift(w1, w3), self.leans([low[0], up[0]]));
+        let loads @ [n, m] = [(lift + q) / (p + q), (p - lift) / (p + q)];
         let force = [(n, low), (m, up)].map(|(n, d)| [n, zero - n * d[1], zero - n * d[0]]);
-        self.under(y, force, couple)
+        self.under(y, force, self.couple([w1, w3], loads))
     }
 
-    /// Motion with both rims slipping.
+    /// p and q, for friction along e_h per normal force (sign reversed): the body lies where -q < K < p.
+    pub fn leans(&self, [low, up]: [T; 2]) -> [T; 2] {
+        let (height, [here, there]) = (self.border.height, self.border.circles);
+        [here.lever - height * low, height * up - there.lever]
+    }
+
+    /// Motion with both circles slipping.
     pub fn slipping(&self, y: Flat<T>) -> Lain<T> {
         let [low, up] = self.strength;
         let drags = [self.drag(low, [y[2], y[3]]), self.drag(up, self.other_slip(y))];
         self.slipping_along(y, drags)
     }
 
-    /// Motion where the rim from which the state is seen sticks, and the other slips across the axis with friction of the
-    /// strength `mu`; `turn` is the sign of w1.
-    fn pivots_here(&self, y: Flat<T>, mu: T, turn: f64) -> Lain<T> {
+    /// The slip where the circle from which the state is seen sticks, or the other one.
+    pub fn stuck(&self, [w1, w3, ..]: Flat<T>, other: bool) -> [T; 2] {
+        let zero = w1.splat(0.0);
+        [zero, if other { self.border.span() * drilling_of(self.border.angle, w1, w3) } else { zero }]
+    }
+
+    /// Motion where one circle sticks, the other one if `other`, and the other slips across; `turn` is the sign of w_z.
+    pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64) -> Lain<T> {
         let [w1, w3, ..] = y;
-        let Shape { rim, i1, i3 } = self.shape;
-        let (ell, one, zero) = (rim.ell, w1.splat(1.0), w1.splat(0.0));
-        let along = zero - w1 * (w3 - ell * w1);
-        let couple @ [m1, m2, m3] = self.couple([w1, w3]);
-        let mut push = i3 * w1 * w3 - along;
-        if self.own.is_some() {
+        let (zero, one, Border { angle, height, circles, .. }) = (w1.splat(0.0), w1.splat(1.0), self.border);
+        let (sticks, slips) = if other { (1, 0) } else { (0, 1) };
+        let (at, far) = (circles[sticks], circles[slips]);
+        let along = w1 / angle.0 * (at.depth * w1 - at.radius * w3);
+        let (push, span) = (self.lift(w1, w3) - height * along, at.lever - far.lever);
+        let mut loads = [zero; 2];
+        loads[sticks] = (push - far.lever) / span;
+        loads[slips] = (at.lever - push) / span;
+        let couple @ [m1, _, m3] = self.couple([w1, w3], loads);
+        let way = if other { -turn } else { turn };
+        let across = self.strength[slips] * loads[slips] * one.splat(way);
+        let along_arm = |[d1, d3]: [T; 2]| at.depth * d1 - at.radius * d3;
+        let arm = |of: Touching<T>| self.turned([of.depth, zero - of.radius]);
+        let pull = (one + along_arm(arm(far))) * across + along_arm(self.turned([m1, m3]));
+        let holds = zero - pull / (one + along_arm(arm(at)));
+        let mut force = [[zero; 3]; 2];
+        force[sticks] = [loads[sticks], holds, along];
+        force[slips] = [loads[slips], across, zero];
+        let [u_h, u_2] = self.stuck(y, other);
+        let mut lain = self.under([w1, w3, u_h, u_2], force, couple);
+        lain.u = self.stuck([lain.w[0], lain.w[1], zero, zero], other);
+        lain
+    }
+
+    /// Motion where both circles stick, and the body rolls: straight on, or round its apex.
+    pub fn rolls(&self, [w1, w3, ..]: Flat<T>) -> Lain<T> {
+        let (Shape { i1, i3, .. }, Border { angle, height, circles: [here, there], .. }) = (self.shape, self.border);
+        let ((s, c), zero) = (angle, w3.splat(0.0));
+        let inertia = i1 * c * c + i3 * s * s + height * height;
+        let rolling = rolling_of(angle, w1, w3);
+        let (mut push, span) = (zero - c / s * inertia * rolling * rolling, self.border.span());
+        if let Some([_, m2, _]) = self.own {
             push = push + m2;
         }
-        let lean = push / (ell + ell);
-        let half = one.splat(0.5);
-        let (n, m) = (half + lean, half - lean);
-        let up = mu * m * one.splat(turn);
-        let (square, axial) = (ell * ell / i1, if self.held()[1] { zero } else { one / i3 });
-        let pull = ell * m1 / i1 - axial * m3;
-        let low = zero - ((one + axial - square) * up + pull) / (one + axial + square);
-        self.under([w1, w3, zero, zero], [[n, low, along], [m, up, zero]], couple)
+        let loads = [(push - there.lever) / span, (here.lever - push) / span];
+        let [turns, mut rolls] = self.parts(self.couple([c * rolling, zero - s * rolling], loads));
+        if self.held()[1] {
+            rolls = zero;
+        }
+        let d = zero - rolls / inertia;
+        let (all, apart) = (zero - height * d, (i1 - i3) * s * c * d - turns);
+        let across = [(apart - there.lever * all) / span, (here.lever * all - apart) / span];
+        let force = [[loads[0], across[0], zero], [loads[1], across[1], zero]];
+        Lain { force, w: [c * d, zero - s * d], u: [zero; 2], couple: [zero, rolls] }
     }
 
-    /// Motion where one rim sticks: the other rim if `other`.
-    pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64) -> Lain<T> {
-        if !other {
-            return self.pivots_here(y, self.strength[1], turn);
-        }
-        let ell = self.shape.rim.ell;
-        let back = |[m1, m2, m3]: [T; 3]| [m1, ell.splat(0.0) - m2, ell.splat(0.0) - m3];
-        let losses = self.losses.as_ref().map(Couples::with_other_rim_below);
-        let seen = Self { own: self.own.map(back), losses, ..*self };
-        let Lain { force: [there, here], w: [d1, d3], couple: [m1, m3], .. } =
-            seen.pivots_here(from_other(ell, y), self.strength[0], turn);
-        let zero = d1.splat(0.0);
-        let seen = |[n, across, along]: [T; 3]| [n, zero - across, zero - along];
-        // Axes e_h and e2 of the other rim point the other way.
-        let force = [seen(here), seen(there)];
-        let u = [zero, (ell + ell) * d1];
-        Lain { force, w: [d1, zero - d3], u, couple: [m1, zero - m3] }
-    }
-
-    /// Motion where both rims stick, and the body rolls straight on.
-    pub fn rolls(&self, [_, w3, ..]: Flat<T>) -> Lain<T> {
-        let (one, zero) = (w3.splat(1.0), w3.splat(0.0));
-        let half = w3.splat(0.5);
-        let [m1, m2, m3] = self.couple([zero, w3]);
-        let m3 = if self.held()[1] { zero } else { m3 };
-        let d3 = m3 / (one + self.shape.i3);
-        let mut force = [[half, half * d3, zero]; 2];
-        if self.own.is_some() {
-            let ell = self.shape.rim.ell;
-            let (turns, leans) = (half * m1 / ell, half * m2 / ell);
-            force = [[half + leans, half * d3 - turns, zero], [half - leans, half * d3 + turns, zero]];
-        }
-        Lain { force, w: [zero, d3], u: [zero; 2], couple: [zero, m3] }
+    /// The friction along e_h of both circles together while the body rolls round its apex.
+    pub fn pulls_to_apex(&self, [w1, w3, ..]: Flat<T>) -> T {
+        let (s, c) = self.border.angle;
+        let rolling = rolling_of((s, c), w1, w3);
+        c / s * self.border.height * rolling * rolling
     }
 }

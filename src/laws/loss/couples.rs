@@ -340,13 +340,6 @@ impl<T: Real, G: Copy> Couples<T, G> {
         Couples { coefficients, present: self.present, ways, given: self.given }
     }
 }
-
-impl<T: Real> Couples<T> {
-    /// These losses with the signs as seen from the other rim, where psi' has the other sign.
-    pub fn with_other_rim_below(&self) -> Self {
-        let back = |ways: Ways<T>| Ways { contour: -ways.contour, ..ways };
-        Self { ways: self.ways.map(back), ..*self }
-    }
 }
 
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {

@@ -19,7 +19,6 @@ pub(crate) mod lands;
 
 use super::write::posed;
 use crate::laws::body::Shape;
-use crate::laws::contact::lying::from_other;
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Spent, Steps};
@@ -73,7 +72,8 @@ impl Aloft {
     pub fn on_other_rim(&self, shape: &Shape<f64>) -> Self {
         let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
         let (apart, above) = (2.0 * shape.rim.ell, shape.rim.between(self.angle));
-        let [w1, w3, u_h, u_2] = from_other(shape.rim.ell, [w1, w3, self.slip[0], self.slip[1]]);
+        let [u_h, u_2] = self.slip;
+        let [w1, w3, u_h, u_2] = [w1, 0.0 - w3, 0.0 - u_h, apart * w1 - u_2];
         Self {
             angle: (s, 0.0 - c),
             w: [w1, 0.0 - w2, w3],

@@ -93,7 +93,7 @@ impl<G: Own> LyingFlow<G> {
             sloped: law.map(Dual::constant),
             stance: Stance::Slips,
             turn: 0.0,
-            limits: law.limits(),
+            limits: law.limits([0.5; 2]),
             fixed,
             over,
             soft,
