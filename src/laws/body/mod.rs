@@ -18,6 +18,7 @@
 mod file;
 mod hull;
 pub mod parts;
+mod profile;
 pub(crate) mod rim;
 mod tube;
 
@@ -26,6 +27,8 @@ use crate::laws::state::State;
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
 use core::f64::consts::{FRAC_PI_2, PI};
+pub use profile::Circle;
+use profile::Row;
 pub(crate) use rim::{Border, Rim, Shape, Touching};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
@@ -56,6 +59,8 @@ pub struct Body {
     rim: Sum<f64>,
     excess: Sum<f64>,
     theta_end: f64,
+    /// The circles of the body, if they are neither one circle nor two equal rims.
+    row: Option<Row>,
 }
 
 impl Body {
@@ -159,7 +164,73 @@ impl Body {
     /// stem, a cap or the shoulder of a bottle lands.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
-        Ok(Self { theta_end, ..self })
+        Ok(Self { theta_end, row: None, ..self })
+    }
+
+    /// Any body of revolution that touches the table with these circles, from the lower end up, with its moments of inertia
+    /// about the centre of mass: a cup, a cone (whose tip is a circle of radius 0), a bottle, unequal balls. A circle that
+    /// never touches the table, since it lies inside the convex hull of the others, is left out.
+    ///
+    /// All lengths are in one unit R, and the moments in M R^2. The body is seen from its lower end, and stands on its first
+    /// circle. Two circles that mirror each other are the two equal rims of a tube.
+    ///
+    /// ```
+    /// use spincyl::{Body, Circle};
+    ///
+    /// let circle = |radius, depth| Circle { radius, depth, fillet: 0.0 };
+    /// let cup = Body::profile(&[circle(0.7, 1.1), circle(1.0, -0.9)], 0.5, 0.4)?;
+    /// assert!((cup.theta_end() - (2.0f64).atan2(0.3)).abs() < 1e-15);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn profile(circles: &[Circle], i1: f64, i3: f64) -> Result<Self, Error> {
+        within("i1", i1, I1, "1e-3 <= i1 <= 1e300 (in units of M R^2, not in kg m^2)")?;
+        within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
+        let row = Row::of(circles)?;
+        let bare = Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(0.0, 0.0) };
+        bare.on(row).of_this_world()
+    }
+
+    /// This body on the circle of a row that carries.
+    fn on(self, row: Row) -> Self {
+        let Circle { radius, depth, fillet } = row.here();
+        let [_, theta_end] = row.range();
+        let unit = radius + fillet == 1.0;
+        let row = match (row.circles(), row.next()) {
+            ([_], _) if unit => None,
+            ([_, _], Some(next)) if unit && next == (Circle { depth: 0.0 - depth, ..row.here() }) => None,
+            _ => Some(row),
+        };
+        Self { ell: depth, fillet, rim: radius.into(), theta_end, row, ..self }
+    }
+
+    /// The circles of the body, from the end from which it is seen.
+    pub fn circles(&self) -> Vec<Circle> {
+        let here = Circle { radius: self.rim.hi, depth: self.ell, fillet: self.fillet };
+        match &self.row {
+            Some(row) => row.circles().to_vec(),
+            None if self.has_two_rims() => vec![here, Circle { depth: 0.0 - self.ell, ..here }],
+            None => vec![here],
+        }
+    }
+
+    /// Whether another circle of the body lands at theta_end.
+    pub(crate) fn has_two_rims(&self) -> bool {
+        match &self.row {
+            Some(row) => row.next().is_some(),
+            None => self.ell > 0.0 && self.theta_end == FRAC_PI_2,
+        }
+    }
+
+    /// The circle that lands at theta_end; without one, the mirror image of the circle that carries.
+    pub(crate) fn next_rim(&self) -> Rim<f64> {
+        let here = self.shape().rim;
+        let next = self.row.as_ref().and_then(Row::next);
+        next.map_or(Rim { ell: -here.ell, ..here }, Circle::rim)
+    }
+
+    /// The body with the circle carrying that lands at theta_end, as seen from the end of that circle.
+    pub(crate) fn beyond(&self) -> Self {
+        self.row.as_ref().map_or(*self, |row| self.on(row.beyond()))
     }
 
     /// Uniform tube with these dimensions in metres (or in any other common unit); `fillet` is the radius of its outer
@@ -197,6 +268,7 @@ impl Body {
             rim: Sum::of(1.0, -fillet),
             excess: f64::NAN.into(),
             theta_end: beyond(ell, fillet),
+            row: None,
         }
     }
 
@@ -299,8 +371,7 @@ impl Body {
 
     /// The circle of the body that lands at theta_end, and the one before it.
     pub(crate) fn border(&self) -> Border<f64> {
-        let here = self.shape().rim;
-        Border::between([here, Rim { ell: -here.ell, ..here }], landing_angle(self.theta_end))
+        Border::between([self.shape().rim, self.next_rim()], landing_angle(self.theta_end))
     }
 
     /// The state and the slip of the circle that lands at theta_end, seen from that circle, whose face is at theta = 0:

@@ -150,7 +150,8 @@ pub(crate) fn land_at(
     let before = energy(&landing.border, body, y, slip, lift);
     let end = |outcome, Pushed { y, slips: [slip, there], lift, .. }: Pushed| {
         let lost = before - energy(&landing.border, body, &y, slip, lift);
-        let (state, slip) = if outcome == Outcome::Changes { body.seen_from_next(&y, there) } else { (y, slip) };
+        let (state, slip) =
+            if outcome == Outcome::Changes { body.seen_from_next(&y, there) } else { (y, slip) };
         Landed { outcome, state, slip, lost }
     };
     let mu = |[u, v]: [f64; 2]| coefficient(own, friction.strength(), || u.hypot(v));
@@ -419,7 +420,8 @@ impl<L: SpeedLaw> Landing<'_, L> {
     ///
     /// For mu Z |g| >= I1 + g^2 at a circle the criterion excludes nothing.
     fn excluded(&self, carries: Carries) -> bool {
-        let (Border { height, circles, .. }, i1, mu) = (self.border, self.body.i1(), self.friction.strength());
+        let (Border { height, circles, .. }, i1, mu) =
+            (self.border, self.body.i1(), self.friction.strength());
         let [here, there] = circles.map(|circle| circle.lever);
         let reach = mu * height * here.abs();
         let room = -here * there - i1;

@@ -246,7 +246,8 @@ impl<T: Real> Lying<T> {
 
     /// Motion where both circles stick, and the body rolls: straight on, or round its apex.
     pub fn rolls(&self, [w1, w3, ..]: Flat<T>) -> Lain<T> {
-        let (Shape { i1, i3, .. }, Border { angle, height, circles: [here, there], .. }) = (self.shape, self.border);
+        let (Shape { i1, i3, .. }, Border { angle, height, circles: [here, there], .. }) =
+            (self.shape, self.border);
         let ((s, c), zero) = (angle, w3.splat(0.0));
         let inertia = i1 * c * c + i3 * s * s + height * height;
         let rolling = rolling_of(angle, w1, w3);
@@ -271,5 +272,156 @@ impl<T: Real> Lying<T> {
         let (s, c) = self.border.angle;
         let rolling = rolling_of((s, c), w1, w3);
         c / s * self.border.height * rolling * rolling
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::body::Circle;
+    use crate::laws::loss::{Law, Ways};
+    use nalgebra::Vector3;
+
+    /// Numbers between 0 and 1 without a pattern.
+    struct Draws(f64);
+
+    impl Draws {
+        fn next(&mut self) -> f64 {
+            self.0 = (self.0 + 0.618_033_988_749_894_9).fract();
+            (self.0 * 7919.0).fract()
+        }
+
+        fn within(&mut self, low: f64, high: f64) -> f64 {
+            low + (high - low) * self.next()
+        }
+
+        /// A body with two circles, such as a cup, a cone or two balls.
+        fn body(&mut self) -> Body {
+            let (far, rounds) = (self.within(0.3, 4.0), self.next() < 0.5);
+            let mut circle = |depth| Circle {
+                radius: if self.next() < 0.2 { 0.0 } else { self.within(0.1, 1.0) },
+                depth,
+                fillet: if rounds { self.within(0.05, 0.25) } else { 0.0 },
+            };
+            let circles = [circle(0.5 * far), circle(-0.5 * far)];
+            let i3 = self.within(0.1, 0.9);
+            Body::profile(&circles, self.within(0.51, 1.5) * i3, i3).unwrap()
+        }
+    }
+
+    /// Newton's and Euler's equations in the frame that turns with the contact: the errors of w1', w2' and w3', and the
+    /// rates of the slips of both circles. The velocity of the contact of circle i is v + w x r_i.
+    fn newton(
+        law: &Lying<f64>,
+        [w1, w3, u_h, u_2]: Flat<f64>,
+        at: &Lain<f64>,
+        m: [f64; 3],
+    ) -> (Vector3<f64>, [[f64; 2]; 2]) {
+        let (s, c) = law.border.angle;
+        let (z, h, across) = (Vector3::new(s, 0.0, c), Vector3::new(c, 0.0, -s), Vector3::y());
+        let (w, turns) = (Vector3::new(w1, 0.0, w3), z * (w1 / s));
+        let arms = law.border.circles.map(|circle| h * circle.lever - z * law.border.height);
+        let v = h * u_h + across * u_2 - w.cross(&arms[0]);
+        let forces = at.force.map(|[n, f_2, f_h]| z * n + across * f_2 + h * f_h);
+        let inertia =
+            |w: Vector3<f64>| Vector3::new(law.shape.i1 * w.x, law.shape.i1 * w.y, law.shape.i3 * w.z);
+        let torque = arms[0].cross(&forces[0]) + arms[1].cross(&forces[1]) + Vector3::from(m);
+        let d = Vector3::new(at.w[0], 0.0, at.w[1]);
+        let off = inertia(d) + turns.cross(&inertia(w)) - torque;
+        let gained = forces[0] + forces[1] - z - turns.cross(&v);
+        (off, arms.map(|arm| gained + d.cross(&arm)).map(|u| [u.dot(&h), u.dot(&across)]))
+    }
+
+    #[test]
+    fn a_body_on_two_unequal_circles_moves_as_newton_and_euler_say_whatever_slips() {
+        let mut draws = Draws(0.3);
+        for _ in 0..2000 {
+            let body = draws.body();
+            let mut losses = Losses::NONE;
+            if draws.next() < 0.5 {
+                losses = losses
+                    .with(Law::RollingResistance, 0.05)
+                    .with(Law::AirLinear, 0.02)
+                    .with(Law::Drilling, 0.01);
+            }
+            let mut law = Lying::on(&body, &Friction::coulomb(draws.within(0.05, 0.4)), &losses);
+            let mut y: Flat<f64> = core::array::from_fn(|_| draws.within(-2.0, 2.0));
+            let (w_z, w_h) =
+                (drilling_of(law.border.angle, y[0], y[1]), rolling_of(law.border.angle, y[0], y[1]));
+            if let Some(losses) = &mut law.losses {
+                losses.ways = Some(Ways { contour: -w_h.signum(), drilling: w_z.signum(), ..Ways::default() });
+            }
+            let other = draws.next() < 0.5;
+            let kind = (draws.next() * 3.0) as usize;
+            let at = match kind {
+                0 => law.slipping(y),
+                1 => {
+                    [y[2], y[3]] = law.stuck(y, other);
+                    law.pivots(y, other, w_z.signum())
+                }
+                _ => {
+                    let (s, c) = law.border.angle;
+                    y = [c * w_h, -s * w_h, 0.0, 0.0];
+                    law.rolls(y)
+                }
+            };
+            let loads = at.force.map(|force| force[0]);
+            let m = law.couple([y[0], y[1]], loads);
+            let mut pressed = at;
+            if kind == 2 {
+                // How both circles share the friction along e_h is not determined.
+                pressed.force[0][2] += law.pulls_to_apex(y);
+            }
+            let (off, rates) = newton(&law, y, &pressed, m);
+            let size = 1e-12 * (1.0 + loads[0].abs() + loads[1].abs()) * (1.0 + off.norm().max(20.0));
+            assert!(off.norm() < size, "{kind}, {other}: {off:?}, {body:?}");
+            assert!((loads[0] + loads[1] - 1.0).abs() < size);
+            let told = rates[0];
+            let apart = (told[0] - at.u[0]).hypot(told[1] - at.u[1]);
+            assert!(apart < size, "{kind}, {other}: {told:?}, {:?}", at.u);
+            match kind {
+                1 => assert!(rates[usize::from(other)].iter().all(|u| u.abs() < size), "{other}: {rates:?}"),
+                2 => assert!(rates.iter().flatten().all(|u| u.abs() < size), "{rates:?}"),
+                _ => {
+                    let slips = [[y[2], y[3]], law.other_slip(y)];
+                    for (u, [n, f_2, f_h]) in slips.into_iter().zip(at.force) {
+                        let [d_h, d_2] = law.drag(law.strength[0], u);
+                        assert!((f_h + n * d_h).hypot(f_2 + n * d_2) < size);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cone_that_rolls_has_the_energy_of_landau_and_lifshitz_and_a_cup_rises_where_it_should() {
+        for height in [0.5, 1.0, 2.0, 5.0] {
+            let circle = |radius, depth| Circle { radius, depth, fillet: 0.0 };
+            let (i1, i3) = (3.0 / 20.0 + 3.0 / 80.0 * height * height, 0.3);
+            let cone =
+                Body::profile(&[circle(0.0, 0.75 * height), circle(1.0, -0.25 * height)], i1, i3).unwrap();
+            let law = Lying::on(&cone, &Friction::coulomb(0.5), &Losses::NONE);
+            let ((s, c), z) = (law.border.angle, law.border.height);
+            let inertia = i1 * c * c + i3 * s * s + z * z;
+            let expected = 3.0 * height * height / 40.0 * (1.0 + 5.0 * s * s);
+            assert!((0.5 * inertia * (s / c) * (s / c) - expected).abs() < 1e-14 * expected.max(1.0));
+        }
+        // A frustum of radii 0.7 and 1 and of height 2: its narrow end rises at this rate of turning.
+        let circle = |radius, depth| Circle { radius, depth, fillet: 0.0 };
+        let low = 9.78 / 8.76;
+        let cup =
+            Body::profile(&[circle(0.7, low), circle(1.0, low - 2.0)], 0.512_453_524_7, 0.379_876_712_3)
+                .unwrap();
+        assert!((cup.theta_end() - 1.421_906_379_2).abs() < 1e-10);
+        let law = Lying::on(&cup, &Friction::coulomb(1.0), &Losses::NONE);
+        assert!((law.border.span() - 2.022_374_841_6).abs() < 1e-10);
+        let ((s, c), rate) = (law.border.angle, 0.370_198_716_6);
+        let rolling = rate * s / c;
+        for (by, rises) in [(0.9999, false), (1.0001, true)] {
+            let w_h = by * rolling;
+            let at = law.rolls([c * w_h, -s * w_h, 0.0, 0.0]);
+            assert_eq!(at.force[0][0] < 0.0, rises);
+        }
+        assert!((law.pulls_to_apex([c * rolling, -s * rolling, 0.0, 0.0]) - 0.7838).abs() < 5e-5);
     }
 }

@@ -340,7 +340,6 @@ impl<T: Real, G: Copy> Couples<T, G> {
         Couples { coefficients, present: self.present, ways, given: self.given }
     }
 }
-}
 
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// The couple of all laws and of the user, linear in the normal force about the one that `normal` gives.

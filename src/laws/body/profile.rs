@@ -1,0 +1,156 @@
+//! The profile of a body: a row of circles, one after the other of which carries the body as it tilts over.
+//!
+//! ```text
+//! Z_k(theta) = l_k c + a_k s + rho_k       height of the centre above the table where circle k carries
+//! Z_k = Z_(k+1) at theta_k = atan2(da, dl) + acos(-drho/m),   m = hypot(da, dl),   d of l, a and rho: k minus k + 1
+//! m > |drho|   both touch there, at the distance D = sqrt(m^2 - drho^2): the next circle lands
+//! m = |drho|   one circle touches the other from within, as a ball touches the edge at which it is cut: D = 0, a smooth
+//!              joint, at which nothing lands and the same point of the body goes on touching
+//! m < |drho|   one lies inside the other
+//! ```
+//! The table touches the convex hull, so that a circle that never touches is not in the row. A body is seen from the end
+//! of the circle that carries it: from the other end theta, l, w2, w3 and psi change to pi - theta, -l, -w2, -w3 and -psi,
+//! phi to phi + pi, and the row is reversed.
+//!
+//! Error: a few roundings of the angle, divided by sqrt(1 - (drho/m)^2), which is 1 for two sharp circles.
+
+use super::rim::Rim;
+use crate::error::{Error, within};
+use core::f64::consts::PI;
+
+/// The largest number of circles of a body.
+pub(crate) const MOST_CIRCLES: usize = 8;
+/// m and |drho| that differ by less than this share of m are equal.
+const JOINED: f64 = 1e-12;
+
+/// A circle with which a body of revolution touches the table, rounded by a fillet. All lengths are in one unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct Circle {
+    /// Radius a of the circle about the axis; 0 for a ball, or for a tip.
+    pub radius: f64,
+    /// Distance l of the circle below the centre of mass, along the axis; negative above it.
+    pub depth: f64,
+    /// Radius rho of the fillet; the radius of the ball if `radius` is 0.
+    pub fillet: f64,
+}
+
+impl Circle {
+    pub(crate) fn rim(self) -> Rim<f64> {
+        Rim { ell: self.depth, a: self.radius, rho: self.fillet }
+    }
+
+    /// The border between this circle and the next one, and the distance D of their contacts there; None where one lies
+    /// inside the other.
+    fn border(&self, next: &Self) -> Option<[f64; 2]> {
+        let [a, l, rho] = [self.radius - next.radius, self.depth - next.depth, self.fillet - next.fillet];
+        let (far, turn) = (a.hypot(l), a.atan2(l));
+        if far < rho.abs() * (1.0 - JOINED) {
+            return None;
+        }
+        if far <= rho.abs() * (1.0 + JOINED) {
+            return Some([if rho > 0.0 { turn + PI } else { turn }, 0.0]);
+        }
+        Some([turn + (-rho / far).acos(), ((far - rho) * (far + rho)).sqrt()])
+    }
+}
+
+/// The circles of a body in the order in which they carry it, as seen from one end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Row {
+    circles: [Circle; MOST_CIRCLES],
+    count: usize,
+    /// The circle that carries.
+    at: usize,
+}
+
+impl Row {
+    /// The row of circles of a body, from the lower end up, without those that never touch.
+    pub fn of(given: &[Circle]) -> Result<Self, Error> {
+        let none = Circle { radius: 0.0, depth: 0.0, fillet: 0.0 };
+        let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0 };
+        let refuse = |value, expected| Err(Error::OutOfRange { name: "circles", value, expected });
+        for (k, circle) in given.iter().enumerate() {
+            within("radius", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
+            within("depth", circle.depth, (-1e100, 1e100), "-1e100 <= depth <= 1e100, of a circle")?;
+            within("fillet", circle.fillet, (0.0, 1e100), "0 <= fillet <= 1e100, of a circle")?;
+            while row.count > 0 {
+                let last = row.circles[row.count - 1];
+                let Some([border, _]) = last.border(circle) else {
+                    return refuse(k as f64, "circles of which none lies inside another");
+                };
+                // A circle that would begin to carry before the one before it does lies inside the hull.
+                if row.count == 1 || border > row.border(row.count - 2) + JOINED {
+                    break;
+                }
+                row.count -= 1;
+            }
+            if row.count == MOST_CIRCLES {
+                return refuse(given.len() as f64, "at most 8 circles that touch the table");
+            }
+            row.circles[row.count] = *circle;
+            row.count += 1;
+        }
+        if row.count == 0 {
+            return refuse(0.0, "at least one circle");
+        }
+        for k in 1..row.count {
+            within(
+                "circles",
+                row.border(k - 1),
+                (f64::MIN_POSITIVE, PI.next_down()),
+                "circles in order, from the lower end up",
+            )?;
+        }
+        Ok(row)
+    }
+
+    /// The circle that carries.
+    pub fn here(&self) -> Circle {
+        self.circles[self.at]
+    }
+
+    /// The circle that carries at larger inclinations.
+    pub fn next(&self) -> Option<Circle> {
+        (self.at + 1 < self.count).then(|| self.circles[self.at + 1])
+    }
+
+    fn both(&self, k: usize) -> [f64; 2] {
+        self.circles[k].border(&self.circles[k + 1]).unwrap_or([f64::NAN; 2])
+    }
+
+    /// The inclination at which circle k + 1 follows circle k.
+    fn border(&self, k: usize) -> f64 {
+        self.both(k)[0]
+    }
+
+    /// The inclinations between which the circle that carries does so.
+    pub fn range(&self) -> [f64; 2] {
+        let low = if self.at == 0 { 0.0 } else { self.border(self.at - 1) };
+        [low, if self.at + 1 < self.count { self.border(self.at) } else { PI }]
+    }
+
+    /// All circles.
+    pub fn circles(&self) -> &[Circle] {
+        &self.circles[..self.count]
+    }
+
+    /// The inclinations at which one circle follows another, and the distances of both contacts there, 0 at a smooth joint.
+    pub fn borders(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        (1..self.count).map(|k| self.both(k - 1))
+    }
+
+    /// The row as seen from the other end.
+    pub fn turned(&self) -> Self {
+        let mut row = Self { at: self.count - 1 - self.at, ..*self };
+        row.circles[..self.count].reverse();
+        row.circles.iter_mut().for_each(|circle| circle.depth = 0.0 - circle.depth);
+        row
+    }
+
+    /// The row with the next circle carrying, as seen from the end of that circle if it is the last one.
+    pub fn beyond(&self) -> Self {
+        let row = Self { at: self.at + 1, ..*self };
+        if row.at + 1 == row.count { row.turned() } else { row }
+    }
+}
