@@ -99,6 +99,20 @@ impl Hull {
         rim.filter(|rim| rim.outer() > 0.0).copied()
     }
 
+    /// The edges on which the body stands one after the other as it tilts from the upright to the inverted position.
+    pub fn sequence(&self) -> Vec<Edge> {
+        let mut all: Vec<Edge> = self.rim().into_iter().collect();
+        let mut from = 0.0;
+        // Each edge can carry once, and a ball between its cuts again.
+        while let Some(last) = all.last().filter(|_| all.len() <= 2 * self.edges.len()) {
+            let (end, next) = self.after(last);
+            let Some(next) = next.filter(|_| end >= from) else { break };
+            from = end;
+            all.push(next);
+        }
+        all
+    }
+
     /// The inclination up to which an edge that carries the body does so, and the edge that touches the table there;
     /// pi and None if no other one does.
     pub fn after(&self, rim: &Edge) -> (f64, Option<Edge>) {

@@ -468,3 +468,95 @@ const STEPS: usize = 100_000;
 /// follows the speed by a smaller share.
 const OWN_STEPS: usize = 20_000;
 const FOLLOWS: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::body::Circle;
+
+    /// Numbers between 0 and 1 without a pattern.
+    fn draws() -> impl FnMut(f64, f64) -> f64 {
+        let mut x: f64 = 0.1;
+        move |low, high| {
+            x = (x + 0.618_033_988_749_894_9).fract();
+            low + (high - low) * (x * 7919.0).fract()
+        }
+    }
+
+    #[test]
+    fn the_next_circle_of_a_cup_lands_by_the_impulses_of_newton_and_euler_with_the_friction_of_moreau() {
+        let (mut draw, mut ends) = (draws(), [0; 3]);
+        for _ in 0..2000 {
+            let far = draw(0.2, 3.0);
+            let tip = draw(0.0, 1.0) < 0.2;
+            let circle = |radius, depth| Circle { radius, depth, fillet: 0.05 };
+            let low = circle(if tip { 0.0 } else { draw(0.2, 1.0) }, draw(0.2, 0.8) * far);
+            let up = circle(draw(0.5, 1.0), low.depth - far);
+            let i3 = draw(0.1, 0.9);
+            let body = Body::profile(&[low, up], draw(0.51, 2.0) * i3, i3).unwrap();
+            let border @ Border { height, circles: [here, there], .. } = body.border();
+            // Where friction may press a circle into the table, no landing or several may be consistent.
+            let most = [here, there].map(|on| (body.i1() + on.lever * on.lever) / (on.lever.abs() * height));
+            let mu = draw(0.05, 0.9) * most[0].min(most[1]).min(border.span() / height).min(1.0);
+            let y = State {
+                theta: body.theta_end(),
+                w1: draw(-1.0, 1.0),
+                w2: draw(-1.0, -0.1),
+                w3: draw(-1.0, 1.0),
+            };
+            let slip = if draw(0.0, 1.0) < 0.3 { [0.0; 2] } else { [draw(-1.0, 1.0), draw(-1.0, 1.0)] };
+            let landing = Landing {
+                body: &body,
+                border,
+                y,
+                slip,
+                lift: 0.0,
+                friction: &Friction::coulomb(mu),
+                own: &(),
+            };
+            let Compressed { here: stays, end, .. } = landing.compressed().unwrap();
+            ends[usize::from(stays)] += 1;
+            let centre = |y: &State, [u, v]: [f64; 2], lift: f64| {
+                [u + height * y.w2, v - here.depth * y.w1 + here.radius * y.w3, lift + here.lever * y.w2]
+            };
+            let [before, after] = [centre(&y, slip, 0.0), centre(&end.y, end.slips[0], end.lift)];
+            let gained: [f64; 3] = core::array::from_fn(|i| after[i] - before[i]);
+            // Both normal impulses follow from the vertical velocity and from w2.
+            let turn = body.i1() * (end.y.w2 - y.w2) + height * gained[0];
+            let push = [(-there.lever * gained[2] - turn), (here.lever * gained[2] + turn)]
+                .map(|x| x / border.span());
+            assert!(push[0] > -1e-12 && push[1] > -1e-12, "{push:?}");
+            assert!(if stays {
+                end.lift == 0.0 && end.y.w2 == 0.0
+            } else {
+                push[0].abs() < 1e-12 && end.lift > 0.0
+            });
+            assert!((end.lift + border.span() * end.y.w2).abs() < 1e-12);
+            // Both impulses across follow from w1 and w3.
+            let [tilt, spin] = [body.i1() * (end.y.w1 - y.w1), body.i3() * (y.w3 - end.y.w3)];
+            let span = here.depth * there.radius - there.depth * here.radius;
+            let across = [tilt * there.radius - there.depth * spin, here.depth * spin - tilt * here.radius];
+            let across = across.map(|x| x / span);
+            assert!((across[0] + across[1] - gained[1]).abs() < 1e-11);
+            let turning = border.span() * drilling_of(border.angle, end.y.w1, end.y.w3);
+            assert!((end.slips[1][1] - end.slips[0][1] + turning).abs() < 1e-12);
+            let (mut along, mut sticks) = (0.0, false);
+            for k in 0..2 {
+                let (size, most) = (end.slips[k][0].hypot(end.slips[k][1]), mu * push[k]);
+                if size < 1e-11 {
+                    sticks = true;
+                    assert!(across[k].abs() <= most + 1e-12);
+                } else {
+                    assert!((across[k] + most * end.slips[k][1] / size).abs() < 1e-10);
+                    along -= most * end.slips[k][0] / size;
+                }
+            }
+            assert!(sticks || (along - gained[0]).abs() < 1e-10);
+            let lost = energy(&border, &body, &y, slip, 0.0)
+                - energy(&border, &body, &end.y, end.slips[0], end.lift);
+            assert!(lost > -1e-13);
+            ends[2] += usize::from(sticks);
+        }
+        assert!(ends.iter().all(|count| *count > 200), "{ends:?}");
+    }
+}
