@@ -3,6 +3,7 @@
 //! All files are one program, since the compiler would take as long for each of several.
 
 mod big_integers;
+mod circles;
 mod common;
 mod custom;
 mod custom_stones;

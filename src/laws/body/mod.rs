@@ -175,7 +175,7 @@ impl Body {
     /// circle. Two circles that mirror each other are the two equal rims of a tube.
     ///
     /// ```
-    /// use spincyl::{Body, Circle};
+    /// use spincyl::{Body, body::Circle};
     ///
     /// let circle = |radius, depth| Circle { radius, depth, fillet: 0.0 };
     /// let cup = Body::profile(&[circle(0.7, 1.1), circle(1.0, -0.9)], 0.5, 0.4)?;
@@ -200,7 +200,8 @@ impl Body {
             ([_, _], Some(next)) if unit && next == (Circle { depth: 0.0 - depth, ..row.here() }) => None,
             _ => Some(row),
         };
-        Self { ell: depth, fillet, rim: radius.into(), theta_end, row, ..self }
+        let rim = if unit { Sum::of(1.0, -fillet) } else { radius.into() };
+        Self { ell: depth, fillet, rim, theta_end, row, ..self }
     }
 
     /// The circles of the body, from the end from which it is seen.
@@ -350,8 +351,8 @@ impl Body {
             return self.ratio().atan2(ell);
         }
         if self.is_ball() {
-            // For a ball cos thetaInf = ell/d.
-            let square = (d - ell) * (d + ell);
+            // For a ball cos thetaInf = ell/(d rho).
+            let square = (d * rho - ell) * (d * rho + ell);
             return if square >= 0.0 && d != 0.0 { square.sqrt().atan2(ell * d.signum()) } else { f64::NAN };
         }
         if ell == 0.0 {
@@ -400,8 +401,9 @@ impl Body {
         1.0 + self.excess.hi
     }
 
+    /// Whether the formulas of a sharp rim of radius 1 hold.
     pub(crate) fn is_sharp(&self) -> bool {
-        self.fillet == 0.0
+        self.fillet == 0.0 && self.rim.hi == 1.0
     }
 
     /// Whether the formulas of a sharp rim give all steady states: the rim is sharp and the range ends at pi/2.
@@ -411,7 +413,7 @@ impl Body {
 
     /// Whether the body is a ball, for which the poles are ordinary points of the motion.
     pub(crate) fn is_ball(&self) -> bool {
-        self.fillet == 1.0
+        self.rim.hi == 0.0
     }
 
     /// Whether the body is a ball with equal moments and its centre of mass in its centre, on any part of which it rolls.
