@@ -281,7 +281,10 @@ static LAWS: &[ArrayFunction] = &[
         inputs: 7,
         value: Value::One(|x| {
             of_body(&x[1..], |b| match two_rims(b) {
-                Ok(_) => b.shape().rim.between(x[0].sin_cos()).min(0.0),
+                Ok(_) => {
+                    let [here, there] = b.rims();
+                    here.less(&there).height(x[0].sin_cos()).min(0.0)
+                }
                 Err(_) => 0.0,
             })
         }),

@@ -229,6 +229,11 @@ impl Body {
         next.map_or(Rim { ell: -here.ell, ..here }, Circle::rim)
     }
 
+    /// The circle that carries, and the one that lands at theta_end or its mirror image.
+    pub(crate) fn rims(&self) -> [Rim<f64>; 2] {
+        [self.shape().rim, self.next_rim()]
+    }
+
     /// The body with the circle carrying that lands at theta_end, as seen from the end of that circle.
     pub(crate) fn beyond(&self) -> Self {
         self.row.as_ref().map_or(*self, |row| self.on(row.beyond()))
@@ -370,6 +375,11 @@ impl Body {
         search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
     }
 
+    /// Sine and cosine of theta_end.
+    pub(crate) fn border_angle(&self) -> (f64, f64) {
+        landing_angle(self.theta_end)
+    }
+
     /// The circle of the body that lands at theta_end, and the one before it.
     pub(crate) fn border(&self) -> Border<f64> {
         Border::between([self.shape().rim, self.next_rim()], landing_angle(self.theta_end))
@@ -439,6 +449,11 @@ impl Body {
 pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));
     zero.select_lt(ell, fillet.select_lt(one, level, round), round)
+}
+
+/// The sine of the angle that is left to a border.
+pub(crate) fn tilt((s, c): (f64, f64), angle: (f64, f64)) -> f64 {
+    s * angle.1 - c * angle.0
 }
 
 /// Sine and cosine of an inclination at which something lands; those of a right angle are exact.

@@ -28,6 +28,13 @@ pub(crate) struct Rim<T> {
     pub rho: T,
 }
 
+impl Rim<f64> {
+    /// A distance from the centre of mass that no point of the rim exceeds.
+    pub fn reach(&self) -> f64 {
+        self.ell.abs() + self.a + self.rho
+    }
+}
+
 impl<T: Real> Rim<T> {
     /// Radius A of the circle of contact, on which the body touches the table.
     #[inline(always)]
@@ -59,10 +66,11 @@ impl<T: Real> Rim<T> {
         self.ell * c + self.a * s
     }
 
-    /// Height of the lowest point of the upper rim above that of the lower rim, for two equal rims.
+    /// This rim less another one, circle by circle. The other one is that much higher, deeper, wider and farther from the
+    /// centre at each inclination, with all digits where both are equal.
     #[inline(always)]
-    pub fn between(&self, (_, c): (T, T)) -> T {
-        (self.ell + self.ell) * c
+    pub fn less(&self, other: &Self) -> Self {
+        Self { ell: self.ell - other.ell, a: self.a - other.a, rho: self.rho - other.rho }
     }
 
     /// The derivative g' with one rounding less than [`slope`](Self::slope), in lanes and in single numbers alike.

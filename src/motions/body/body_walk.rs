@@ -208,6 +208,14 @@ impl<G: Own> BodyPhases<G> {
         }
     }
 
+    /// Changes to the view from another circle of the body.
+    pub(super) fn stands_on(&mut self, body: Body, ask: &Ask) {
+        if body != self.body {
+            self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
+            self.body = body;
+        }
+    }
+
     /// Perturbs the state by this share.
     pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N, G>, share: f64)
     where

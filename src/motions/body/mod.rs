@@ -145,8 +145,9 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             let expected = "none for a body of which another part than a rim may land: its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
-        if body.ell() > 0.0 && body.theta_end() == core::f64::consts::FRAC_PI_2 {
-            let other = height + body.shape().rim.between(start.state.theta.sin_cos());
+        if body.has_two_rims() {
+            let [here, there] = body.rims();
+            let other = height + here.less(&there).height(start.state.theta.sin_cos());
             within(
                 "height",
                 if other < -1e-15 { -height } else { height },

@@ -375,8 +375,8 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
 
     fn leaves_margin(walk: &BodyWalk<'_, N, G>, halt: Halt) -> bool {
         halt == Halt::Side
-            && walk.of.body.theta_end() == FRAC_PI_2
-            && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == FRAC_PI_2)
+            && walk.has_two_rims()
+            && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == walk.of.body.theta_end())
     }
 
     /// The error of a margin that depends on a force is proportional to the largest speed.

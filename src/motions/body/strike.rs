@@ -12,7 +12,7 @@
 use super::body_walk::{BodyWalk, LONGER};
 use super::fly::{Aloft, Takeoff};
 use super::own::Own;
-use crate::laws::body::Shape;
+use crate::laws::body::Rim;
 use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::{Hit, PointImpact, Struck, lightness, turned};
 use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
@@ -66,11 +66,12 @@ const MOST_IN_TURN: u32 = 10_000;
 /// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
 const PERFECTLY_ROUGH: f64 = 1e100;
 
-/// The momentum that the centre of mass has gained, which is the impulse of both rims together, at theta = pi/2.
-fn gained(shape: &Shape<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
+/// The momentum that the centre of mass has gained, which is the impulse of both rims together, seen from this one.
+fn gained(rim: &Rim<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
     let velocity = |at: &Aloft| {
-        let ([w1, w2, w3], [along, across]) = (at.w, at.slip);
-        [along + w2, across - shape.rim.ell * w1 + w3, at.lift + shape.rim.ell * w2]
+        let ([w1, w2, w3], [along, across], angle) = (at.w, at.slip, at.angle);
+        let aside = across - rim.depth(angle) * w1 + rim.radius(angle) * w3;
+        [along + rim.height(angle) * w2, aside, at.lift + rim.lever(angle) * w2]
     };
     let [old, new] = [velocity(old), velocity(new)];
     core::array::from_fn(|i| new[i] - old[i])
@@ -114,14 +115,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
             return Next::Ends(Ending::Face);
         }
-        let both = self.has_two_rims() && from.angle.1.abs() < BOTH_AT_ONCE;
+        let both = self.has_two_rims() && self.tilt(from.angle).abs() < BOTH_AT_ONCE;
         if both {
             // Rounding must not decide which rim is lower.
-            self.claims(from.angle.1.abs());
-            from = Aloft { angle: (1.0, 0.0), height: 0.0, ..from };
+            self.claims(self.tilt(from.angle).abs());
+            from = Aloft { angle: self.of.body.border_angle(), height: 0.0, ..from };
             self.sets(&from);
         }
-        let there = if both { from.on_other_rim(&shape) } else { from };
+        let rims = self.of.body.rims();
+        let there = if both { from.on_other_rim(&rims) } else { from };
         if both && from.lift >= 0.0 && there.lift < 0.0 {
             self.turns_over();
             return self.strikes();
@@ -149,7 +151,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if let Some(left) = left {
             self.sums_bounces(&after, left, bounce);
         }
-        let level = || from.angle.1.abs().max(after.lift).max(after.on_other_rim(&shape).lift.abs());
+        let level =
+            || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
         }
@@ -284,90 +287,91 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
     }
 
+    /// The vertical velocities of both rims, this one first.
+    fn lifts_of_both(&self) -> [f64; 2] {
+        let at = self.aloft();
+        [at.lift, at.on_other_rim(&self.of.body.rims()).lift]
+    }
+
     /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
     #[inline(never)]
     pub(super) fn rattles(&mut self, e: f64) -> Next {
-        (self.at[SIN], self.at[COS]) = (1.0, 0.0);
-        let shape = self.of.slide.law.shape;
-        let mut at = Aloft { angle: (1.0, 0.0), ..self.aloft() };
-        let fast = at.lift.min(at.on_other_rim(&shape).lift).abs();
-        let mut other = false;
+        (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+        let [here, there] = self.lifts_of_both();
+        let over = RATTLE_OVER * here.min(there).abs().min(1.0);
         for turn in 0.. {
-            let there = at.on_other_rim(&shape);
-            if at.lift.min(there.lift) > -RATTLE_OVER * fast.min(1.0) {
+            let [here, there] = self.lifts_of_both();
+            if here.min(there) > -over {
                 break;
             }
             if turn > MOST_IN_TURN {
                 return self.gives_up(Limit::Impacts);
             }
-            if at.lift.max(there.lift) < -RATTLE_OVER * fast.min(1.0) {
-                match self.bounces_on_both(at, other, e) {
-                    Ok((after, seen)) => (at, other) = (after, seen),
-                    Err(ending) => return Next::Ends(ending),
+            if here.max(there) < -over {
+                if let Err(ending) = self.bounces_on_both(e) {
+                    return Next::Ends(ending);
                 }
                 continue;
             }
-            if there.lift < at.lift {
-                (at, other) = (there, !other);
+            if there < here {
+                self.turns_over();
             }
+            let at = self.aloft();
             let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
-            at = self.struck(&at, &struck, (other != self.made.path.upside_down, false));
+            let after = self.struck(&at, &struck, (self.made.path.upside_down, false));
+            self.sets(&after);
         }
-        let there = at.on_other_rim(&shape);
-        if there.lift < at.lift {
-            (at, other) = (there, !other);
-        }
-        if other {
+        let [here, there] = self.lifts_of_both();
+        if there < here {
             self.turns_over();
         }
-        self.sets(&Aloft { height: 0.0, pose: self.aloft().pose, ..at });
-        if at.on_other_rim(&shape).lift < RATTLED {
+        self.of.takeoff.height = 0.0;
+        let [here, there] = self.lifts_of_both();
+        if there < RATTLED {
             return self.ends_rattle();
         }
-        if at.lift < RATTLE_OVER * fast.min(1.0) {
-            self.claims(at.lift.abs());
+        if here < over {
+            self.claims(here.abs());
             return self.touches_down();
         }
         self.of.takeoff.leaves = Some(1);
         Next::Own(Kind::Flying)
     }
 
-    /// The numbers after both rims have struck at once, and whether they are seen from the other rim; `other` says so
-    /// of the numbers before.
-    fn bounces_on_both(&mut self, at: Aloft, other: bool, e: f64) -> Result<(Aloft, bool), Ending> {
-        let shape = self.of.slide.law.shape;
-        // As seen from the rim that comes down more slowly.
-        let (at, other) = if at.w[1] > 0.0 { (at.on_other_rim(&shape), !other) } else { (at, other) };
-        let [w1, w2, w3] = at.w;
-        let before = State { theta: FRAC_PI_2, w1, w2, w3 };
+    /// Moves the walk to the numbers after both rims have struck at once, as seen from the rim that came down more slowly.
+    fn bounces_on_both(&mut self, e: f64) -> Result<(), Ending> {
+        if self.at[W2] > 0.0 {
+            self.turns_over();
+        }
+        let (at, rims) = (self.aloft(), self.of.body.rims());
         let (friction, rolls) = match self.ask.table {
             Table::Rubs(friction) => (friction, false),
             Table::Rolling { mu } => (Friction::coulomb(mu.min(PERFECTLY_ROUGH)), true),
             Table::Smooth => (Friction::coulomb(0.0), false),
         };
         let (y, slip, lift, lost) =
-            bounced(&self.of.body, &before, (at.slip, at.lift), &friction, &self.of.own, e)
+            bounced(&self.of.body, &self.of.state, (at.slip, at.lift), &friction, &self.of.own, e)
                 .map_err(|_| Ending::Landing)?;
         let mut after = Aloft { w: [y.w1, y.w2, y.w3], slip, lift, ..at };
         if rolls {
-            let slips = [slip, after.on_other_rim(&shape).slip].into_iter().flatten();
+            let slips = [slip, after.on_other_rim(&rims).slip].into_iter().flatten();
             // What is left is rounding, or a slip that friction cannot stop.
             if slips.fold(0.0, |most: f64, u| most.max(u.abs())) > RATTLE_OVER * at.lift.abs() {
                 return Err(Ending::Slip);
             }
             after.slip = [0.0; 2];
         }
-        let impulse = gained(&shape, [&at, &after]);
+        let impulse = gained(&rims[0], [&at, &after]);
         self.claims(-lost);
-        let seen = other != self.made.path.upside_down;
-        self.records([&at, &after], seen, Hit::BothRims, (impulse, lost), false);
-        Ok((after, other))
+        self.records([&at, &after], self.made.path.upside_down, Hit::BothRims, (impulse, lost), false);
+        self.sets(&after);
+        Ok(())
     }
 
     /// The phase on both rims after a rattle, whose last impacts are summed.
     fn ends_rattle(&mut self) -> Next {
         let from = self.aloft();
-        let left = from.angle.1.abs().max(from.w[1].abs()).max(from.lift.abs());
+        let left = self.tilt(from.angle).abs().max(from.w[1].abs()).max(from.lift.abs());
         let Table::Rubs(friction) = self.ask.table else {
             self.claims(left);
             if from.w[1] > 0.0 {
@@ -377,15 +381,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return self.lands_on_both();
         };
         // The last impacts turn a slip that is slower than they are.
-        let slips = [from.slip, from.on_other_rim(&self.of.slide.law.shape).slip].map(|[u, v]| u.hypot(v));
+        let slips = [from.slip, from.on_other_rim(&self.of.body.rims()).slip].map(|[u, v]| u.hypot(v));
         let turns = if left > 0.0 { (left / slips[0].min(slips[1])).min(1.0) } else { 0.0 };
         let doubt = (left * turns).max(left * left * SUMMED);
         self.claims(doubt);
         self.doubts(doubt);
         let from = self.aloft();
         self.claims(left * LASTS * self.couples(&from, 1.0));
-        let (law, flat) = (self.of.slide.law, (1.0, 0.0));
-        let state = State { theta: FRAC_PI_2, ..self.of.state };
+        let (law, flat) = (self.of.slide.law, self.of.body.border_angle());
+        let state = State { theta: self.of.body.theta_end(), ..self.of.state };
         let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));
         // Where the rims slip, the centre keeps its velocity while the axis comes to lie level.
         let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
@@ -393,7 +397,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
         self.at[HEAT] += before - law.energy(&y, slip);
-        let after = Aloft { angle: (1.0, 0.0), w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
+        let after = Aloft { angle: flat, w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
         self.sets(&after);
         self.settles_on_side()
     }
@@ -405,23 +409,26 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             _ if self.at[W1] == 0.0 && self.at[W3] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
             _ => return Next::Ends(Ending::Side),
         };
+        (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
         if self.at[W2] > 0.0 {
             self.turns_over();
         }
-        let before = State { theta: FRAC_PI_2, ..self.of.state };
+        let before = State { theta: self.of.body.theta_end(), ..self.of.state };
         let lift = self.of.takeoff.lift;
         let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction, &self.of.own)
         else {
             return Next::Ends(Ending::Landing);
         };
-        let (shape, other) = (self.of.slide.law.shape, !self.made.path.upside_down);
-        let from = Aloft { angle: (1.0, 0.0), ..self.aloft() }.on_other_rim(&shape);
+        // The impact is told from the rim that lands.
+        let (rims, carried) = (self.of.body.rims(), self.made.path.upside_down);
+        let from = self.aloft().on_other_rim(&rims);
+        let landing = self.of.body.beyond().rims()[0];
         self.lands_as(&landed);
         let here = self.aloft();
-        let there = if other == self.made.path.upside_down { here } else { here.on_other_rim(&shape) };
-        let impulse = gained(&shape, [&from, &there]);
+        let there = if carried == self.made.path.upside_down { here.on_other_rim(&rims) } else { here };
+        let impulse = gained(&landing, [&from, &there]);
         self.claims(-landed.lost);
-        self.records([&from, &there], other, Hit::BothRims, (impulse, landed.lost), true);
+        self.records([&from, &there], !carried, Hit::BothRims, (impulse, landed.lost), true);
         let rises = self.at[W2];
         if rises < ROCKED_OUT {
             self.claims(rises * LASTS);
@@ -448,8 +455,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.turns_over();
         }
         let State { w1, w2, w3, .. } = landed.state;
-        let after =
-            Aloft { angle: (1.0, 0.0), w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        let after = Aloft { w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
         self.sets(&Aloft { height: 0.0, ..after });
     }
 }

@@ -16,7 +16,7 @@
 
 use super::lands::{AngleSeries, Leaves, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
-use crate::laws::body::Shape;
+use crate::laws::body::{Body, Rim, Shape};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};
@@ -48,9 +48,6 @@ const FITTED: usize = 7;
 const MOVING: usize = 6;
 /// Below this size of the cosine of theta its sine follows from it.
 const LEVEL_COSINE: f64 = 0.5;
-
-/// The sides of the rim that was down last and of the other one.
-const SIDES: [f64; 2] = [1.0, -1.0];
 
 /// A step of a flight against the air: the numbers at its start, and phi and psi there.
 #[derive(Debug, Clone, Copy)]
@@ -116,12 +113,12 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
 impl<G: Own> AirFlight<G> {
     /// A flight against the air of these losses and of `own` laws. The first step is `longer` by this factor.
     pub fn new(
-        shape: &Shape<f64>,
+        body: &Body,
         from: &Aloft,
         (losses, own): (Couples<f64>, G),
         (tol, longer): (f64, f64),
     ) -> Self {
-        let free = Flight::new(shape, from);
+        let (free, shape) = (Flight::new(body, from), &body.shape());
         let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
@@ -185,9 +182,9 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The height of the lowest point of a rim, and its rate.
-    fn rim(&self, y: &AirNumbers, side: f64) -> [f64; 2] {
+    fn rim(&self, y: &AirNumbers, k: usize) -> [f64; 2] {
         let (rim, Leaning { axis, change }, s0, t) =
-            (self.shape.rim, self.leans(y), self.from.angle.0, y[AIR_TIME]);
+            (self.free.rims[k], self.leans(y), self.from.angle.0, y[AIR_TIME]);
         let [first, second, _] = axes(self.quaternion(y));
         let s = axis[0].hypot(axis[1]);
         // The third component of w x e3.
@@ -195,11 +192,11 @@ impl<G: Own> AirFlight<G> {
         let sine_rate = if s > 0.0 { -(axis[2] * cosine_rate / s) } else { 0.0 };
         let sine =
             if s + s0 > 0.0 { ((axis[0] - s0) * change[0] + axis[1] * change[1]) / (s + s0) } else { 0.0 };
-        let begin = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
+        let begin = self.free.height_at_start(k);
         let [.., up] = self.free.velocity;
         [
-            begin + t * (up - 0.5 * t) - rim.slope((sine, side * change[2])),
-            up - t - rim.slope((sine_rate, side * cosine_rate)),
+            begin + t * (up - 0.5 * t) - rim.slope((sine, change[2])),
+            up - t - rim.slope((sine_rate, cosine_rate)),
         ]
     }
 
@@ -283,7 +280,8 @@ impl<G: Own> AirFlight<G> {
             (m1, m2, m3) = (m1 + o1, m2 + o2, m3 + o3);
         }
         // The height of a ball does not depend on s, which may be zero.
-        let sine = if self.shape.rim.a > 0.0 { (x * x + y * y).sqrt() } else { zero };
+        let flat = self.free.rims.iter().all(|rim| rim.a == 0.0);
+        let sine = if flat { zero } else { (x * x + y * y).sqrt() };
         let results = [
             y * w3 - z * w2,
             z * w1 - x * w3,
@@ -318,7 +316,7 @@ impl<G: Own> AirFlight<G> {
         if leaves == [None; 2] {
             return Ok((first, clear));
         }
-        let mut near = AIR_SHARE * self.free.near();
+        let mut near = AIR_SHARE * self.free.near(0).min(self.free.near(usize::from(two)));
         if self.own.has_couple() {
             near = near.min(2.0 * self.first);
         }
@@ -336,9 +334,9 @@ impl<G: Own> AirFlight<G> {
                 core::array::from_fn::<f64, RIM_TERMS, _>(known)
             })
         };
-        for (i, side) in SIDES.into_iter().enumerate().take(if two { 2 } else { 1 }) {
+        for i in 0..if two { 2 } else { 1 } {
             let Some(order) = leaves[i] else { continue };
-            match self.free.leaves(side, order, near, &swung)? {
+            match self.free.leaves(i, order, near, &swung)? {
                 Some(t) => {
                     clear[i] = t;
                     if first.is_none_or(|(before, _)| t < before) {
@@ -388,13 +386,13 @@ impl<G: Own> Flow<2> for AirFlow<'_, G> {
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
         let y = core::array::from_fn(|i| place.y[i]);
         core::array::from_fn(|i| {
-            let [value, slope] = if self.rims[i] { self.of.rim(&y, SIDES[i]) } else { [1.0, 0.0] };
+            let [value, slope] = if self.rims[i] { self.of.rim(&y, i) } else { [1.0, 0.0] };
             Dual { value, slope }
         })
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.of.rim(&core::array::from_fn(|i| y[i]), SIDES[i])[0]
+        self.of.rim(&core::array::from_fn(|i| y[i]), i)[0]
     }
 
     fn end(&self, i: usize) -> AirHalt {
@@ -403,7 +401,7 @@ impl<G: Own> Flow<2> for AirFlow<'_, G> {
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // The height of a rim changes by at most this much with a number of q.
-        let reach = 2.0 * (self.of.shape.rim.ell.abs() + 1.0);
+        let reach = 2.0 * self.of.free.rims.iter().map(Rim::reach).fold(0.0, f64::max);
         let per = |i: usize| if i < 4 { reach } else { 1.0 / y[i].abs().max(1.0) } / self.of.tol;
         made.error(per, N as f64)
     }
@@ -500,7 +498,7 @@ impl<G: Own> Flies for AirFlight<G> {
         } else {
             x.hypot(across)
         };
-        let [height, _] = self.rim(&y, 1.0);
+        let [height, _] = self.rim(&y, 0);
         (Aloft { height, ..self.free.placed(t, (sine, cosine), w, [phi, psi]) }, y[AIR_LOST])
     }
 

@@ -8,7 +8,7 @@
 
 use super::air::AirFlight;
 use super::lands::TOUCH;
-use crate::laws::body::Shape;
+use crate::laws::body::{Rim, tilt};
 use crate::laws::contact::{Force, Table};
 use crate::laws::newton;
 use crate::laws::state::State;
@@ -24,8 +24,8 @@ use crate::motions::{Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
-pub(crate) fn pose_from(at: &Aloft, shape: &Shape<f64>, over: bool, pose: [f64; 4]) -> [f64; 4] {
-    let mut other = Aloft { pose, ..*at }.on_other_rim(shape).pose;
+pub(crate) fn pose_from(at: &Aloft, rims: &[Rim<f64>; 2], over: bool, pose: [f64; 4]) -> [f64; 4] {
+    let mut other = Aloft { pose, ..*at }.on_other_rim(rims).pose;
     if over {
         other[0] -= TAU;
     }
@@ -37,13 +37,21 @@ const SHORT_BOUNCE: f64 = 0.1;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn has_two_rims(&self) -> bool {
-        self.of.body.ell() > 0.0 && self.of.body.theta_end() == FRAC_PI_2
+        self.of.body.has_two_rims()
+    }
+
+    /// How far the body is from the inclination at which both rims touch: the sine of the angle.
+    pub(crate) fn tilt(&self, angle: (f64, f64)) -> f64 {
+        tilt(self.of.body.border_angle(), angle)
     }
 
     /// Whether both rims touch the table; both or one of them may carry the body.
     pub(crate) fn is_level(&self) -> bool {
         let State { theta, w2, .. } = self.of.state;
-        self.ask.restitution.is_some() && self.has_two_rims() && theta == FRAC_PI_2 && w2 == 0.0
+        self.ask.restitution.is_some()
+            && self.has_two_rims()
+            && theta == self.of.body.theta_end()
+            && w2 == 0.0
     }
 
     /// The current numbers, with those of a flight.
@@ -72,21 +80,33 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if poses(N) {
             self.at[PHI..PHI + 4].copy_from_slice(&to.pose);
         }
-        self.of.state = State { theta: if c == 0.0 { FRAC_PI_2 } else { theta }, w1, w2, w3 };
+        let level = self.has_two_rims() && to.angle == self.of.body.border_angle();
+        let theta = match () {
+            () if level => self.of.body.theta_end(),
+            () if c == 0.0 => FRAC_PI_2,
+            () => theta,
+        };
+        self.of.state = State { theta, w1, w2, w3 };
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
     }
 
     /// Changes to the view from the other rim.
     pub(crate) fn turns_over(&mut self) {
-        let (from, shape) = (self.aloft(), self.of.slide.law.shape);
-        let pose = pose_from(&from, &shape, self.made.path.upside_down, from.pose);
+        let (from, rims) = (self.aloft(), self.of.body.rims());
+        let pose = pose_from(&from, &rims, self.made.path.upside_down, from.pose);
         self.made.path.upside_down = !self.made.path.upside_down;
-        self.sets(&Aloft { pose, ..from.on_other_rim(&shape) });
+        let level = self.has_two_rims() && from.angle == self.of.body.border_angle();
+        let over = from.on_other_rim(&rims);
+        self.of.stands_on(self.of.body.beyond(), &self.ask);
+        let angle = if level { self.of.body.border_angle() } else { over.angle };
+        self.sets(&Aloft { pose, angle, ..over });
     }
 
     /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
     pub(crate) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
-        if self.of.state.theta == FRAC_PI_2 {
+        if self.has_two_rims() && self.of.state.theta == self.of.body.theta_end() {
+            (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+        } else if self.of.state.theta == FRAC_PI_2 {
             (self.at[SIN], self.at[COS]) = (1.0, 0.0);
         } else if self.of.state.theta == PI {
             (self.at[SIN], self.at[COS]) = (0.0, -1.0);
@@ -127,8 +147,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 self.of.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
                 Next::Own(Kind::Flying)
             }
-            Ending::Side if self.has_two_rims() && self.of.state.theta == FRAC_PI_2 => {
-                (self.at[SIN], self.at[COS]) = (1.0, 0.0);
+            Ending::Side if self.has_two_rims() && self.of.state.theta == self.of.body.theta_end() => {
+                (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
                 self.of.takeoff = Takeoff::default();
                 let down = -self.at[W2];
                 if down == 0.0 {
@@ -145,7 +165,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                         Phases::write_here(self);
                     }
                 }
-                if e == 0.0 || down * self.of.body.ell() <= RATTLED {
+                if e == 0.0 || down * self.of.body.border().circles[0].lever <= RATTLED {
                     self.lands_on_both()
                 } else {
                     self.rattles(e)
@@ -164,18 +184,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !poses(N) && self.of.uniform {
             return self.flies_uniformly();
         }
-        let shape = self.of.slide.law.shape;
+        let (body, rims) = (&self.of.body, self.of.body.rims());
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
         let mut course: Box<dyn Flies> = match self.of.own.in_air(&self.ask.losses) {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
                 let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
-                Box::new(AirFlight::new(&shape, &from, (losses, self.of.own), (self.of.slide.tol, longer)))
+                Box::new(AirFlight::new(body, &from, (losses, self.of.own), (self.of.slide.tol, longer)))
             }
-            None => Box::new(Flight::new(&shape, &from)),
+            None => Box::new(Flight::new(body, &from)),
         };
-        let other = from.on_other_rim(&shape);
+        let other = from.on_other_rim(&rims);
         let touches = other.height.abs() <= 2.0 * TOUCH;
         let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
         let left = self.since.last().map_or(0.0, |t| t - now);
@@ -208,7 +228,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // roundings of a power series. A rougher run lands sooner or later by more than this error.
         let (at, free) = (self.flown(&*course, t, before), *course.free());
         let high = free.doubt_of_height(t);
-        let lift = if upper { at.on_other_rim(&shape).lift } else { at.lift };
+        let lift = if upper { at.on_other_rim(&rims).lift } else { at.lift };
         let mut late = (high / lift.abs()).min(high.sqrt());
         if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
             late = late.min(free.roundings(t) * f64::EPSILON * t);
@@ -238,7 +258,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.at[N - 1] = before + lost;
         }
         self.claims(course.free().doubt(t, &at));
-        let other = if self.has_two_rims() { self.of.slide.law.shape.rim.between(at.angle) } else { 0.0 };
+        let [here, there] = self.of.body.rims();
+        let other = if self.has_two_rims() { here.less(&there).height(at.angle) } else { 0.0 };
         self.claims(-(at.height + other.min(0.0)));
         if at.height < 0.0 && -at.height <= course.free().doubt_of_height(t) {
             at.height = 0.0;

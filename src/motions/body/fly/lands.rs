@@ -1,7 +1,7 @@
 //! The first landing of a rim in a flight; no landing is missed.
 //!
 //! ```text
-//! height of a rim   h = z - (side l c + a s + rho)     side = 1 for the rim that was down last, -1 for the other one
+//! height of a rim   h = z - (l c + a s + rho)           k = 0 for the rim that was down last, 1 for the other one
 //! h'' <= K = Lam^2 (|l| sin a sin b + a sin b) - 1     at all times, also where theta passes a pole
 //! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
 //! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
@@ -112,22 +112,28 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
 impl Flight {
     /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
     /// change, which keeps the digits of a small change.
-    fn rim(&self, side: f64, t: f64) -> [f64; 2] {
-        let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.shape.rim);
+    fn rim(&self, k: usize, t: f64) -> [f64; 2] {
+        let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.rims[k]);
         let (s, c) = self.angle_of(t, cosine);
         let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
         // A body that stays upright, as one that is dropped flat, has no sine at all.
         let sine = if s + s0 > 0.0 { -(cosine * (c + c0) / (s + s0)) } else { 0.0 };
-        let first = self.from.height + if side > 0.0 { 0.0 } else { rim.between(self.from.angle) };
+        let first = self.height_at_start(k);
         let [.., up] = self.velocity;
         [
-            first + t * (up - 0.5 * t) - rim.slope((sine, side * cosine)),
-            up - t - rim.slope((sine_rate, side * cosine_rate)),
+            first + t * (up - 0.5 * t) - rim.slope((sine, cosine)),
+            up - t - rim.slope((sine_rate, cosine_rate)),
         ]
     }
 
-    fn lands_on(&self, side: f64, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, Exhausted> {
-        let Shape { rim, .. } = self.shape;
+    /// The height of a rim at the start.
+    pub(super) fn height_at_start(&self, k: usize) -> f64 {
+        let [here, there] = self.rims;
+        self.from.height + if k == 0 { 0.0 } else { here.less(&there).height(self.from.angle) }
+    }
+
+    fn lands_on(&self, k: usize, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, Exhausted> {
+        let rim = self.rims[k];
         let [.., up] = self.velocity;
         let reach = rim.ell.hypot(rim.a) + rim.rho;
         // The centre is low enough for a landing before `rises` and after `comes`. At `end` it is so low that a rim is
@@ -144,15 +150,15 @@ impl Flight {
         let touch = TOUCH * (1.0 + reach + self.height);
         let mut from = 0.0;
         if let Some(order) = leaves {
-            let near = self.near();
-            let found = self.leaves(side, order, near, &|near, terms| self.swung(near, terms))?;
+            let near = self.near(k);
+            let found = self.leaves(k, order, near, &|near, terms| self.swung(near, terms))?;
             if found.is_some() {
                 return Ok(found.filter(|t| *t <= until));
             }
             from = near;
         }
         let noise = touch + 4.0 * self.doubt_of_height(from);
-        let mut falling = Falling { of: |t: f64| self.rim(side, t), bend, touch, noise };
+        let mut falling = Falling { of: |t: f64| self.rim(k, t), bend, touch, noise };
         // While the centre is too high no rim lands.
         let parts = if rises > 0.0 {
             [(from, rises.min(end)), (comes.max(from), end)]
@@ -170,9 +176,9 @@ impl Flight {
     }
 
     /// The time up to which the series of a rim that touches at the start is used.
-    pub(super) fn near(&self) -> f64 {
+    pub(super) fn near(&self, k: usize) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
-        if sine * self.rate > 0.0 && self.shape.rim.a > 0.0 {
+        if sine * self.rate > 0.0 && self.rims[k].a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
         } else {
             1.0 / (1.0 + self.rate)
@@ -183,35 +189,35 @@ impl Flight {
     /// gives the series of the inclination.
     pub(super) fn leaves(
         &self,
-        side: f64,
+        k: usize,
         order: usize,
         near: f64,
         swung: &dyn Fn(f64, usize) -> AngleSeries,
     ) -> Result<Option<f64>, Exhausted> {
         // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
-        let first = self.heights(side, near, &swung(near, order + 2));
+        let first = self.heights(k, near, &swung(near, order + 2));
         let early = -(2.0 * first[order] / first[order + 1]);
         if early > 0.0 && early < EARLY {
             let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
-            let found = self.lands_near(side, order, early * near, (terms, swung))?;
+            let found = self.lands_near(k, order, early * near, (terms, swung))?;
             if found.is_some() {
                 return Ok(found);
             }
         }
-        self.lands_near(side, order, near, (RIM_TERMS, swung))
+        self.lands_near(k, order, near, (RIM_TERMS, swung))
     }
 
     /// The landing up to the time `near`, by a series of h/t^k.
     fn lands_near(
         &self,
-        side: f64,
+        k: usize,
         order: usize,
         near: f64,
         (terms, swung): (usize, &dyn Fn(f64, usize) -> AngleSeries),
     ) -> Result<Option<f64>, Exhausted> {
-        let heights = self.heights(side, near, &swung(near, terms));
+        let heights = self.heights(k, near, &swung(near, terms));
         // A normal force that has just become negative is hardly larger than the errors of the numbers, as this term.
-        let vanishes = side > 0.0 && order == 2 && heights[2] <= 0.0 && heights[2] > -HARDLY * near * near;
+        let vanishes = k == 0 && order == 2 && heights[2] <= 0.0 && heights[2] > -HARDLY * near * near;
         let series = &heights[if vanishes { 3 } else { order }..terms];
         if series[0] <= 0.0 {
             return Ok(Some(0.0));
@@ -237,7 +243,7 @@ impl Flight {
         }
         (cosines[0], sines[0]) = (c, s);
         // The height of a ball does not depend on s, which may be zero.
-        let terms = if self.shape.rim.a > 0.0 { terms } else { 0 };
+        let terms = if self.rims.iter().any(|rim| rim.a > 0.0) { terms } else { 0 };
         // The coefficients of s from s^2 = 1 - c^2.
         for k in 1..terms {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
@@ -248,11 +254,11 @@ impl Flight {
     }
 
     /// The series of the height of a rim that touches at the start, in units of the time `near`.
-    fn heights(&self, side: f64, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
-        let rim = &self.shape.rim;
-        let mut all = core::array::from_fn(|k| -rim.slope((sines[k], side * cosines[k])));
+    fn heights(&self, k: usize, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
+        let rim = &self.rims[k];
+        let mut all = core::array::from_fn(|k| -rim.slope((sines[k], cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
-        all[1] = near * if side > 0.0 { self.from.lift } else { self.from.on_other_rim(&self.shape).lift };
+        all[1] = near * if k == 0 { self.from.lift } else { self.from.on_other_rim(&self.rims).lift };
         all[2] -= 0.5 * near * near;
         all
     }
@@ -268,10 +274,10 @@ impl Flies for Flight {
         _: &mut dyn FnMut() -> bool,
     ) -> Result<FirstLanding, Exhausted> {
         let mut first = None;
-        for (i, side) in [1.0, -1.0].into_iter().enumerate().take(if two { 2 } else { 1 }) {
+        for i in 0..if two { 2 } else { 1 } {
             // Of two rims that land at the same time the first one counts; an impact looks at both.
             let until = first.map_or(until, |(t, _)| t);
-            if let Some(t) = self.lands_on(side, leaves[i], two, until)?
+            if let Some(t) = self.lands_on(i, leaves[i], two, until)?
                 && first.is_none_or(|(before, _)| t < before)
             {
                 first = Some((t, i == 1));

@@ -18,7 +18,7 @@ pub(crate) mod flies;
 pub(crate) mod lands;
 
 use super::write::posed;
-use crate::laws::body::Shape;
+use crate::laws::body::{Body, Rim, Shape};
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Spent, Steps};
@@ -68,19 +68,19 @@ impl Aloft {
         }
     }
 
-    /// The same motion as seen from the other rim of a body with two equal rims.
-    pub fn on_other_rim(&self, shape: &Shape<f64>) -> Self {
-        let ((s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
-        let (apart, above) = (2.0 * shape.rim.ell, shape.rim.between(self.angle));
-        let [u_h, u_2] = self.slip;
-        let [w1, w3, u_h, u_2] = [w1, 0.0 - w3, 0.0 - u_h, apart * w1 - u_2];
+    /// The same motion as seen from the other one of two rims, the last one of the body.
+    pub fn on_other_rim(&self, [here, there]: &[Rim<f64>; 2]) -> Self {
+        let (angle @ (s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
+        let less = here.less(there);
+        let (apart, above) = (less.lever(angle), less.height(angle));
+        let (deep, wide, [u_h, u_2]) = (less.depth(angle), less.radius(angle), self.slip);
         Self {
             angle: (s, 0.0 - c),
-            w: [w1, 0.0 - w2, w3],
-            slip: [u_h - above * w2, u_2],
-            lift: self.lift + apart * s * w2,
+            w: [w1, 0.0 - w2, 0.0 - w3],
+            slip: [0.0 - u_h - above * w2, deep * w1 - wide * w3 - u_2],
+            lift: self.lift + apart * w2,
             height: self.height + above,
-            pose: [phi + PI, 0.0 - psi, x - apart * s * phi.cos(), y - apart * s * phi.sin()],
+            pose: [phi + PI, 0.0 - psi, x - apart * phi.cos(), y - apart * phi.sin()],
         }
     }
 }
@@ -128,6 +128,8 @@ const FAR: f64 = 0.9;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flight {
     shape: Shape<f64>,
+    /// The rim that was down last, and the other one.
+    rims: [Rim<f64>; 2],
     /// The start as given, and as seen from the side to which the axis leaves a pole.
     given: Aloft,
     from: Aloft,
@@ -157,9 +159,10 @@ pub(crate) struct Flight {
 }
 
 impl Flight {
-    pub fn new(shape: &Shape<f64>, given: &Aloft) -> Self {
-        let from = &given.leaving_pole(shape);
-        let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (*shape, from.angle, from.w);
+    pub fn new(body: &Body, given: &Aloft) -> Self {
+        let shape = body.shape();
+        let from = &given.leaving_pole(&shape);
+        let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (shape, from.angle, from.w);
         // The mirror image of a motion is computed by the same numbers.
         let image = if w3 < 0.0 || w3 == 0.0 && w1 < 0.0 { -1.0 } else { 1.0 };
         let (w1, w3) = (image * w1, image * w3);
@@ -179,7 +182,8 @@ impl Flight {
             from.lift + lever * w2,
         ];
         let mut flight = Self {
-            shape: *shape,
+            shape,
+            rims: body.rims(),
             given: *given,
             from: *from,
             velocity,
@@ -306,7 +310,7 @@ impl Flight {
 
     /// The error of the height of a rim at a time, due to rounding.
     pub fn doubt_of_height(&self, t: f64) -> f64 {
-        let reach = self.shape.rim.ell.abs() + 1.0;
+        let reach = self.rims.iter().map(Rim::reach).fold(0.0, f64::max);
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
