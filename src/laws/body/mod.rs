@@ -395,7 +395,9 @@ impl Body {
     /// Whether the body can land only on its rim, or on the other of two equal rims.
     pub(crate) fn lands_on_rims(&self) -> bool {
         // Two equal balls are a body with the fillet 1 that ends at a right angle.
-        self.theta_end == beyond(self.ell, self.fillet) || self.ell > 0.0 && self.theta_end == FRAC_PI_2
+        self.row.is_some()
+            || self.theta_end == beyond(self.ell, self.fillet)
+            || self.ell > 0.0 && self.theta_end == FRAC_PI_2
     }
 
     pub(crate) fn excess_sum(&self) -> Sum<f64> {

@@ -236,7 +236,8 @@ pub(crate) fn settled(
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
-    body.seen_from_next(y, [slip[0], slip[1] - body.border().span() * y.w1])
+    let border = body.border();
+    body.seen_from_next(y, [slip[0], slip[1] - border.span() * drilling_of(border.angle, y.w1, y.w3)])
 }
 
 /// Kinetic energy at theta_end, from the state, and the slip and the vertical velocity of the circle that carries.

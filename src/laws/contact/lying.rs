@@ -57,6 +57,22 @@ pub(crate) struct Lain<T> {
 pub(crate) type Flat<T> = [T; 4];
 
 impl Lying<f64> {
+    /// w_z, and -w_h, of these w1 and w3; a rounding error of zero is zero.
+    pub fn turning(&self, w1: f64, w3: f64) -> [f64; 2] {
+        let (s, c) = self.border.angle;
+        let [drilling, rolling] = [drilling_of((s, c), w1, w3), -rolling_of((s, c), w1, w3)];
+        let zero =
+            |x: f64, a: f64, b: f64| if x.abs() <= 4.0 * f64::EPSILON * (a * b).abs() { 0.0 } else { x };
+        // Both terms are of one size where they cancel; at a right angle there is one.
+        [zero(drilling, w3, c), zero(rolling, w1, c)]
+    }
+
+    /// w1 and w3 of these w_z and -w_h.
+    pub fn turned_by(&self, [drilling, rolling]: [f64; 2]) -> [f64; 2] {
+        let (s, c) = self.border.angle;
+        [s * drilling - c * rolling, c * drilling + s * rolling]
+    }
+
     pub fn on(body: &Body, friction: &Friction, losses: &Losses) -> Self {
         let dry = matches!(*friction, Friction::Coulomb { mu, .. } if mu > 0.0 || friction.sticks());
         Self {
@@ -211,6 +227,13 @@ impl<T: Real> Lying<T> {
         self.slipping_along(y, drags)
     }
 
+    /// How much a force across, at a circle, changes the slip across of a circle.
+    pub fn yields(&self, at: usize, by: usize) -> T {
+        let [at, by] = [self.border.circles[at], self.border.circles[by]];
+        let one = at.radius.splat(1.0);
+        one + at.depth * by.depth / self.shape.i1 + at.radius * by.radius / self.shape.i3
+    }
+
     /// The slip where the circle from which the state is seen sticks, or the other one.
     pub fn stuck(&self, [w1, w3, ..]: Flat<T>, other: bool) -> [T; 2] {
         let zero = w1.splat(0.0);
@@ -349,7 +372,8 @@ mod tests {
             let (w_z, w_h) =
                 (drilling_of(law.border.angle, y[0], y[1]), rolling_of(law.border.angle, y[0], y[1]));
             if let Some(losses) = &mut law.losses {
-                losses.ways = Some(Ways { contour: -w_h.signum(), drilling: w_z.signum(), ..Ways::default() });
+                losses.ways =
+                    Some(Ways { contour: -w_h.signum(), drilling: w_z.signum(), ..Ways::default() });
             }
             let other = draws.next() < 0.5;
             let kind = (draws.next() * 3.0) as usize;

@@ -151,8 +151,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if let Some(left) = left {
             self.sums_bounces(&after, left, bounce);
         }
-        let level =
-            || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
+        let level = || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
         }

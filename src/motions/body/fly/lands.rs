@@ -120,10 +120,7 @@ impl Flight {
         let sine = if s + s0 > 0.0 { -(cosine * (c + c0) / (s + s0)) } else { 0.0 };
         let first = self.height_at_start(k);
         let [.., up] = self.velocity;
-        [
-            first + t * (up - 0.5 * t) - rim.slope((sine, cosine)),
-            up - t - rim.slope((sine_rate, cosine_rate)),
-        ]
+        [first + t * (up - 0.5 * t) - rim.slope((sine, cosine)), up - t - rim.slope((sine_rate, cosine_rate))]
     }
 
     /// The height of a rim at the start.

@@ -7,11 +7,11 @@
 //! ```
 //! [`contact::lying`](crate::laws::contact) has the equations. Error: the tolerance of the steps.
 
-use crate::laws::body::Shape;
 use crate::laws::contact::grip;
 use crate::laws::contact::lying::{Flat, Lain, Lying};
 use crate::laws::contact::together::Resting;
-use crate::laws::loss::{SLACK, Ways};
+use crate::laws::loss::{GRACE, SLACK, Ways};
+use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::Kind;
@@ -23,7 +23,6 @@ use crate::motions::walk::numbers::{
     BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, pose_rates, poses,
 };
 use crate::numbers::{Dual, Real};
-use core::f64::consts::FRAC_PI_2;
 
 /// The motion of the rims of a lying body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,14 +78,13 @@ pub(crate) struct LyingFlow<G = ()> {
 }
 
 /// w1, w3, u_h and u_2 among the numbers.
-fn flat<T: Copy>(y: &[T]) -> Flat<T> {
+pub(super) fn flat<T: Copy>(y: &[T]) -> Flat<T> {
     [y[W1], y[W3], y[UH], y[U2]]
 }
 
 impl<G: Own> LyingFlow<G> {
     pub fn new(law: Lying<f64>, own: G, fixed: f64, (over, tol): (f64, f64)) -> Self {
-        let (ell, i1, i3) = (law.shape.rim.ell, law.shape.i1, law.shape.i3);
-        let soft = if law.dry { 0.25 * law.strength[0] * (1.0 + ell * ell / i1 + 1.0 / i3) } else { 0.0 };
+        let soft = if law.dry { 0.25 * law.strength[0] * law.yields(0, 0) } else { 0.0 };
         Self {
             law,
             own,
@@ -118,11 +116,12 @@ impl<G: Own> LyingFlow<G> {
     /// Sets the signs of these w1 and w3, and holds those that are at rest and that dry losses resist.
     pub fn holds_all<const N: usize>(&mut self, y: &[f64; N]) {
         let [resists, resists_rolling] = self.limits.map(|limit| limit > 0.0);
-        let mut ways = Ways::of(y[W3], y[W1]);
-        if y[W1] == 0.0 && resists && self.stance != Stance::Rolls {
+        let [drilling, rolling] = self.law.turning(y[W1], y[W3]);
+        let mut ways = Ways::of(rolling, drilling);
+        if drilling == 0.0 && resists && self.stance != Stance::Rolls {
             ways = ways.holding(Resting::Drilling);
         }
-        if y[W3] == 0.0 && resists_rolling {
+        if rolling == 0.0 && resists_rolling {
             ways = ways.holding(Resting::Contour);
         }
         self.turn_to(ways);
@@ -141,7 +140,7 @@ impl<G: Own> LyingFlow<G> {
 
     /// This flow with another motion of the rims.
     pub fn in_stance<const N: usize>(mut self, stance: Stance, y: &[f64; N]) -> Self {
-        (self.stance, self.turn) = (stance, y[W1].signum());
+        (self.stance, self.turn) = (stance, self.law.turning(y[W1], y[W3])[0].signum());
         self.sets_ways(y);
         self
     }
@@ -192,6 +191,12 @@ impl<G: Own> LyingFlow<G> {
         law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))])
     }
 
+    /// The largest force along e_h that friction holds at both rims together, beside these forces across.
+    pub fn holds_together(&self, force: &[[f64; 3]; 2]) -> f64 {
+        let left = |[n, across, _]: [f64; 3]| ((self.fixed * n).powi(2) - across * across).max(0.0).sqrt();
+        force.iter().map(|force| left(*force)).sum::<f64>() * (1.0 + GRACE)
+    }
+
     /// The speeds of the slips of both rims.
     fn speeds<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let [u, v] = self.law.other_slip(flat(y));
@@ -203,10 +208,12 @@ impl<G: Own> LyingFlow<G> {
         let one = y[0].splat(1.0);
         let [here, there] = at.force;
         let (held, Ways { contour, drilling, .. }) = (law.held(), self.ways());
+        let angle = law.border.angle;
+        let turning = [drilling_of(angle, y[0], y[1]), -rolling_of(angle, y[0], y[1])];
         let hold = |i: usize| {
             let (needs, way) = ([at.couple[i], one.splat(self.limits[i])], one.splat([drilling, contour][i]));
             let resists = self.limits[i] > 0.0;
-            margin_of_way((held[i], needs), (resists, way), y[i], one.splat(SLACK))
+            margin_of_way((held[i], needs), (resists, way), turning[i], one.splat(SLACK))
         };
         let fixed = one.splat(self.fixed);
         let grips = |[n, across, along]: [T; 3]| {
@@ -215,7 +222,7 @@ impl<G: Own> LyingFlow<G> {
         match self.stance {
             Stance::Slips => [there[0], here[0], one, one, hold(0), hold(1)],
             Stance::Pivots { other } => {
-                let turning = one.splat(self.turn) * y[0];
+                let turning = one.splat(self.turn) * turning[0];
                 [there[0], here[0], grips(if other { there } else { here }), turning, one, hold(1)]
             }
             Stance::Rolls => {
@@ -242,15 +249,14 @@ impl<G: Own> LyingFlow<G> {
         if self.stance != Stance::Slips || !self.law.dry {
             return 0.0;
         }
-        let Shape { rim, i1, i3 } = self.law.shape;
-        let (turns, shifts) = (rim.ell * rim.ell / i1, 1.0 + 1.0 / i3);
+        let [own, far, mixed] = [(0, 0), (1, 1), (0, 1)].map(|(at, by)| self.law.yields(at, by));
         let ([here, there], [a, b]) = (self.lain(y).force, self.speeds(y));
         let (mut low, mut up, mut strength) = (here[0] / a, there[0] / b, self.law.strength[0]);
         if G::IS {
             let [here, there] = self.law_at(flat(y)).strength;
             (low, up, strength) = (here * low, there * up, 1.0);
         }
-        let (sum, product) = ((low + up) * (turns + shifts), 4.0 * low * up * turns * shifts);
+        let (sum, product) = (low * own + up * far, low * up * (own * far - mixed * mixed));
         0.5 * strength * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt())
     }
 
@@ -281,7 +287,8 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
     }
 
     fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {
-        FRAC_PI_2
+        let (s, c) = self.law.border.angle;
+        s.atan2(c)
     }
 
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
@@ -298,10 +305,14 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         let heat = -(low_2 * u_2 + low_h * u_h + up_2 * other_2 + up_h * other_h);
         all[..9].copy_from_slice(&[0.0, 0.0, at.w[0], 0.0, at.w[1], at.u[0], at.u[1], 1.0, heat]);
         if poses(N) {
-            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [w1, w3], [u_h, u_2 + w3]));
+            let ((s, c), [here, _]) = (self.law.border.angle, self.law.border.circles);
+            let (turns, spin) = (w1 / s, spin_of((s, c), w1, w3));
+            let over = [u_h, u_2 + here.radius * spin];
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [turns, spin], over));
         }
         if loses(N) {
-            all[N - 1] = -(at.couple[0] * w1 + at.couple[1] * w3);
+            let angle = self.law.border.angle;
+            all[N - 1] = at.couple[1] * rolling_of(angle, w1, w3) - at.couple[0] * drilling_of(angle, w1, w3);
         }
         all.iter_mut().for_each(|x| *x *= pace);
     }
@@ -328,7 +339,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         let [here, there] = self.speeds(y);
         let slips = self.stance == Stance::Slips && self.law.dry;
         let per_slip = if slips { per_speed.max(1e3 / here.min(there)) } else { per_speed };
-        let per_turn = if slips { per_speed.max(2e3 * self.law.shape.rim.ell / there) } else { per_speed };
+        let per_turn = if slips { per_speed.max(1e3 * self.law.border.span() / there) } else { per_speed };
         let per = |i: usize| match i {
             0 | 1 | 7 => per_tol,
             2 => per_turn,
@@ -371,7 +382,6 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         if self.stance != Stance::Slips || !self.law.dry {
             return None;
         }
-        let ell = self.law.shape.rim.ell;
         let slips = [place.y.slip(), self.law.other_slip(flat(&place.y))];
         let rates = [place.rate.slip(), self.law.other_slip(flat(&place.rate))];
         let (mut halt, mut y) = (None, place.y);
@@ -383,7 +393,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
             }
             let left = if speed > 0.0 { speed / slowing } else { 0.0 };
             y = core::array::from_fn(|i| place.y[i] + left * place.rate[i]);
-            (y[UH], y[U2]) = if i == 0 { (0.0, 0.0) } else { (0.0, 2.0 * ell * y[W1]) };
+            [y[UH], y[U2]] = self.law.stuck(flat(&y), i == 1);
             halt = Some(if i == 0 { Halt::Standstill } else { Halt::OtherStandstill });
         }
         halt.map(|halt| (halt, y))

@@ -19,13 +19,14 @@ use super::fly::flies::pose_from;
 use super::own::Own;
 use super::write;
 use crate::error::Error;
+use crate::laws::body::Body;
 use crate::laws::contact::landing::mirrored;
 use crate::laws::contact::lying::{Lain, Lying};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
 use crate::laws::loss::{GRACE, Ways};
-use crate::laws::state::State;
+use crate::laws::state::{State, spin_of};
 use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
 use crate::motions::ask::row::OutputRow;
@@ -35,7 +36,7 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
 use crate::motions::{Ask, Ending, Kind, Phase};
 use core::f64::consts::{FRAC_PI_2, PI};
-use flow::{LyingFlow, LyingPhase, Stance};
+use flow::{LyingFlow, LyingPhase, Stance, flat};
 
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
@@ -79,14 +80,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if self.made.path.upside_down {
             self.turns_over();
         }
-        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
-        self.of.state = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+        self.lays_down();
+        self.of.state = State { theta: self.of.body.theta_end(), w2: 0.0, ..self.of.state };
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
-        let ell = self.of.body.ell();
-        let [w1, w3, u_h, u_2] = [self.at[W1], self.at[W3], self.at[UH], self.at[U2]];
-        let other = u_2 - 2.0 * ell * w1;
-        let size =
-            STILL_SLIP * [w1 * ell, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let flat @ [w1, w3, u_h, u_2] = [self.at[W1], self.at[W3], self.at[UH], self.at[U2]];
+        let [_, other] = flow.law.other_slip(flat);
+        let turns = 0.5 * flow.law.border.span() * flow.law.turning(w1, w3)[0];
+        let size = STILL_SLIP * [turns, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
         let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
         for (sticks, across) in still.into_iter().zip([u_2, other]) {
             if sticks {
@@ -95,17 +95,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         match still {
             [true, true] => {
-                (self.at[W1], self.at[UH], self.at[U2]) = (0.0, 0.0, 0.0);
-                self.sets_state();
+                self.rolls_along(&flow.law);
                 self.begins_stance(flow, Stance::Rolls)
             }
             [false, false] => {
                 let [here, there] = self.normals(&mut flow);
-                let [low, up] = flow.law_at([w1, w3, u_h, u_2]).strength;
-                let room = if flow.law.dry && low == up {
-                    ell + ell + low * (u_h / u_h.hypot(other) - u_h / u_h.hypot(u_2))
-                } else if flow.law.dry {
-                    ell + ell + up * u_h / u_h.hypot(other) - low * u_h / u_h.hypot(u_2)
+                let law = flow.law_at(flat);
+                let [low, up] = law.strength;
+                let room = if law.dry {
+                    let [p, q] = law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]);
+                    p + q
                 } else {
                     1.0
                 };
@@ -116,7 +115,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 }
             }
             [here, _] => {
-                (self.at[UH], self.at[U2]) = (0.0, if here { 0.0 } else { 2.0 * ell * w1 });
+                [self.at[UH], self.at[U2]] = flow.law.stuck(flat, !here);
                 self.sets_state();
                 self.rests_on_one(flow, !here)
             }
@@ -126,6 +125,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether the friction of the rim that carries the body presses it into the table.
     fn jams_here(&self, slip: [f64; 2]) -> bool {
         self.of.slide.at_start(&self.of.state, slip) == Some(Halt::Jam)
+    }
+
+    /// Sets the numbers of the inclination to those of both rims on the table.
+    fn lays_down(&mut self) {
+        (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+        self.at[W2] = 0.0;
+    }
+
+    /// Takes the rest of a turn about the vertical and of the slip from a body that rolls.
+    fn rolls_along(&mut self, law: &Lying<f64>) {
+        let [_, rolling] = law.turning(self.at[W1], self.at[W3]);
+        [self.at[W1], self.at[W3]] = law.turned_by([0.0, rolling]);
+        (self.at[UH], self.at[U2]) = (0.0, 0.0);
+        self.sets_state();
     }
 
     fn sets_state(&mut self) {
@@ -147,13 +160,23 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let Lain { w: [_, slows], force, .. } = flow.lain(&self.at);
             // Only a couple of the user presses the rims differently, or turns the body about the vertical.
             let slips = |[n, across, _]: [f64; 3]| across.abs() > flow.fixed * n * (1.0 + GRACE);
-            if slows.abs() > flow.fixed * (1.0 + GRACE) || G::IS && force.into_iter().any(slips) {
+            if let Some(lower) = (0..2).find(|k| force[*k][0] < 0.0) {
+                // The other end carries the body, and this one rises.
+                return self.rises_on(lower == 1);
+            }
+            let pull = law.pulls_to_apex(flat(&self.at));
+            if pull.abs() > flow.holds_together(&force) {
+                self.at[UH] = -pull.signum() * NUDGED;
+                return self.begins_stance(flow, Stance::Slips);
+            }
+            if slows.abs() > flow.fixed * (1.0 + GRACE) || force.into_iter().any(slips) {
                 // Both rims slip across, since friction cannot slow the body as much as the losses do.
                 self.at[U2] = -slows.signum() * NUDGED;
                 return self.begins_stance(flow, Stance::Slips);
             }
         }
-        if stance == Stance::Rolls && self.at[W3] == 0.0 && law.held()[1] {
+        let [_, rolling] = law.turning(self.at[W1], self.at[W3]);
+        if stance == Stance::Rolls && rolling == 0.0 && law.held()[1] {
             while self.until().is_some_and(|t| t <= self.at[TIME]) {
                 self.writes_lying(&flow, &{ self.at });
             }
@@ -168,7 +191,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !here {
             self.turns_over();
         }
-        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
+        self.lays_down();
         self.of.state.w2 = 0.0;
         let slip = self.at.slip();
         if slip == [0.0; 2] && self.of.slide.law.dry {
@@ -183,9 +206,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     #[inline(never)]
     pub(crate) fn rocks_to_pivot(&mut self) -> Option<Next> {
         let mut flow = self.flat()?;
-        let ell = self.of.body.ell();
-        let [w1, w2, u_h, u_2] = [W1, W2, UH, U2].map(|i| self.at[i]);
-        let speeds = [u_2, u_2 - 2.0 * ell * w1].map(|across| u_h.hypot(across));
+        let ([here, there], w2) = (flow.law.border.circles, self.at[W2]);
+        let lever = here.lever.min(-there.lever);
+        let y @ [.., u_h, u_2] = flat(&self.at);
+        let speeds = [u_2, flow.law.other_slip(y)[1]].map(|across| u_h.hypot(across));
         let other = speeds[1] < speeds[0];
         let [slow, fast] = if other { [speeds[1], speeds[0]] } else { speeds };
         let mu = if self.of.own.varies() { self.of.own.coefficient_at(fast) } else { flow.law.strength[0] };
@@ -194,21 +218,23 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return None;
         }
         let begin = self.at;
-        (self.at[W2], self.at[UH], self.at[U2]) = (0.0, 0.0, if other { 2.0 * ell * w1 } else { 0.0 });
+        self.at[W2] = 0.0;
+        [self.at[UH], self.at[U2]] = flow.law.stuck(y, other);
         flow = flow.in_stance(Stance::Pivots { other }, &self.at);
         let Lain { force, .. } = flow.lain(&self.at);
         let [n, across, along] = force[usize::from(other)];
         let least = force[0][0].min(force[1][0]);
         // A rim that is only just held, or presses little, takes longer to come to rest.
         let lasts =
-            ROCKS_LONG * slow * (1.0 / mu + 1.0 / ell) / (least * (1.0 - across.hypot(along) / (mu * n)));
+            ROCKS_LONG * slow * (1.0 / mu + 1.0 / lever) / (least * (1.0 - across.hypot(along) / (mu * n)));
         let held = flow.law.held() != [false; 2];
         if held || least <= 0.0 || !(0.0..ROCKS_ON).contains(&lasts) {
             self.at = begin;
             return None;
         }
         // The impulses that take the speed `slow` would change w1 and w3 by as much as friction does in this time.
-        let pushes = mu * (ell / self.of.body.i1()).max(1.0 / self.of.body.i3());
+        let (far, wide) = (here.depth.abs().max(there.depth.abs()), here.radius.max(there.radius));
+        let pushes = mu * (far / self.of.body.i1()).max(wide / self.of.body.i3());
         self.claims(slow + lasts * (1.0 + pushes));
         self.sets_state();
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
@@ -229,44 +255,54 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return self.begins_stance(flow, Stance::Pivots { other });
         }
         // The rim at rest, or the other one, carries the body alone.
-        let seen = |view: bool| {
-            let slip = self.at.slip();
-            if view { mirrored(&self.of.body, &self.of.state, slip) } else { (self.of.state, slip) }
-        };
-        let (state, _) = seen(other);
-        let friction = self.friction();
-        let found = standstill(&self.of.body, &state, &friction, self.of.couples(&self.ask));
-        let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
-        if alone && self.lifts(&state, found) {
+        let found = self.seen_from(other, |walk| {
+            let found = walk.rests_here();
+            let alone = matches!(found, Standstill::Sticks | Standstill::Slips { .. });
+            (alone && walk.lifts(found)).then_some(found)
+        });
+        if let Some(found) = found {
             if other {
                 self.turns_over();
             }
             self.at[W2] = 0.0;
             return after_rest(found);
         }
-        let (state, slip) = seen(!other);
-        let w = [state.w1, 0.0, state.w3];
-        let one = self.of.slide.slips((1.0, 0.0), w, slip, None).0;
-        if one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0 {
-            return self.rises_on(other);
+        let slides = self.seen_from(!other, |walk| {
+            let State { w1, w3, .. } = walk.of.state;
+            let one = walk.of.slide.slips(walk.at.angle(), [w1, 0.0, w3], walk.at.slip(), None).0;
+            one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0
+        });
+        if slides { self.rises_on(other) } else { self.slips_off_two(flow, other, None) }
+    }
+
+    /// What is found while the walk is seen from the other rim, if `other`.
+    fn seen_from<T>(&mut self, other: bool, find: impl FnOnce(&Self) -> T) -> T {
+        if !other {
+            return find(self);
         }
-        self.slips_off_two(flow, other, None)
+        let (at, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let (body, slide, over) = (self.of.body, self.of.slide, self.made.path.upside_down);
+        self.turns_over();
+        let found = find(self);
+        (self.at, self.of.state, self.of.takeoff) = (at, state, takeoff);
+        (self.of.body, self.of.slide, self.made.path.upside_down) = (body, slide, over);
+        found
+    }
+
+    fn rests_here(&self) -> Standstill {
+        let state = State { w2: 0.0, ..self.of.state };
+        standstill(&self.of.body, &state, &self.friction(), self.of.couples(&self.ask))
     }
 
     /// Whether the other rim rises while this rim, which is at rest, carries the body alone.
-    fn lifts(&self, state: &State, found: Standstill) -> bool {
-        let w = [state.w1, 0.0, state.w3];
+    fn lifts(&self, found: Standstill) -> bool {
+        let state = State { w2: 0.0, ..self.of.state };
         match found {
             Standstill::Slips { alpha, .. } => {
                 let way = Some(towards(alpha));
-                self.of.slide.slips((1.0, 0.0), w, [0.0; 2], way).0.w[1] > 0.0
+                self.of.slide.slips(self.at.angle(), [state.w1, 0.0, state.w3], [0.0; 2], way).0.w[1] > 0.0
             }
-            _ if self.of.own.has_couple() => self.rolling_of(state).0[1] > 0.0,
-            _ => {
-                let ell = self.of.body.ell();
-                let (i3, w1, w3) = (self.of.body.i3(), state.w1, state.w3);
-                w1 * ((1.0 + i3) * w3 - ell * w1) > ell
-            }
+            _ => self.rolling_of(&state).0[1] > 0.0,
         }
     }
 
@@ -302,7 +338,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let turns = |alpha: f64| {
             let [cos, sin] = towards(alpha);
             let at = law.slipping_along(y, [[mu * cos, mu * sin], up]);
-            let room = 2.0 * law.shape.rim.ell + up[0] - mu * cos;
+            let [p, q] = law.leans([mu * cos, up[0]]);
+            let room = p + q;
             let sound = at.force.iter().all(|force| force[0] >= 0.0);
             (room * (cos * at.u[1] - sin * at.u[0]), cos * at.u[0] + sin * at.u[1], sound)
         };
@@ -330,9 +367,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let mut y = begin;
                 y[TIME] = t;
                 if poses(N) {
-                    let (sin, cos) = begin[PHI].sin_cos();
-                    let way = begin[W3] * (t - began);
-                    (y[PSI], y[X], y[Y]) = (begin[PSI] + way, begin[X] - way * sin, begin[Y] + way * cos);
+                    // The contact moves along a circle about the apex, or straight on.
+                    let ((s, c), [here, _]) = (flow.law.border.angle, flow.law.border.circles);
+                    let spun = spin_of((s, c), begin[W1], begin[W3]) * (t - began);
+                    let half = 0.5 * begin[W1] / s * (t - began);
+                    let (sin, cos) = (begin[PHI] + half).sin_cos();
+                    let chord = here.radius * spun * if half == 0.0 { 1.0 } else { half.sin() / half };
+                    (y[PHI], y[PSI]) = (begin[PHI] + 2.0 * half, begin[PSI] + spun);
+                    (y[X], y[Y]) = (begin[X] - chord * sin, begin[Y] + chord * cos);
                 }
                 self.writes_lying(&flow, &y);
             }
@@ -355,8 +397,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let place = flow.place(y);
         self.begins_lawfully(&flow, &place)?;
         let (ask, over, made) = (self.ask, self.over(), &mut self.made);
-        let seen = (over.as_ref(), made.path.way);
-        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, seen, y));
+        let (over, way, body) = (over.as_ref(), made.path.way, self.of.body);
+        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, Seen { over, way, body: &body }, y));
         let flown = flow.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
         self.heeds_laws(&flow, &flown, || flown.y)?;
@@ -376,7 +418,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
         self.at = y;
-        (self.at[SIN], self.at[COS], self.at[W2]) = (1.0, 0.0, 0.0);
+        self.lays_down();
         self.sets_state();
         self.made.path.slipping +=
             if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
@@ -405,7 +447,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 if let Some(part) = flow.ways().holds.ceasing(halt) {
                     flow.lets_go_of(part, &self.at);
                 } else {
-                    self.at[if halt == Halt::Contour { W3 } else { W1 }] = 0.0;
+                    let law = &flow.law;
+                    let mut turning = law.turning(self.at[W1], self.at[W3]);
+                    turning[usize::from(halt == Halt::Contour)] = 0.0;
+                    [self.at[W1], self.at[W3]] = law.turned_by(turning);
                     self.sets_state();
                     flow.sets_ways(&self.at);
                 }
@@ -417,7 +462,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 Next::Ends(Ending::Stops)
             }
             Halt::Turned => {
-                (self.at[W1], self.at[UH], self.at[U2]) = (0.0, 0.0, 0.0);
+                self.rolls_along(&phase.flow.law);
                 self.settles_on_side()
             }
             Halt::Standstill | Halt::OtherStandstill => self.settles_on_side(),
@@ -440,8 +485,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// Writes a body on both rims to the outputs.
     pub(crate) fn writes_lying(&mut self, flow: &LyingFlow<G>, y: &[f64; N]) {
-        let row = row_of(&self.ask, flow, (self.over().as_ref(), self.made.path.way), y);
-        self.made.push(row);
+        let over = self.over();
+        let seen = Seen { over: over.as_ref(), way: self.made.path.way, body: &self.of.body };
+        self.made.push(row_of(&self.ask, flow, seen, y));
     }
 
     /// The current numbers, if they are seen from the other rim.
@@ -455,12 +501,19 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 }
 
-/// The outputs of a body on both rims, as seen from the first rim; `over` are numbers of the same phase if these and `y`
-/// are seen from the other rim. A rim whose slip just begins slips along `way`.
+/// How a body on both rims is seen: numbers of the same phase if these are seen from the other rim; the direction in which
+/// the slip of a rim just begins; and the body as seen from this rim.
+struct Seen<'a> {
+    over: Option<&'a Aloft>,
+    way: [f64; 2],
+    body: &'a Body,
+}
+
+/// The outputs of a body on both rims, as seen from the first rim.
 fn row_of<G: Own, const N: usize>(
     ask: &Ask,
     flow: &LyingFlow<G>,
-    (over, way): (Option<&Aloft>, [f64; 2]),
+    Seen { over, way, body }: Seen<'_>,
     y: &[f64; N],
 ) -> OutputRow<State> {
     let mut slips = [y.slip(), flow.law.other_slip([y[W1], y[W3], y[UH], y[U2]])];
@@ -472,13 +525,15 @@ fn row_of<G: Own, const N: usize>(
         (forces, w3) = ([turned(forces[1]), turned(forces[0])], back(w3));
         if poses(N) {
             let pose = core::array::from_fn(|i| y[9 + i]);
-            seen[PHI..PHI + 4].copy_from_slice(&pose_from(over, &flow.law.shape, true, pose));
+            seen[PHI..PHI + 4].copy_from_slice(&pose_from(over, &body.rims(), true, pose));
         }
     }
     let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
     let doubt = flow.tol * (1.0 + y[W1].abs().max(y[W3].abs()));
     let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
-    let state = State { theta: FRAC_PI_2, w1: y[W1], w2: 0.0, w3 };
+    let theta = body.theta_end();
+    let theta = if over.is_some() && theta != FRAC_PI_2 { PI - theta } else { theta };
+    let state = State { theta, w1: y[W1], w2: 0.0, w3 };
     OutputRow {
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),

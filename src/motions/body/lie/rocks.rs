@@ -8,13 +8,12 @@
 //! summed, and that time, times the angle by which a slow slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
-use crate::laws::state::State;
+use crate::laws::state::{State, spin_of};
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
 };
-use core::f64::consts::FRAC_PI_2;
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
@@ -28,10 +27,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
-        let upside_down = self.made.path.upside_down;
+        let (body, slide, upside_down) = (self.of.body, self.of.slide, self.made.path.upside_down);
         let found = self.cycle(&begin);
         (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
-        self.made.path.upside_down = upside_down;
+        (self.of.body, self.of.slide, self.made.path.upside_down) = (body, slide, upside_down);
         found
     }
 
@@ -39,7 +38,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
-            let y = State { theta: FRAC_PI_2, w2: 0.0, ..self.of.state };
+            let y = State { theta: self.of.body.theta_end(), w2: 0.0, ..self.of.state };
             let (slip, rises) = (self.at.slip(), self.at[W2]);
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
@@ -51,7 +50,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let (rate, taken) = self.rolling_of(&y);
                 (rate, [0.0; 2], 0.0, taken)
             } else {
-                let (at, taken) = self.of.slide.slips((1.0, 0.0), w, slip, None);
+                let (at, taken) = self.of.slide.slips(self.of.body.border_angle(), w, slip, None);
                 (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
             };
             if rate[1] >= 0.0 {
@@ -67,13 +66,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 self.at[N - 1] += lasts * taken;
             }
             if poses(N) {
-                let rates = pose_rates(self.at[PHI], [y.w1, y.w3], [slip[0], slip[1] + y.w3]);
+                let angle = self.of.body.border_angle();
+                let spin = spin_of(angle, y.w1, y.w3);
+                let over = [slip[0], slip[1] + self.of.slide.law.shape.rim.radius(angle) * spin];
+                let rates = pose_rates(self.at[PHI], [y.w1 / angle.0, spin], over);
                 for (number, rate) in self.at[PHI..].iter_mut().zip(rates) {
                     *number += lasts * rate;
                 }
             }
             self.at[W2] = -rises;
-            let before = State { theta: FRAC_PI_2, w1: self.at[W1], w2: -rises, w3: self.at[W3] };
+            let before =
+                State { theta: self.of.body.theta_end(), w1: self.at[W1], w2: -rises, w3: self.at[W3] };
             let slip = self.at.slip();
             let landed = land_at(&self.of.body, &before, (slip, 0.0), &self.friction(), &self.of.own).ok()?;
             if landed.outcome != Outcome::Changes {
@@ -84,7 +87,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let share = 1.0 - self.at[W2] / begin[W2];
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
-        (end[SIN], end[COS], end[W2]) = (1.0, 0.0, 0.0);
+        (end[SIN], end[COS]) = self.of.body.border_angle();
+        end[W2] = 0.0;
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
