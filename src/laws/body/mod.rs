@@ -196,7 +196,8 @@ impl Body {
         let [_, theta_end] = row.range();
         let unit = radius + fillet == 1.0;
         let row = match (row.circles(), row.next()) {
-            ([_], _) if unit => None,
+            // A single circle is known to be the only one, unlike that of a body which may have another rim.
+            ([_], _) if unit && (radius == 0.0 || depth <= 0.0) => None,
             ([_, _], Some(next)) if unit && next == (Circle { depth: 0.0 - depth, ..row.here() }) => None,
             _ => Some(row),
         };
