@@ -89,9 +89,10 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    let found = if ask.conserves() {
+    let found = if ask.conserves() && !body.has_joints() {
         path::refuse_slip(start.slip)?;
-        conserved(body, start, times, ask, go_on)?
+        let (body, start) = start.seen_on(body);
+        conserved(&body, &start, times, ask, go_on)?.told(&body.view())
     } else {
         path::follow(body, start, times, ask, go_on)?
     };

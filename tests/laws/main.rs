@@ -4,6 +4,7 @@
 
 mod big_integers;
 mod circles;
+mod zz;
 mod common;
 mod custom;
 mod custom_stones;

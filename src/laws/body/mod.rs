@@ -28,6 +28,7 @@ use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
 use core::f64::consts::{FRAC_PI_2, PI};
 pub use profile::Circle;
+pub(crate) use profile::{Landings, MOST_CIRCLES};
 use profile::Row;
 pub(crate) use rim::{Border, Rim, Shape, Touching};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
@@ -59,6 +60,8 @@ pub struct Body {
     rim: Sum<f64>,
     excess: Sum<f64>,
     theta_end: f64,
+    /// The inclination at which the circle before the one that carries lands; 0 without one.
+    low: f64,
     /// The circles of the body, if they are neither one circle nor two equal rims.
     row: Option<Row>,
 }
@@ -164,7 +167,7 @@ impl Body {
     /// stem, a cap or the shoulder of a bottle lands.
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
-        Ok(Self { theta_end, row: None, ..self })
+        Ok(Self { theta_end, low: 0.0, row: None, ..self })
     }
 
     /// Any body of revolution that touches the table with these circles, from the lower end up, with its moments of inertia
@@ -193,7 +196,7 @@ impl Body {
     /// This body on the circle of a row that carries.
     fn on(self, row: Row) -> Self {
         let Circle { radius, depth, fillet } = row.here();
-        let [_, theta_end] = row.range();
+        let [low, theta_end] = row.range();
         let unit = radius + fillet == 1.0;
         let row = match (row.circles(), row.next()) {
             // A single circle is known to be the only one, unlike that of a body which may have another rim.
@@ -202,7 +205,7 @@ impl Body {
             _ => Some(row),
         };
         let rim = if unit { Sum::of(1.0, -fillet) } else { radius.into() };
-        Self { ell: depth, fillet, rim, theta_end, row, ..self }
+        Self { ell: depth, fillet, rim, low, theta_end, row, ..self }
     }
 
     /// The circles of the body, from the end from which it is seen.
@@ -218,7 +221,7 @@ impl Body {
     /// Whether another circle of the body lands at theta_end.
     pub(crate) fn has_two_rims(&self) -> bool {
         match &self.row {
-            Some(row) => row.next().is_some(),
+            Some(row) => row.next().is_some() && !row.joins_next(),
             None => self.ell > 0.0 && self.theta_end == FRAC_PI_2,
         }
     }
@@ -235,9 +238,87 @@ impl Body {
         [self.shape().rim, self.next_rim()]
     }
 
-    /// The body with the circle carrying that lands at theta_end, as seen from the end of that circle.
+    /// The circles that may land.
+    pub(crate) fn landings(&self) -> Landings {
+        match &self.row {
+            Some(row) => row.landings(),
+            None => Landings::of(self.shape().rim, self.has_two_rims().then(|| self.next_rim())),
+        }
+    }
+
+    /// The number of the circle that carries, as seen from the same end.
+    pub(crate) fn here_is(&self) -> usize {
+        self.row.map_or(0, |row| row.here_is())
+    }
+
+    /// The body with this circle carrying, by its number as seen from the same end, as seen from the other end.
+    pub(crate) fn turned_on(&self, at: usize) -> Self {
+        self.row.and_then(|row| row.at(at)).map_or(*self, |row| self.on(row.turned()))
+    }
+
+    /// Whether the body is seen from the end that is farther from a circle at an end, whose face then is at theta = pi.
+    pub(crate) fn is_seen_from_afar(&self) -> bool {
+        self.low > 0.0 && self.theta_end == PI
+    }
+
+    /// The body with the circle carrying that lands at theta_end, as seen from the other end.
     pub(crate) fn beyond(&self) -> Self {
-        self.row.as_ref().map_or(*self, |row| self.on(row.beyond()))
+        self.turned_on(self.here_is() + 1)
+    }
+
+    /// The body as seen from its other end, with the same circle carrying.
+    pub(crate) fn turned(&self) -> Self {
+        self.row.map_or(*self, |row| self.on(row.turned()))
+    }
+
+    /// The body with this circle carrying, by its number as seen from the same end. It is seen from the other end if
+    /// that is nearer to a circle at an end, whose face then is at theta = 0.
+    pub(crate) fn on_circle(&self, at: usize) -> Self {
+        let Some(row) = self.row.and_then(|row| row.at(at)) else { return *self };
+        let body = self.on(row);
+        if body.is_seen_from_afar() { body.turned() } else { body }
+    }
+
+    /// The body with the circle carrying that does so at this inclination, told from the lower end of the body.
+    pub(crate) fn at(&self, theta: f64) -> Self {
+        let Some(mut row) = self.row else { return *self };
+        if row.is_over() {
+            row = row.turned();
+        }
+        let carries = |at: &usize| row.at(*at).is_some_and(|row| theta <= row.range()[1]);
+        let at = (0..row.circles().len()).find(carries).unwrap_or(row.circles().len() - 1);
+        Self { row: Some(row), ..*self }.on_circle(at)
+    }
+
+    /// Where the circle that carries stands in the body.
+    pub(crate) fn view(&self) -> View {
+        let Some(row) = &self.row else { return View::default() };
+        let number = |row: &Row| row.number() as u8;
+        let next = row.at(row.here_is() + 1);
+        let (range, told) = (row.range(), row.told());
+        let borders = [0, 1].map(|i| [range[i], told[if row.is_over() { 1 - i } else { i }]]);
+        let circles = [number(row), next.as_ref().map_or(number(row), number)];
+        View { over: row.is_over(), circles: Some(circles), borders }
+    }
+
+    /// Whether the body has circles that are neither one circle of radius 1 nor two equal rims.
+    pub(crate) fn has_row(&self) -> bool {
+        self.row.is_some()
+    }
+
+    /// Whether the circle that carries touches the next one at a smooth joint.
+    pub(crate) fn joins_next(&self) -> bool {
+        self.row.is_some_and(|row| row.joins_next())
+    }
+
+    /// Whether any two circles of the body touch at a smooth joint.
+    pub(crate) fn has_joints(&self) -> bool {
+        self.row.is_some_and(|row| row.borders().any(|[_, span]| span == 0.0))
+    }
+
+    /// The inclinations within which the circle that carries does so.
+    pub(crate) fn carries(&self) -> [f64; 2] {
+        [self.low, self.theta_end]
     }
 
     /// Uniform tube with these dimensions in metres (or in any other common unit); `fillet` is the radius of its outer
@@ -275,6 +356,7 @@ impl Body {
             rim: Sum::of(1.0, -fillet),
             excess: f64::NAN.into(),
             theta_end: beyond(ell, fillet),
+            low: 0.0,
             row: None,
         }
     }
@@ -452,6 +534,39 @@ impl Body {
 pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     let (zero, one, level, round) = (ell.splat(0.0), ell.splat(1.0), ell.splat(FRAC_PI_2), ell.splat(PI));
     zero.select_lt(ell, fillet.select_lt(one, level, round), round)
+}
+
+/// Whether a body at this inclination is beyond the `range` in which its circle carries, or is at a border of it and does
+/// not tilt away from there; `tilts` is w2, or w2' where w2 vanishes.
+pub(crate) fn leaves([low, high]: [f64; 2], theta: f64, tilts: f64) -> bool {
+    let beyond = |by: f64, away: bool| by < 0.0 || by == 0.0 && !away;
+    high < PI && beyond(high - theta, tilts > 0.0) || low > 0.0 && beyond(theta - low, tilts < 0.0)
+}
+
+/// The border of the `range` that is nearest to an inclination.
+pub(crate) fn border_at([low, high]: [f64; 2], theta: f64) -> f64 {
+    if low > 0.0 && theta - low < high - theta { low } else { high }
+}
+
+/// How the circle that carries is seen, and its place in the body.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct View {
+    /// Whether the body is seen from its upper end.
+    pub over: bool,
+    /// The numbers of the circle that carries and of the one that lands at theta_end; None for a body with one circle or
+    /// two equal rims.
+    pub circles: Option<[u8; 2]>,
+    /// Both borders of the circle, as seen and as told from the lower end.
+    pub borders: [[f64; 2]; 2],
+}
+
+impl View {
+    /// The state as told from the lower end of the body.
+    pub fn tells(&self, theta: f64) -> f64 {
+        let border = self.borders.iter().find(|[seen, _]| *seen == theta);
+        border.map_or(PI - theta, |[_, told]| *told)
+    }
 }
 
 /// The sine of the angle that is left to a border.

@@ -55,6 +55,47 @@ impl Circle {
     }
 }
 
+/// The circles that may land, as seen from the end from which the body is seen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Landings {
+    pub rims: [Rim<f64>; MOST_CIRCLES],
+    /// The first and the last of the circles that smooth joints connect; those of the circle that carries come first.
+    groups: [[usize; 2]; MOST_CIRCLES],
+    pub count: usize,
+    /// Cosines of the upper borders.
+    tops: [f64; MOST_CIRCLES],
+}
+
+impl Landings {
+    /// One circle, or two.
+    pub fn of(here: Rim<f64>, there: Option<Rim<f64>>) -> Self {
+        let mut groups = [[0; 2]; MOST_CIRCLES];
+        groups[1] = [1; 2];
+        let (mut rims, count) = ([here; MOST_CIRCLES], 1 + usize::from(there.is_some()));
+        rims[1] = there.unwrap_or(here);
+        Self { rims, groups, count, tops: [-1.0; MOST_CIRCLES] }
+    }
+
+    /// The circle of a group that is the lowest one of these at an inclination with this cosine.
+    pub fn lowest(&self, group: usize, cosine: f64) -> usize {
+        let [first, last] = self.groups[group];
+        (first..last).find(|k| cosine >= self.tops[*k]).unwrap_or(last)
+    }
+
+    /// The circles of a group.
+    pub fn group(&self, group: usize) -> &[Rim<f64>] {
+        let [first, last] = self.groups[group];
+        &self.rims[first..=last]
+    }
+
+    /// The least angle from an inclination to a joint of the group of the circle that carries.
+    pub fn from_joint(&self, angle: (f64, f64)) -> f64 {
+        let [first, last] = self.groups[0];
+        let joint = |k: usize| (self.tops[k].acos() - angle.0.atan2(angle.1)).abs();
+        (first..last).map(joint).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// The circles of a body in the order in which they carry it, as seen from one end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Row {
@@ -62,13 +103,15 @@ pub(crate) struct Row {
     count: usize,
     /// The circle that carries.
     at: usize,
+    /// Whether the body is seen from its upper end.
+    over: bool,
 }
 
 impl Row {
     /// The row of circles of a body, from the lower end up, without those that never touch.
     pub fn of(given: &[Circle]) -> Result<Self, Error> {
         let none = Circle { radius: 0.0, depth: 0.0, fillet: 0.0 };
-        let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0 };
+        let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0, over: false };
         let refuse = |value, expected| Err(Error::OutOfRange { name: "circles", value, expected });
         for (k, circle) in given.iter().enumerate() {
             within("radius", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
@@ -124,10 +167,18 @@ impl Row {
         self.both(k)[0]
     }
 
+    /// The borders of the circle that carries, as told from the lower end of the body; 0 and pi at the ends.
+    pub fn told(&self) -> [f64; 2] {
+        let row = if self.over { self.turned() } else { *self };
+        let low = if row.at == 0 { 0.0 } else { row.border(row.at - 1) };
+        [low, if row.at + 1 < row.count { row.border(row.at) } else { PI }]
+    }
+
     /// The inclinations between which the circle that carries does so.
     pub fn range(&self) -> [f64; 2] {
-        let low = if self.at == 0 { 0.0 } else { self.border(self.at - 1) };
-        [low, if self.at + 1 < self.count { self.border(self.at) } else { PI }]
+        let [low, high] = self.told();
+        let back = |theta: f64| if theta == PI { 0.0 } else { PI - theta };
+        if self.over { [back(high), if low == 0.0 { PI } else { back(low) }] } else { [low, high] }
     }
 
     /// All circles.
@@ -142,15 +193,60 @@ impl Row {
 
     /// The row as seen from the other end.
     pub fn turned(&self) -> Self {
-        let mut row = Self { at: self.count - 1 - self.at, ..*self };
+        let mut row = Self { at: self.count - 1 - self.at, over: !self.over, ..*self };
         row.circles[..self.count].reverse();
         row.circles.iter_mut().for_each(|circle| circle.depth = 0.0 - circle.depth);
         row
     }
 
-    /// The row with the next circle carrying, as seen from the end of that circle if it is the last one.
-    pub fn beyond(&self) -> Self {
-        let row = Self { at: self.at + 1, ..*self };
-        if row.at + 1 == row.count { row.turned() } else { row }
+    /// The row with another circle carrying, as seen from the same end; None if there is no such circle.
+    pub fn at(&self, at: usize) -> Option<Self> {
+        (at < self.count).then_some(Self { at, ..*self })
+    }
+
+    /// The number of the circle that carries, as seen from the same end.
+    pub fn here_is(&self) -> usize {
+        self.at
+    }
+
+    /// The number of the circle that carries, from the lower end of the body.
+    pub fn number(&self) -> usize {
+        if self.over { self.count - 1 - self.at } else { self.at }
+    }
+
+    /// Whether the body is seen from its upper end.
+    pub fn is_over(&self) -> bool {
+        self.over
+    }
+
+    /// The circles that may land.
+    pub fn landings(&self) -> Landings {
+        let row = if self.over { self.turned() } else { *self };
+        let mut all = Landings::of(self.here().rim(), None);
+        let smooth = |k: usize| self.both(k)[1] == 0.0;
+        let mut first = 0;
+        for k in 0..self.count {
+            all.rims[k] = self.circles[k].rim();
+            let border = |k: usize| if self.over { PI - row.border(self.count - 2 - k) } else { row.border(k) };
+            if k + 1 < self.count {
+                all.tops[k] = border(k).cos();
+            }
+            if k + 1 == self.count || !smooth(k) {
+                let group = all.count;
+                if (first..=k).contains(&self.at) {
+                    all.groups[0] = [first, k];
+                } else {
+                    all.groups[group] = [first, k];
+                    all.count += 1;
+                }
+                first = k + 1;
+            }
+        }
+        all
+    }
+
+    /// Whether the circle that carries touches the next one at a smooth joint.
+    pub fn joins_next(&self) -> bool {
+        self.at + 1 < self.count && self.both(self.at)[1] == 0.0
     }
 }

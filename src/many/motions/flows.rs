@@ -107,7 +107,8 @@ impl<'a> MotionBlock<'a> {
                 if !go_on() {
                     return Ok(());
                 }
-                let walk = BodyWalk::<N>::of_body(&body, &ask, self.job.tol, times, &starts.start(i));
+                let (seen, start) = starts.start(i).seen_on(&body);
+                let walk = BodyWalk::<N>::of_body(&seen, &ask, self.job.tol, times, &start);
                 let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
                     found.complete_known_errors(self.job.tol);
                     if !self.job.errors {
@@ -120,7 +121,10 @@ impl<'a> MotionBlock<'a> {
             }
             walked.push(k);
             for &tol in tols {
-                let walk = body.and_then(|body| BodyWalk::of_body(&body, &ask, tol, times, &starts.start(i)));
+                let walk = body.and_then(|body| {
+                    let (seen, start) = starts.start(i).seen_on(&body);
+                    BodyWalk::of_body(&seen, &ask, tol, times, &start)
+                });
                 all.walks.push(
                     walk.map(|walk| walk.leaving_rolling_to_caller(wide && can_roll_in_lanes(&ask.table))),
                 );

@@ -14,6 +14,7 @@ use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
+use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The default tolerance of a step of a motion with friction or losses.
@@ -192,6 +193,21 @@ impl<S> Start<S> {
 }
 
 impl Start {
+    /// The body with the circle carrying that does so at the start, and the start as seen from the end of that circle. Both
+    /// are told from the lower end of the body.
+    pub(crate) fn seen_on(&self, body: &Body) -> (Body, Self) {
+        let body = body.at(self.state.theta);
+        let view = body.view();
+        if !view.over {
+            return (body, *self);
+        }
+        let State { theta, w1, w2, w3 } = self.state;
+        let border = view.borders.iter().find(|[_, told]| *told == theta);
+        let theta = border.map_or(PI - theta, |[seen, _]| *seen);
+        let state = State { theta, w1, w2: 0.0 - w2, w3: 0.0 - w3 };
+        (body, Self { state, slip: self.slip.map(|u| 0.0 - u), ..*self })
+    }
+
     /// The initial conditions of a body from its orientation, its angular velocity and the velocity of its centre of
     /// mass. The orientation is the rotation from the axes of the body to those of the laboratory, of which the third
     /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is that

@@ -1,7 +1,7 @@
 //! The states of a moving body or stone, with the types of its poses and contact forces.
 
 use crate::laws::contact::Force;
-use crate::laws::pose::Pose;
+use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
 use crate::motions::walk::errors::{force_distance, pose_distance, pose_distance_over};
 use crate::numbers::larger_or_nan;
@@ -35,6 +35,22 @@ pub trait Moving: Copy + Debug + PartialEq {
     fn seen_from_other_rim(&self) -> Option<Self> {
         None
     }
+    /// A state that is seen from the upper end of a body, as told from its lower end, with this inclination.
+    fn told(&self, _theta: f64) -> Self {
+        *self
+    }
+    /// The same for a pose.
+    fn pose_told(pose: &Self::Pose) -> Self::Pose {
+        *pose
+    }
+    /// The same for a force.
+    fn force_told(force: &Self::Force) -> Self::Force {
+        *force
+    }
+    /// The largest difference between two poses that are told from different circles, whose points of contact differ.
+    fn pose_distance_apart(a: &Self::Pose, b: &Self::Pose) -> f64 {
+        Self::pose_distance(a, b)
+    }
     /// The largest difference between two poses that are seen from different rims, `a` from the one that was not down at
     /// the start.
     fn pose_distance_over(a: &Self::Pose, b: &Self::Pose) -> f64 {
@@ -66,6 +82,19 @@ impl Moving for State {
     }
     fn seen_from_other_rim(&self) -> Option<Self> {
         Some(Self { theta: PI - self.theta, w1: self.w1, w2: -self.w2, w3: -self.w3 })
+    }
+    fn told(&self, theta: f64) -> Self {
+        Self { theta, w1: self.w1, w2: 0.0 - self.w2, w3: 0.0 - self.w3 }
+    }
+    fn pose_told(pose: &Pose) -> Pose {
+        let phi = Angle { rest: pose.phi.rest - PI, ..pose.phi }.settled();
+        Pose { phi, psi: Angle { turns: 0.0 - pose.psi.turns, rest: 0.0 - pose.psi.rest }, ..*pose }
+    }
+    fn force_told(force: &Force) -> Force {
+        Force { normal: force.normal, along: 0.0 - force.along, across: 0.0 - force.across }
+    }
+    fn pose_distance_apart(a: &Pose, b: &Pose) -> f64 {
+        pose_distance(a, &Pose { contact_point: a.contact_point, height: a.height, ..*b })
     }
     fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
         pose_distance_over(a, b)

@@ -4,6 +4,7 @@
 use super::Method;
 use crate::error::{Error, room};
 pub use crate::laws::contact::impact::Hit;
+use crate::laws::body::View;
 use crate::laws::state::State;
 use crate::methods::flow::Exhausted;
 use crate::motions::Moving;
@@ -233,6 +234,19 @@ impl<S: Moving> Motion<S> {
         }
     }
 
+    /// A motion that is seen from one end of the body, as told from its lower end.
+    pub(crate) fn told(mut self, view: &View) -> Self {
+        let rim = view.circles.map_or(0, |[here, _]| here);
+        self.event.iter_mut().for_each(|event| event.rim = rim);
+        if view.over {
+            let states = self.states.iter_mut();
+            states.chain(self.event.iter_mut().map(|event| &mut event.state)).for_each(|y| *y = y.told(view.tells(y.theta())));
+            self.poses.iter_mut().flatten().for_each(|pose| *pose = S::pose_told(pose));
+            self.forces.iter_mut().flatten().for_each(|force| *force = S::force_told(force));
+        }
+        self
+    }
+
     /// The motion; None if it was interrupted before it advanced from its initial time.
     pub(crate) fn advanced(self, t0: f64) -> Option<Self> {
         let stays = self.is_interrupted() && self.event.is_some_and(|event| event.time == t0);
@@ -289,8 +303,11 @@ pub struct Phase<S = State> {
 pub struct Strike {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is not the one from which the initial state was seen.
+    /// Whether the rim that lands is not the one from which the initial state was seen; for a body of several circles,
+    /// whether it is not the lowest one.
     pub other: bool,
+    /// The rim that lands, as in [`Path::rims`].
+    pub rim: u8,
     /// The motion of the contact point in the impact.
     pub hit: Hit,
     /// The state before and after the impact, as seen from the rim that lands.
@@ -349,8 +366,8 @@ pub struct Path<S = State> {
     /// Whether the rows have the lost energy, and whether the motion continues in the air and on both rims.
     pub(crate) loses: bool,
     pub(crate) goes_on: bool,
-    /// Whether the body is now seen from its other rim.
-    pub(crate) upside_down: bool,
+    /// How the body is now seen.
+    pub(crate) view: View,
     /// Whether the computation stopped where the body began to roll.
     pub(crate) rolls_on: bool,
     /// Whether the last turns of a whirr were left out, because its end is known without them.
@@ -362,6 +379,19 @@ pub struct Path<S = State> {
 }
 
 impl<S> Path<S> {
+    /// The rim from which the body is told, for a body that lies on two.
+    pub(crate) fn rim(&self, lies: bool) -> u8 {
+        match self.view.circles {
+            Some([here, next]) => if lies { here.min(next) } else { here },
+            None => u8::from(self.view.over && !lies),
+        }
+    }
+
+    /// Whether the numbers of the walk are those as seen from the upper end of a body that is told from its lower end.
+    pub(crate) fn is_told_over(&self, lies: bool) -> bool {
+        self.view.over && !lies && self.view.circles.is_some()
+    }
+
     /// A path with space for `count` rows; `loses` if they have the lost energy, and `goes_on` if they have what bodies
     /// in the air and on both rims need.
     pub(crate) fn empty(count: usize, loses: bool, goes_on: bool) -> Result<Self, Error> {
@@ -383,7 +413,7 @@ impl<S> Path<S> {
             goes_on,
             last_slip: [0.0; 2],
             known_until: f64::INFINITY,
-            upside_down: false,
+            view: View::default(),
             rolls_on: false,
             leaves_turns: false,
             erred: 0.0,

@@ -2,6 +2,7 @@
 //! step.
 
 use crate::error::{Error, room};
+use crate::laws::body::View;
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ask, Kind, Motion, Moving, Path};
 use crate::numbers::larger_or_nan;
@@ -28,6 +29,13 @@ impl<S: Moving> OutputRow<S> {
     pub fn on_table(state: S, slip: [f64; 2], spent: [f64; 2], kind: Kind) -> Self {
         Self { state, slip, spent, kind, pose: None, force: None, aloft: [0.0; 2], other_rim: None }
     }
+
+    /// A row that is seen from the upper end of the body, as told from its lower end.
+    fn told(self, view: &View) -> Self {
+        let force = self.force.map(|(force, doubt)| (S::force_told(&force), doubt));
+        let (pose, state) = (self.pose.map(|pose| S::pose_told(&pose)), self.state.told(view.tells(self.state.theta())));
+        Self { state, slip: self.slip.map(|u| 0.0 - u), pose, force, ..self }
+    }
 }
 
 impl<S: Moving> Followed<S> {
@@ -44,6 +52,8 @@ impl<S: Moving> Followed<S> {
     /// Adds a row to the outputs.
     pub fn push(&mut self, row: OutputRow<S>) {
         let Self { motion, path } = self;
+        let lies = row.other_rim.is_some();
+        let row = if path.is_told_over(lies) { row.told(&path.view) } else { row };
         motion.states.push(row.state);
         path.slip.push(row.slip);
         path.dissipated.push(row.spent[0]);
@@ -53,7 +63,7 @@ impl<S: Moving> Followed<S> {
         }
         if path.goes_on {
             path.aloft.push(row.aloft);
-            path.rims.push(u8::from(path.upside_down && row.other_rim.is_none()));
+            path.rims.push(path.rim(lies));
             path.other_rim.push(row.other_rim.unwrap_or([f64::NAN; 5]));
         }
         if let Some((poses, pose)) = motion.poses.as_mut().zip(row.pose) {

@@ -111,6 +111,7 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
         let mut of = BodyPhases::of(body, ask, tol, start, own);
         of.uniform = !G::IS && !poses(N) && knows(body, ask);
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
+        walk.made.path.view = body.view();
         walk.next = Some(match aloft {
             Some(aloft) => walk.starts_in_air(aloft),
             None => walk.first_phase()?,
@@ -211,6 +212,11 @@ impl<G: Own> BodyPhases<G> {
     /// Changes to the view from another circle of the body.
     pub(super) fn stands_on(&mut self, body: Body, ask: &Ask) {
         if body != self.body {
+            if body.has_row() {
+                // The turns of a face before do not tell how another one falls.
+                self.tail = self.tail.map(|_| LastTurns::default());
+                self.nods = self.nods.take().map(|_| Box::default());
+            }
             self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
             self.body = body;
         }
@@ -231,8 +237,13 @@ impl<G: Own> BodyPhases<G> {
         let (s, c) = theta.sin_cos();
         let (drilling, rolling) = (drilling_of((s, c), w1, w3) * up, rolling_of((s, c), w1, w3) * up);
         // Near its other rim the height of the body is known from cos theta, not from theta.
-        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL;
-        let theta = if near { theta } else { theta * down };
+        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL && !walk.of.body.has_row();
+        let end = walk.of.body.theta_end();
+        let theta = match () {
+            () if near => theta,
+            () if walk.of.body.has_row() && end - theta < theta => end - (end - theta) * up,
+            () => theta * down,
+        };
         let (s, c) = if near { (walk.at[SIN], walk.at[COS] * down) } else { theta.sin_cos() };
         let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
         walk.of.state = State { theta, w1, w2: w2 * down, w3 };

@@ -57,6 +57,8 @@ pub fn follow(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
+    let (body, start) = start.seen_on(body);
+    let (body, start) = (&body, &start);
     let fine = check_walk(body, start, ask)?;
     check_times_after(start.time, times)?;
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
@@ -145,15 +147,12 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             let expected = "none for a body of which another part than a rim may land: its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
-        if body.has_two_rims() {
-            let [here, there] = body.rims();
-            let other = height + here.less(&there).height(start.state.theta.sin_cos());
-            within(
-                "height",
-                if other < -1e-15 { -height } else { height },
-                (0.0, 1e6),
-                "both rims above the table",
-            )?;
+        let (angle, landings) = (start.state.theta.sin_cos(), body.landings());
+        for k in 1..landings.count {
+            let rim = landings.rims[landings.lowest(k, angle.1)];
+            let other = height + body.shape().rim.less(&rim).height(angle);
+            let value = if other < -1e-15 { -height } else { height };
+            within("height", value, (0.0, 1e6), "all rims above the table")?;
         }
     }
     if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { refuse_slip(start.slip).map(|()| fine) }

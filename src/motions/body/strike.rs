@@ -24,7 +24,7 @@ use crate::laws::state::State;
 use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
 /// limits.
@@ -93,7 +93,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             self.writes_with(&from, Kind::Slipping, f64::NAN);
         }
-        let after = self.struck(&from, &struck, (self.made.path.upside_down, false));
+        let after = self.struck(&from, &struck, (self.made.path.view.over, false));
         self.sets(&after);
         Some(self.leaves_impact(&after))
     }
@@ -114,6 +114,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
             return Next::Ends(Ending::Face);
+        }
+        let theta = from.angle.0.atan2(from.angle.1);
+        if self.of.body.carries()[0] > 0.0 {
+            self.looks_at_border(theta);
+            from = self.aloft();
         }
         let both = self.has_two_rims() && self.tilt(from.angle).abs() < BOTH_AT_ONCE;
         if both {
@@ -146,7 +151,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
         }
-        let after = self.struck(&from, &struck, (self.made.path.upside_down, stays));
+        let after = self.struck(&from, &struck, (self.made.path.view.over, stays));
         self.sets(&after);
         if let Some(left) = left {
             self.sums_bounces(&after, left, bounce);
@@ -280,10 +285,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (impulse, lost): ([f64; 3], f64),
         stays: bool,
     ) {
-        let velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
-        let (time, states) = (self.t0 + self.at[TIME], both.map(|at| self.state_of(at)));
+        let mut velocities = both.map(|at| [at.slip[0], at.slip[1], at.lift]);
+        let (time, mut states) = (self.t0 + self.at[TIME], both.map(|at| self.state_of(at)));
+        let view = self.made.path.view;
+        let (mut impulse, mut rim) = (impulse, u8::from(other));
+        if let Some([here, next]) = view.circles {
+            rim = if other == view.over { here } else { next };
+            if other {
+                states = states.map(|y| y.told(PI - y.theta));
+                let told = |[along, across, up]: [f64; 3]| [0.0 - along, 0.0 - across, up];
+                (velocities, impulse) = (velocities.map(told), told(impulse));
+            }
+        }
+        let other = rim > 0;
         self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
-        self.records_impact(Strike { time, other, hit, states, velocities, impulse, lost, stays });
+        self.records_impact(Strike { time, other, rim, hit, states, velocities, impulse, lost, stays });
     }
 
     /// The vertical velocities of both rims, this one first.
@@ -317,7 +333,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             let at = self.aloft();
             let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
-            let after = self.struck(&at, &struck, (self.made.path.upside_down, false));
+            let after = self.struck(&at, &struck, (self.made.path.view.over, false));
             self.sets(&after);
         }
         let [here, there] = self.lifts_of_both();
@@ -362,7 +378,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let impulse = gained(&rims[0], [&at, &after]);
         self.claims(-lost);
-        self.records([&at, &after], self.made.path.upside_down, Hit::BothRims, (impulse, lost), false);
+        self.records([&at, &after], self.made.path.view.over, Hit::BothRims, (impulse, lost), false);
         self.sets(&after);
         Ok(())
     }
@@ -419,12 +435,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return Next::Ends(Ending::Landing);
         };
         // The impact is told from the rim that lands.
-        let (rims, carried) = (self.of.body.rims(), self.made.path.upside_down);
+        let (rims, carried) = (self.of.body.rims(), self.made.path.view.over);
         let from = self.aloft().on_other_rim(&rims);
         let landing = self.of.body.beyond().rims()[0];
         self.lands_as(&landed);
         let here = self.aloft();
-        let there = if carried == self.made.path.upside_down { here.on_other_rim(&rims) } else { here };
+        let there = if carried == self.made.path.view.over { here.on_other_rim(&rims) } else { here };
         let impulse = gained(&landing, [&from, &there]);
         self.claims(-landed.lost);
         self.records([&from, &there], !carried, Hit::BothRims, (impulse, landed.lost), true);

@@ -146,6 +146,12 @@ pub(crate) fn followed(
     custom: Custom<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed, Error> {
+    if body.has_row() && custom.couple.is_some() {
+        let expected = "none for a body of several circles";
+        return Err(Error::OutOfRange { name: "couple", value: f64::NAN, expected });
+    }
+    let (seen, start) = start.seen_on(body);
+    let (body, start) = (&seen, &start);
     let tol = check(body, start, ask, &custom)?;
     check_times_after(start.time, times)?;
     let (ask, start) = without_friction(body, ask, start);

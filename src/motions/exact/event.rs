@@ -1,14 +1,14 @@
 //! The assumptions of the model, and the first event of an exact motion, at which one of them fails.
 //!
 //! ```text
-//! theta > 0,   theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
+//! theta > 0,   low < theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
 //! Along one motion all of these are functions of the inclination alone, so that they have the same values on the way
 //! up and on the way down. The nearest places below and above the initial one at which an assumption fails are
 //! computed, and the event is at the place that the motion reaches first.
 
 use super::Swing;
-use crate::laws::body::Body;
+use crate::laws::body::{Body, border_at, leaves};
 use crate::laws::contact::reduced::Rates;
 use crate::laws::contact::{Contact, Table, force_at};
 use crate::laws::newton;
@@ -67,9 +67,12 @@ impl Limits {
         self.margins_without_allowance(y, &self.rates.derivative(y, angle), angle)
     }
 
-    /// Margin of theta below theta_end, where the other rim or another part of the body lands; 1 without a theta_end.
+    /// Margin of theta from the inclinations at which another circle or another part of the body lands; at least 1
+    /// without such an inclination.
     pub fn side(&self, y: &State) -> f64 {
-        if self.body.theta_end() < PI { self.body.theta_end() - y.theta } else { 1.0 }
+        let [low, high] = self.body.carries();
+        let below = if low > 0.0 { y.theta - low } else { 1.0 };
+        if high < PI { below.min(high - y.theta) } else { below }
     }
 
     /// The margin that must stay positive so that this ending does not occur; 1 for an ending
@@ -135,9 +138,8 @@ impl Limits {
     /// The ending of a motion that is over at once, for known derivative of the state and sine and cosine of theta.
     pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
         let [lift, slip] = self.grip(y, dy, angle);
-        let turns_away = way * y.w2 > 0.0 || (y.w2 == 0.0 && dy.w2 > 0.0);
-        let side = self.side(y);
-        if side < 0.0 || (side == 0.0 && !turns_away) {
+        let tilts = if y.w2 == 0.0 { dy.w2 } else { way * y.w2 };
+        if leaves(self.body.carries(), y.theta, tilts) {
             Some(Ending::Side)
         } else if lift <= 0.0 {
             Some(Ending::LiftOff)
@@ -164,10 +166,11 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
         }
     };
     offer(Ending::Face, swing.landing(way));
-    let theta_end = limits.body.theta_end();
-    if theta_end < PI {
-        let side = swing.first(way, None, swing.side());
-        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: theta_end, ..y })));
+    let range = limits.body.carries();
+    if range[1] < PI || range[0] > 0.0 {
+        let [below, above] = swing.borders();
+        let side = swing.first(way, below, above);
+        offer(Ending::Side, side.map(|(t, y)| (t, State { theta: border_at(range, y.theta), ..y })));
     }
     if !swing.is_steady() {
         let margin = |i: usize| move |u: f64| limits.margins_of_state(&swing.rising_state(u))[i];

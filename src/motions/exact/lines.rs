@@ -62,11 +62,10 @@ pub(super) struct SlowPlace {
 pub(super) struct Lines {
     pub law: Reduced<f64>,
     poles: Poles,
-    /// The x of the start (`origin`), tan(theta/2) there, and the x of `theta_end` relative to the start
-    /// (`side`).
+    /// The x of the start (`origin`), tan(theta/2) there, and the x of both borders of the circle relative to the start.
     pub origin: f64,
     tangent: f64,
-    pub side: f64,
+    pub borders: [f64; 2],
     /// Whether the body is a ball, which goes through its poles.
     ball: bool,
     pub panels: Vec<Panel>,
@@ -110,13 +109,17 @@ impl Lines {
         let tangent = (0.5 * y.theta).tan();
         let [s, c, ..] = from.start().at;
         let law = contact.reduced(body);
+        let border = |theta: f64| match theta {
+            0.0 => f64::NEG_INFINITY,
+            theta => (c / s).hi.asinh() - cotangent(theta).asinh(),
+        };
         let mut lines = Self {
             law,
             poles: Poles::of(&law),
             ball: body.is_ball(),
             origin: tangent.ln(),
             tangent,
-            side: (c / s).hi.asinh() - cotangent(body.theta_end()).asinh(),
+            borders: body.carries().map(border),
             panels: Vec::new(),
             ends: [SwingEnd { x: 0.0, turning: None }, SwingEnd { x: 0.0, turning: None }],
             slow: Vec::new(),

@@ -82,12 +82,15 @@ impl Swing {
         if self.is_steady() { self.start } else { self.state_at(self.leg_point_at(place), true) }
     }
 
-    /// The place at which the body reaches `theta_end`, where something other than the rim lands; None if the
-    /// swing does not get there.
-    pub(crate) fn side(&self) -> Option<f64> {
-        let ([_, high], side) = (self.lines.range(), self.lines.side);
-        let on = |(leg, of): (usize, &Leg)| of.stretch.v(side).map(|v| self.place_of(LegPoint { leg, v }));
-        if side < high { self.legs.iter().enumerate().find_map(on) } else { None }
+    /// The places at which the body reaches the borders of its circle, where another circle or another part lands; None
+    /// if the swing does not get there.
+    pub(crate) fn borders(&self) -> [Option<f64>; 2] {
+        let ([low, high], [below, above]) = (self.lines.range(), self.lines.borders);
+        let place = |x: f64| {
+            let on = |(leg, of): (usize, &Leg)| of.stretch.v(x).map(|v| self.place_of(LegPoint { leg, v }));
+            self.legs.iter().enumerate().find_map(on)
+        };
+        [if below > low { place(below) } else { None }, if above < high { place(above) } else { None }]
     }
 
     /// The first time at which the swing is at the place `below` or at the place `above` its start, and the

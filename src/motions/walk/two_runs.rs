@@ -187,12 +187,14 @@ impl<S: Moving> Followed<S> {
         let mut apart = |by: f64| off = larger_or_nan(off, by);
         // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
         let hops = !self.path.impacts.is_empty();
+        let told = self.path.view.circles.is_some();
         let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
             let slips = u.iter().zip(v).map(|(u, v)| (u - v).abs());
             let direct = slips.fold(a.distance(b), larger_or_nan);
-            let there = b.seen_from_other_rim().filter(|_| hops);
-            there.map_or(direct, |b| {
-                let over = larger_or_nan(a.distance(&b), (u[0] + v[0]).abs());
+            let there = if told { Some(*b) } else { b.seen_from_other_rim() };
+            there.filter(|_| hops).map_or(direct, |b| {
+                let along = if told { u[0] - v[0] } else { u[0] + v[0] };
+                let over = larger_or_nan(a.distance(&b), along.abs());
                 if over < direct { over } else { direct }
             })
         };
@@ -235,8 +237,11 @@ impl<S: Moving> Followed<S> {
         }
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (i, (a, b)) in poses.iter().zip(others).enumerate() {
-                let [over, there] = [&self.path.rims, &rough.path.rims].map(|of| of.get(i) == Some(&1));
+                let rims = [&self.path.rims, &rough.path.rims].map(|of| of.get(i).copied());
+                let [over, there] = rims.map(|rim| rim == Some(1));
                 let apart = match (over, there) {
+                    _ if told && rims[0] != rims[1] => S::pose_distance_apart(a, b),
+                    _ if told => S::pose_distance(a, b),
                     (true, false) => S::pose_distance_over(a, b),
                     (false, true) => S::pose_distance_over(b, a),
                     _ => S::pose_distance(a, b),

@@ -16,7 +16,7 @@
 
 use super::lands::{AngleSeries, Leaves, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
-use crate::laws::body::{Body, Rim, Shape};
+use crate::laws::body::{Body, MOST_CIRCLES, Rim, Shape};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};
@@ -76,19 +76,22 @@ pub(crate) struct AirFlight<G = ()> {
 #[derive(Clone, Copy)]
 struct AirFlow<'a, G> {
     of: &'a AirFlight<G>,
-    rims: [bool; 2],
+    rims: [bool; MOST_CIRCLES],
 }
 
 /// The reason for which a flight against the air halts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum AirHalt {
     Time,
-    /// The rim that was down last lands, or the other one.
-    Lands(bool),
+    /// This rim lands.
+    Lands(usize),
     /// A law of the user has a wrong value.
     Fault,
     GivenUp,
 }
+
+/// The times up to which no rim can land.
+type Clear = [f64; MOST_CIRCLES];
 
 /// The angular velocity along the axes of the body.
 fn body_rates(y: &AirNumbers) -> [f64; 3] {
@@ -183,8 +186,8 @@ impl<G: Own> AirFlight<G> {
 
     /// The height of the lowest point of a rim, and its rate.
     fn rim(&self, y: &AirNumbers, k: usize) -> [f64; 2] {
-        let (rim, Leaning { axis, change }, s0, t) =
-            (self.free.rims[k], self.leans(y), self.from.angle.0, y[AIR_TIME]);
+        let (Leaning { axis, change }, (s0, c0), t) = (self.leans(y), self.from.angle, y[AIR_TIME]);
+        let (rim, began) = (self.free.rim_at(k, axis[2]), self.free.rim_at(k, c0));
         let [first, second, _] = axes(self.quaternion(y));
         let s = axis[0].hypot(axis[1]);
         // The third component of w x e3.
@@ -192,7 +195,7 @@ impl<G: Own> AirFlight<G> {
         let sine_rate = if s > 0.0 { -(axis[2] * cosine_rate / s) } else { 0.0 };
         let sine =
             if s + s0 > 0.0 { ((axis[0] - s0) * change[0] + axis[1] * change[1]) / (s + s0) } else { 0.0 };
-        let begin = self.free.height_at_start(k);
+        let begin = self.free.height_at_start(k) + began.less(&rim).height(self.from.angle);
         let [.., up] = self.free.velocity;
         [
             begin + t * (up - 0.5 * t) - rim.slope((sine, change[2])),
@@ -201,13 +204,13 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The flow of these rims.
-    fn flow(&self, rims: [bool; 2]) -> AirFlow<'_, G> {
+    fn flow(&self, rims: [bool; MOST_CIRCLES]) -> AirFlow<'_, G> {
         AirFlow { of: self, rims }
     }
 
     /// The numbers after a part of a step.
     fn part(&self, step: &AirStep, h: f64) -> AirNumbers {
-        let flow = self.flow([false; 2]);
+        let flow = self.flow([false; MOST_CIRCLES]);
         flow.part(&flow.place(step.y), h)
     }
 
@@ -280,7 +283,7 @@ impl<G: Own> AirFlight<G> {
             (m1, m2, m3) = (m1 + o1, m2 + o2, m3 + o3);
         }
         // The height of a ball does not depend on s, which may be zero.
-        let flat = self.free.rims.iter().all(|rim| rim.a == 0.0);
+        let flat = self.free.landings.rims.iter().all(|rim| rim.a == 0.0);
         let sine = if flat { zero } else { (x * x + y * y).sqrt() };
         let results = [
             y * w3 - z * w2,
@@ -311,12 +314,14 @@ impl<G: Own> AirFlight<G> {
 
     /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
     /// times up to which no other landing is possible.
-    fn leaves(&self, leaves: [Leaves; 2], two: bool) -> Result<(FirstLanding, [f64; 2]), Exhausted> {
-        let (mut first, mut clear) = (None, [0.0; 2]);
-        if leaves == [None; 2] {
+    fn leaves(&self, leaves: [Leaves; MOST_CIRCLES]) -> Result<(FirstLanding, Clear), Exhausted> {
+        let (mut first, mut clear) = (None, [0.0; MOST_CIRCLES]);
+        if leaves == [None; MOST_CIRCLES] {
             return Ok((first, clear));
         }
-        let mut near = AIR_SHARE * self.free.near(0).min(self.free.near(usize::from(two)));
+        let count = self.free.landings.count;
+        let near = (0..count).map(|k| self.free.near(k)).fold(f64::INFINITY, f64::min);
+        let mut near = AIR_SHARE * near;
         if self.own.has_couple() {
             near = near.min(2.0 * self.first);
         }
@@ -334,13 +339,13 @@ impl<G: Own> AirFlight<G> {
                 core::array::from_fn::<f64, RIM_TERMS, _>(known)
             })
         };
-        for i in 0..if two { 2 } else { 1 } {
+        for i in 0..count {
             let Some(order) = leaves[i] else { continue };
             match self.free.leaves(i, order, near, &swung)? {
                 Some(t) => {
                     clear[i] = t;
                     if first.is_none_or(|(before, _)| t < before) {
-                        first = Some((t, i == 1));
+                        first = Some((t, i));
                     }
                 }
                 None => clear[i] = near,
@@ -350,7 +355,7 @@ impl<G: Own> AirFlight<G> {
     }
 }
 
-impl<G: Own> Flow<2> for AirFlow<'_, G> {
+impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
     type Halt = AirHalt;
     const TIME: usize = AIR_TIME;
     const OVER: AirHalt = AirHalt::Time;
@@ -383,7 +388,7 @@ impl<G: Own> Flow<2> for AirFlow<'_, G> {
         ]);
     }
 
-    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MOST_CIRCLES] {
         let y = core::array::from_fn(|i| place.y[i]);
         core::array::from_fn(|i| {
             let [value, slope] = if self.rims[i] { self.of.rim(&y, i) } else { [1.0, 0.0] };
@@ -396,12 +401,12 @@ impl<G: Own> Flow<2> for AirFlow<'_, G> {
     }
 
     fn end(&self, i: usize) -> AirHalt {
-        AirHalt::Lands(i == 1)
+        AirHalt::Lands(i)
     }
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // The height of a rim changes by at most this much with a number of q.
-        let reach = 2.0 * self.of.free.rims.iter().map(Rim::reach).fold(0.0, f64::max);
+        let reach = 2.0 * self.of.free.landings.rims.iter().map(Rim::reach).fold(0.0, f64::max);
         let per = |i: usize| if i < 4 { reach } else { 1.0 / y[i].abs().max(1.0) } / self.of.tol;
         made.error(per, N as f64)
     }
@@ -442,25 +447,27 @@ impl<G: Own> Flow<2> for AirFlow<'_, G> {
 impl<G: Own> Flies for AirFlight<G> {
     fn lands(
         &mut self,
-        leaves: [Leaves; 2],
-        two: bool,
+        leaves: [Leaves; MOST_CIRCLES],
         until: f64,
         limits: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<FirstLanding, Exhausted> {
         self.spent.patience = limits.patience;
-        let (soon, clear) = self.leaves(leaves, two)?;
+        let (soon, clear) = self.leaves(leaves)?;
         let soon = soon.filter(|(t, _)| *t <= until);
         let until = soon.map_or(until, |(t, _)| t);
-        let mut times = [clear[0].min(clear[1]), clear[0].max(clear[1]), until];
+        let count = self.free.landings.count;
+        let mut times = [until; MOST_CIRCLES + 1];
+        times[..count].copy_from_slice(&clear[..count]);
         times.iter_mut().for_each(|t| *t = t.min(until));
+        times.sort_by(f64::total_cmp);
         let (mut y, mut limits) = (self.steps.borrow()[0].y, Steps { first: Some(self.first), ..limits });
         for t in times {
             let now = y[AIR_TIME];
             if t <= now {
                 continue;
             }
-            let flow = self.flow([clear[0] <= now, two && clear[1] <= now]);
+            let flow = self.flow(core::array::from_fn(|i| i < count && clear[i] <= now));
             let flown = flow.run(flow.place(y), limits, &[t], &mut |_| (), go_on);
             let Spent { evaluations, erred, patience, exhausted } = flown.spent;
             y = flown.y;
@@ -471,7 +478,7 @@ impl<G: Own> Flies for AirFlight<G> {
             limits = Steps { first: Some(flown.step), patience, toil, ..limits };
             match flown.halt {
                 AirHalt::Time => {}
-                AirHalt::Lands(other) => return Ok(Some((y[AIR_TIME], other))),
+                AirHalt::Lands(rim) => return Ok(Some((y[AIR_TIME], rim))),
                 AirHalt::Fault | AirHalt::GivenUp => {
                     return Err(exhausted.unwrap_or(Exhausted::Evaluations));
                 }

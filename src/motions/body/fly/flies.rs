@@ -8,7 +8,7 @@
 
 use super::air::AirFlight;
 use super::lands::TOUCH;
-use crate::laws::body::{Rim, tilt};
+use crate::laws::body::{Body, Rim, View, border_at, tilt};
 use crate::laws::contact::{Force, Table};
 use crate::laws::newton;
 use crate::laws::state::State;
@@ -43,6 +43,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// How far the body is from the inclination at which both rims touch: the sine of the angle.
     pub(crate) fn tilt(&self, angle: (f64, f64)) -> f64 {
         tilt(self.of.body.border_angle(), angle)
+    }
+
+    /// Whether the body is at the upper border of its circle.
+    fn at_border(&self, angle: (f64, f64)) -> bool {
+        self.of.body.theta_end() < PI && angle == self.of.body.border_angle()
     }
 
     /// Whether both rims touch the table; both or one of them may carry the body.
@@ -80,9 +85,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if poses(N) {
             self.at[PHI..PHI + 4].copy_from_slice(&to.pose);
         }
-        let level = self.has_two_rims() && to.angle == self.of.body.border_angle();
         let theta = match () {
-            () if level => self.of.body.theta_end(),
+            () if self.at_border(to.angle) => self.of.body.theta_end(),
             () if c == 0.0 => FRAC_PI_2,
             () => theta,
         };
@@ -90,15 +94,35 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
     }
 
-    /// Changes to the view from the other rim.
+    /// Changes to the view from the other rim, which lands at theta_end.
     pub(crate) fn turns_over(&mut self) {
-        let (from, rims) = (self.aloft(), self.of.body.rims());
-        let pose = pose_from(&from, &rims, self.made.path.upside_down, from.pose);
-        self.made.path.upside_down = !self.made.path.upside_down;
-        let level = self.has_two_rims() && from.angle == self.of.body.border_angle();
+        self.turns(self.of.body.rims(), self.of.body.beyond());
+    }
+
+    /// Looks from the end from which the nearer border of the circle that carries is its upper one.
+    pub(crate) fn looks_at_border(&mut self, theta: f64) {
+        let [low, high] = self.of.body.carries();
+        if border_at([low, high], theta) != high {
+            if theta == low {
+                (self.at[SIN], self.at[COS]) = low.sin_cos();
+            }
+            self.turns([self.of.body.shape().rim; 2], self.of.body.turned());
+            if theta == low {
+                (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+                self.of.state.theta = self.of.body.theta_end();
+            }
+        }
+    }
+
+    /// Changes to the view from the other end of the body, in which another circle carries it.
+    fn turns(&mut self, rims: [Rim<f64>; 2], body: Body) {
+        let from = self.aloft();
+        let pose = pose_from(&from, &rims, self.made.path.view.over, from.pose);
         let over = from.on_other_rim(&rims);
-        self.of.stands_on(self.of.body.beyond(), &self.ask);
-        let angle = if level { self.of.body.border_angle() } else { over.angle };
+        let angle = if self.at_border(from.angle) { body.border_angle() } else { over.angle };
+        let view = View { over: !self.made.path.view.over, ..body.view() };
+        self.of.stands_on(body, &self.ask);
+        self.made.path.view = view;
         self.sets(&Aloft { pose, angle, ..over });
     }
 
@@ -133,6 +157,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The phase after an ending past which a motion with restitution continues.
     #[inline(never)]
     pub(crate) fn continues_after(&mut self, ending: Ending) -> Next {
+        if ending == Ending::Side {
+            self.looks_at_border(self.of.state.theta);
+            if self.of.body.joins_next() {
+                // The same point of the body goes on touching.
+                (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+                self.turns_over();
+                return self.touches_down();
+            }
+        }
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
             // Another part of a body, which may land first, has no known shape.
@@ -184,7 +217,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !poses(N) && self.of.uniform {
             return self.flies_uniformly();
         }
-        let (body, rims) = (&self.of.body, self.of.body.rims());
+        let body = &self.of.body;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.of.takeoff;
         let mut course: Box<dyn Flies> = match self.of.own.in_air(&self.ask.losses) {
@@ -195,9 +228,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             None => Box::new(Flight::new(body, &from)),
         };
-        let other = from.on_other_rim(&rims);
-        let touches = other.height.abs() <= 2.0 * TOUCH;
-        let leaves = [leaves, touches.then_some(if other.lift == 0.0 { 2 } else { 1 })];
+        let landings = course.free().landings;
+        let leaves = core::array::from_fn(|k| {
+            if k == 0 || k >= landings.count {
+                return leaves.filter(|_| k == 0);
+            }
+            let rims = [body.shape().rim, landings.rims[landings.lowest(k, from.angle.1)]];
+            let other = from.on_other_rim(&rims);
+            (other.height.abs() <= 2.0 * TOUCH).then_some(if other.lift == 0.0 { 2 } else { 1 })
+        });
         let left = self.since.last().map_or(0.0, |t| t - now);
         let limits = Steps {
             first: None,
@@ -206,7 +245,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             toil: self.toil(),
             tired: false,
         };
-        let landing = course.lands(leaves, self.has_two_rims(), left, limits, go_on);
+        let landing = course.lands(leaves, left, limits, go_on);
         if let Some(spent) = course.spent() {
             self.has_spent(spent);
         }
@@ -223,11 +262,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let at = self.flown(&*course, t - now, before);
             self.writes_with(&at, Kind::Flying, 0.0);
         }
-        let Some((t, upper)) = landing else { return };
+        let Some((t, group)) = landing else { return };
         // The time of a landing is as uncertain as the height, over the normal velocity; that of a short bounce has the
         // roundings of a power series. A rougher run lands sooner or later by more than this error.
         let (at, free) = (self.flown(&*course, t, before), *course.free());
         let high = free.doubt_of_height(t);
+        let landed = landings.lowest(group, at.angle.1);
+        let (rims, upper) = ([self.of.body.shape().rim, landings.rims[landed]], landed != self.of.body.here_is());
         let lift = if upper { at.on_other_rim(&rims).lift } else { at.lift };
         let mut late = (high / lift.abs()).min(high.sqrt());
         if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
@@ -242,7 +283,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
-            self.turns_over();
+            self.turns(rims, self.of.body.turned_on(landed));
+            if self.of.body.is_seen_from_afar() {
+                self.turns([self.of.body.shape().rim; 2], self.of.body.turned());
+            }
         }
         self.doubts(free.roundings(t) * f64::EPSILON);
         self.of.takeoff.height = 0.0;
@@ -258,9 +302,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.at[N - 1] = before + lost;
         }
         self.claims(course.free().doubt(t, &at));
-        let [here, there] = self.of.body.rims();
-        let other = if self.has_two_rims() { here.less(&there).height(at.angle) } else { 0.0 };
-        self.claims(-(at.height + other.min(0.0)));
+        let free = course.free();
+        let lowest = (0..free.landings.count).map(|k| free.higher_by(k, at.angle)).fold(f64::INFINITY, f64::min);
+        self.claims(-(at.height + lowest));
         if at.height < 0.0 && -at.height <= course.free().doubt_of_height(t) {
             at.height = 0.0;
         }

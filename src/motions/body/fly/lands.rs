@@ -1,13 +1,14 @@
 //! The first landing of a rim in a flight; no landing is missed.
 //!
 //! ```text
-//! height of a rim   h = z - (l c + a s + rho)           k = 0 for the rim that was down last, 1 for the other one
+//! height of a rim   h = z - (l c + a s + rho)           k = 0 for the rim that was down last, then for the others
 //! h'' <= K = Lam^2 (|l| sin a sin b + a sin b) - 1     at all times, also where theta passes a pole
 //! no landing in [t1, t2]    if the least value of chord - K (t - t1)(t2 - t)/2 is positive
 //! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
-//! no landing after          z falls below the least height of a landing: 0 with two rims, else min(0, rho - |l|)
+//! no landing after          z falls below the least height of a landing: 0 with several rims, else min(0, rho - |l|)
 //! ```
-//! The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
+//! Circles that smooth joints connect are one rim, of which the circle counts that is the lowest one of these at an
+//! inclination: there the heights of both circles agree, with their slopes. The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
 //! b, while s'' has no upper bound. An interval that is neither free nor certain is halved. The height of a rim that
 //! touches at the start grows as t^k: k = 1 after a bounce, 2 where a contact at rest loses its normal force, 3 where
 //! the normal force of a slip vanishes. There a power series, divided by the known zeros, gives the height.
@@ -15,7 +16,7 @@
 //! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
 
 use super::{Aloft, FirstLanding, Flies, Flight};
-use crate::laws::body::Shape;
+use crate::laws::body::{MOST_CIRCLES, Rim};
 use crate::methods::flow::{Exhausted, Steps};
 
 /// Number of terms of the series at the start.
@@ -30,6 +31,8 @@ const HARDLY: f64 = 1e-8;
 /// A cell shorter than this, in units of the time since the start, in which the height is below `TOUCH` counts as a
 /// touch.
 const SHORT_CELL: f64 = 1e-9;
+/// An angle from a smooth joint that counts as none: there the heights of both circles agree to its square.
+const JOINED: f64 = 1e-6;
 pub(crate) const TOUCH: f64 = 1e-15;
 /// Largest number of evaluations of the height.
 const HEIGHTS: u32 = 1_000_000;
@@ -113,37 +116,48 @@ impl Flight {
     /// Height and vertical velocity of the lowest point of a rim. The height is the sum of the initial height and its
     /// change, which keeps the digits of a small change.
     fn rim(&self, k: usize, t: f64) -> [f64; 2] {
-        let ([cosine, cosine_rate], (s0, c0), rim) = (self.cosine(t), self.from.angle, self.rims[k]);
+        let ([cosine, cosine_rate], (s0, c0)) = (self.cosine(t), self.from.angle);
         let (s, c) = self.angle_of(t, cosine);
+        let (rim, began) = (self.rim_at(k, c), self.rim_at(k, c0));
         let sine_rate = if s > 0.0 { -(c * cosine_rate / s) } else { 0.0 };
         // A body that stays upright, as one that is dropped flat, has no sine at all.
         let sine = if s + s0 > 0.0 { -(cosine * (c + c0) / (s + s0)) } else { 0.0 };
-        let first = self.height_at_start(k);
+        let first = self.height_at_start(k) + began.less(&rim).height(self.from.angle);
         let [.., up] = self.velocity;
         [first + t * (up - 0.5 * t) - rim.slope((sine, cosine)), up - t - rim.slope((sine_rate, cosine_rate))]
     }
 
-    /// The height of a rim at the start.
-    pub(super) fn height_at_start(&self, k: usize) -> f64 {
-        let [here, there] = self.rims;
-        self.from.height + if k == 0 { 0.0 } else { here.less(&there).height(self.from.angle) }
+    /// The lowest circle of a rim at an inclination with this cosine.
+    pub(super) fn rim_at(&self, k: usize, cosine: f64) -> Rim<f64> {
+        self.landings.rims[self.landings.lowest(k, cosine)]
     }
 
-    fn lands_on(&self, k: usize, leaves: Leaves, two: bool, until: f64) -> Result<Option<f64>, Exhausted> {
-        let rim = self.rims[k];
+    /// The height of another rim over this one at an inclination.
+    pub(super) fn higher_by(&self, k: usize, angle: (f64, f64)) -> f64 {
+        self.shape.rim.less(&self.rim_at(k, angle.1)).height(angle)
+    }
+
+    /// The height of a rim at the start.
+    pub(super) fn height_at_start(&self, k: usize) -> f64 {
+        self.from.height + self.higher_by(k, self.from.angle)
+    }
+
+    fn lands_on(&self, k: usize, leaves: Leaves, until: f64) -> Result<Option<f64>, Exhausted> {
+        let most =
+            |of: &dyn Fn(&Rim<f64>) -> f64| self.landings.group(k).iter().map(of).fold(f64::MIN, f64::max);
         let [.., up] = self.velocity;
-        let reach = rim.ell.hypot(rim.a) + rim.rho;
+        let reach = most(&|rim| rim.ell.hypot(rim.a) + rim.rho);
         // The centre is low enough for a landing before `rises` and after `comes`. At `end` it is so low that a rim is
         // below the table, whatever the inclination: the centre of one rim may itself be below the table.
-        let lowest = if two { 0.0 } else { (rim.rho - rim.ell.abs()).min(0.0) };
+        let lowest = if self.landings.count > 1 { 0.0 } else { -most(&|rim| rim.ell.abs() - rim.rho).max(0.0) };
         let passes = |height: f64| {
             let square = up * up + 2.0 * (self.height - height);
             (square >= 0.0).then(|| (up - square.sqrt(), up + square.sqrt()))
         };
         let end = (passes(lowest).map_or(up, |(_, end)| end) + 1e-6).min(until);
         let (rises, comes) = passes(reach).unwrap_or((end, end));
-        let bend =
-            (self.rate * self.rate * (rim.ell.abs() * self.wide + rim.a * self.b.sin()) - 1.0).max(1e-9);
+        let swings = most(&|rim| rim.ell.abs() * self.wide + rim.a * self.b.sin());
+        let bend = (self.rate * self.rate * swings - 1.0).max(1e-9);
         let touch = TOUCH * (1.0 + reach + self.height);
         let mut from = 0.0;
         if let Some(order) = leaves {
@@ -175,11 +189,14 @@ impl Flight {
     /// The time up to which the series of a rim that touches at the start is used.
     pub(super) fn near(&self, k: usize) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
-        if sine * self.rate > 0.0 && self.rims[k].a > 0.0 {
+        let near = if sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
         } else {
             1.0 / (1.0 + self.rate)
-        }
+        };
+        // The series is that of one circle, which counts up to its joint.
+        let joined = if k == 0 { self.landings.from_joint(self.from.angle).max(JOINED) } else { f64::INFINITY };
+        near.min(joined / self.rate)
     }
 
     /// The landing up to the time `near` of a rim that touches at the start; 0 if it does not leave the table. `swung`
@@ -240,7 +257,7 @@ impl Flight {
         }
         (cosines[0], sines[0]) = (c, s);
         // The height of a ball does not depend on s, which may be zero.
-        let terms = if self.rims.iter().any(|rim| rim.a > 0.0) { terms } else { 0 };
+        let terms = if self.landings.rims.iter().any(|rim| rim.a > 0.0) { terms } else { 0 };
         // The coefficients of s from s^2 = 1 - c^2.
         for k in 1..terms {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();
@@ -252,10 +269,10 @@ impl Flight {
 
     /// The series of the height of a rim that touches at the start, in units of the time `near`.
     fn heights(&self, k: usize, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
-        let rim = &self.rims[k];
+        let rim = &self.rim_at(k, self.from.angle.1);
         let mut all = core::array::from_fn(|k| -rim.slope((sines[k], cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
-        all[1] = near * if k == 0 { self.from.lift } else { self.from.on_other_rim(&self.rims).lift };
+        all[1] = near * if k == 0 { self.from.lift } else { self.from.on_other_rim(&[self.shape.rim, *rim]).lift };
         all[2] -= 0.5 * near * near;
         all
     }
@@ -264,20 +281,19 @@ impl Flight {
 impl Flies for Flight {
     fn lands(
         &mut self,
-        leaves: [Leaves; 2],
-        two: bool,
+        leaves: [Leaves; MOST_CIRCLES],
         until: f64,
         _: Steps,
         _: &mut dyn FnMut() -> bool,
     ) -> Result<FirstLanding, Exhausted> {
         let mut first = None;
-        for i in 0..if two { 2 } else { 1 } {
+        for i in 0..self.landings.count {
             // Of two rims that land at the same time the first one counts; an impact looks at both.
             let until = first.map_or(until, |(t, _)| t);
-            if let Some(t) = self.lands_on(i, leaves[i], two, until)?
+            if let Some(t) = self.lands_on(i, leaves[i], until)?
                 && first.is_none_or(|(before, _)| t < before)
             {
-                first = Some((t, i == 1));
+                first = Some((t, i));
             }
         }
         Ok(first)

@@ -18,7 +18,7 @@ pub(crate) mod flies;
 pub(crate) mod lands;
 
 use super::write::posed;
-use crate::laws::body::{Body, Rim, Shape};
+use crate::laws::body::{Body, Landings, MOST_CIRCLES, Rim, Shape};
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Spent, Steps};
@@ -95,18 +95,17 @@ pub(crate) struct Takeoff {
     pub leaves: Leaves,
 }
 
-/// The time of the first landing, and whether it is that of the other rim.
-pub(crate) type FirstLanding = Option<(f64, bool)>;
+/// The time of the first landing, and which of the [`Landings`] it is.
+pub(crate) type FirstLanding = Option<(f64, usize)>;
 
 /// A flight, with or without losses in the air.
 pub(crate) trait Flies {
-    /// The first time after the start at which a rim lands, and whether it is the other rim of a body with two rims;
-    /// None if no rim lands up to the time `until`. `leaves` is the beginning of both rims' flights.
+    /// The first time after the start at which a rim lands, and which one; None if no rim lands up to the time `until`.
+    /// `leaves` is the beginning of the rims' flights.
     /// `limits` are those of the steps, if it takes any.
     fn lands(
         &mut self,
-        leaves: [Leaves; 2],
-        two: bool,
+        leaves: [Leaves; MOST_CIRCLES],
         until: f64,
         limits: Steps,
         go_on: &mut dyn FnMut() -> bool,
@@ -128,8 +127,8 @@ const FAR: f64 = 0.9;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flight {
     shape: Shape<f64>,
-    /// The rim that was down last, and the other one.
-    rims: [Rim<f64>; 2],
+    /// All circles that may land.
+    landings: Landings,
     /// The start as given, and as seen from the side to which the axis leaves a pole.
     given: Aloft,
     from: Aloft,
@@ -183,7 +182,7 @@ impl Flight {
         ];
         let mut flight = Self {
             shape,
-            rims: body.rims(),
+            landings: body.landings(),
             given: *given,
             from: *from,
             velocity,
@@ -310,7 +309,7 @@ impl Flight {
 
     /// The error of the height of a rim at a time, due to rounding.
     pub fn doubt_of_height(&self, t: f64) -> f64 {
-        let reach = self.rims.iter().map(Rim::reach).fold(0.0, f64::max);
+        let reach = self.landings.rims.iter().map(Rim::reach).fold(0.0, f64::max);
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 

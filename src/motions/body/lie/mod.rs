@@ -34,8 +34,8 @@ use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
-use crate::motions::{Ask, Ending, Kind, Phase};
-use core::f64::consts::{FRAC_PI_2, PI};
+use crate::motions::{Ask, Ending, Kind, Moving, Phase};
+use core::f64::consts::PI;
 use flow::{LyingFlow, LyingPhase, Stance, flat};
 
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
@@ -77,7 +77,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The state on both rims is seen from the first one, whatever came before.
     #[inline(never)]
     pub(super) fn settles_on_side(&mut self) -> Next {
-        if self.made.path.upside_down {
+        if self.made.path.view.over {
             self.turns_over();
         }
         self.lays_down();
@@ -281,11 +281,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return find(self);
         }
         let (at, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
-        let (body, slide, over) = (self.of.body, self.of.slide, self.made.path.upside_down);
+        let (body, slide, view) = (self.of.body, self.of.slide, self.made.path.view);
         self.turns_over();
         let found = find(self);
         (self.at, self.of.state, self.of.takeoff) = (at, state, takeoff);
-        (self.of.body, self.of.slide, self.made.path.upside_down) = (body, slide, over);
+        (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
         found
     }
 
@@ -474,12 +474,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
     pub(crate) fn told(&self, kind: Kind) -> Phase {
-        let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.upside_down);
+        let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.view.over);
         let lies = self.of.lying.is_some();
-        let (state, slip) = if over && lies { mirrored(&self.of.body, &y, slip) } else { (y, slip) };
+        let path = &self.made.path;
+        let (state, slip) = match () {
+            () if over && lies => {
+                let (state, slip) = mirrored(&self.of.body, &y, slip);
+                let theta = if self.of.body.has_row() { path.view.tells(y.theta) } else { state.theta };
+                (State { theta, ..state }, slip)
+            }
+            () if path.is_told_over(lies) => (y.told(path.view.tells(y.theta)), slip.map(|u| 0.0 - u)),
+            () => (y, slip),
+        };
         let flies = kind == Kind::Flying;
         let aloft = if flies { [self.of.takeoff.height, self.of.takeoff.lift] } else { [0.0; 2] };
-        let (time, rim) = (self.t0 + self.at[TIME], u8::from(over && !lies));
+        let (time, rim) = (self.t0 + self.at[TIME], path.rim(lies));
         Phase { time, kind, state, slip, aloft, rim }
     }
 
@@ -492,7 +501,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The current numbers, if they are seen from the other rim.
     fn over(&self) -> Option<Aloft> {
-        self.made.path.upside_down.then(|| self.aloft())
+        self.made.path.view.over.then(|| self.aloft())
     }
 
     /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
@@ -532,7 +541,7 @@ fn row_of<G: Own, const N: usize>(
     let doubt = flow.tol * (1.0 + y[W1].abs().max(y[W3].abs()));
     let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
     let theta = body.theta_end();
-    let theta = if over.is_some() && theta != FRAC_PI_2 { PI - theta } else { theta };
+    let theta = if over.is_some() && body.has_row() { body.view().tells(theta) } else { theta };
     let state = State { theta, w1: y[W1], w2: 0.0, w3 };
     OutputRow {
         pose: poses(N).then(|| write::pose(&seen)),

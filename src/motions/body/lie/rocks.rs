@@ -27,10 +27,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
-        let (body, slide, upside_down) = (self.of.body, self.of.slide, self.made.path.upside_down);
+        let (body, slide, view) = (self.of.body, self.of.slide, self.made.path.view);
         let found = self.cycle(&begin);
         (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
-        (self.of.body, self.of.slide, self.made.path.upside_down) = (body, slide, upside_down);
+        (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
         found
     }
 

@@ -2,6 +2,7 @@
 
 use super::BRIEF_ROLLING_STEPS;
 use super::lossy::LossyFlow;
+use crate::laws::body::border_at;
 use crate::error::Error;
 use crate::laws::contact::Table;
 use crate::laws::loss::Holds;
@@ -150,7 +151,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 return Ok(Some(y));
             }
             Halt::Side => {
-                self.of.state.theta = body.theta_end();
+                self.of.state.theta = border_at(body.carries(), self.of.state.theta);
                 Next::Ends(Ending::Side)
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {

@@ -16,7 +16,7 @@ use crate::motions::Kind;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::exact::method::by_first_integrals;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, TIME, W2, lost, poses};
+use crate::motions::walk::numbers::{BodyNumbers, HEAT, PHI, TIME, W2, lost, poses};
 use crate::motions::walk::{Next, Phases, WalkStep, after_rest};
 use crate::motions::{Ask, Ending, Motion, Start};
 use crate::numbers::larger_or_nan;
@@ -70,7 +70,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return Ok(None);
         }
         #[cfg(feature = "many")]
-        if self.of.rolls_among {
+        if self.of.rolls_among && !self.of.body.has_row() {
             return Ok(Some(WalkStep::Rolls(mu)));
         }
         self.roll_by_first_integrals(mu, go_on)?;
@@ -164,7 +164,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether the body returns to its other rim so soon that the first integrals would lose the digits of the height:
     /// theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
-        let [c, rises] = [self.at[COS], self.at[W2]];
+        let (c, rises) = (self.tilt(self.at.angle()), self.at[W2]);
         if self.ask.restitution.is_none() || c > LOW_HOP || rises > LOW_HOP || !self.has_two_rims() {
             return false;
         }

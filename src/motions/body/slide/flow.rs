@@ -64,8 +64,8 @@ impl<L: Own> Slide<L> {
     /// Whether the margin `i` can end a slip of this body.
     pub(in crate::motions::body) fn watches(&self, i: usize) -> bool {
         match SLIP_ENDS[i] {
-            Halt::Face => !self.ball,
-            Halt::Side => self.theta_end < PI,
+            Halt::Face => !self.ball || self.range[0] > 0.0,
+            Halt::Side => self.range[1] < PI,
             _ => true,
         }
     }
@@ -86,9 +86,16 @@ impl<L: Own> Slide<L> {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u, one) = ((s, c), [w1, w2, w3], [u_h, u_2], s.splat(1.0));
-        let face = if self.ball { one } else { s - s.splat(self.flat) };
-        let (high, far) = landing_angle(self.theta_end);
-        let side = if self.theta_end < PI { s.splat(high) * c - s.splat(far) * s } else { one };
+        let border = |theta: f64| {
+            let (sine, cosine) = landing_angle(theta);
+            s.splat(sine) * c - s.splat(cosine) * s
+        };
+        let face = match self.range[0] {
+            low if low > 0.0 => -border(low),
+            _ if self.ball => one,
+            _ => s - s.splat(self.flat),
+        };
+        let side = if self.range[1] < PI { border(self.range[1]) } else { one };
         let of_losses = only.is_none_or(|i| i > 3);
         let losses = law.losses.as_ref().filter(|_| loses(N) && of_losses);
         let holds = losses.is_some_and(|losses| losses.holds() != Holds::default());
@@ -258,7 +265,11 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
 
     fn end(&self, i: usize) -> Halt {
         let rocks = self.law.losses.and_then(|losses| losses.ways).is_some_and(|ways| ways.rocking != 0.0);
-        if i == 5 && rocks { Halt::Rocking } else { SLIP_ENDS[i] }
+        match i {
+            0 if self.range[0] > 0.0 => Halt::Side,
+            5 if rocks => Halt::Rocking,
+            i => SLIP_ENDS[i],
+        }
     }
 
     #[inline(always)]
@@ -310,7 +321,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, margins: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         let [s, c, _, w2] = core::array::from_fn(|i| place.y[i]);
         // A face that lands within this time lands before any step that is short enough.
-        if !self.ball && s.abs() < 100.0 * FLAT * w2.abs().min(1.0) && c * w2 > 0.0 {
+        if !self.ball && self.range[0] == 0.0 && s.abs() < 100.0 * FLAT * w2.abs().min(1.0) && c * w2 > 0.0 {
             return Some(Halt::Face);
         }
         // With dry friction this margin is proportional to the speed of the slip.

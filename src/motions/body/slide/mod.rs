@@ -21,7 +21,7 @@ mod standstill;
 
 use super::face::FLAT;
 use super::own::Own;
-use crate::laws::body::{Body, Rim};
+use crate::laws::body::{Body, Rim, leaves};
 use crate::laws::contact::Force;
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Law, Losses};
@@ -45,7 +45,8 @@ pub(crate) struct Slide<L = ()> {
     sloped: Slipping<Dual<f64>, L, L>,
     /// The law without the couples along the contour.
     bare: Slipping<f64, L, L>,
-    theta_end: f64,
+    /// The inclinations within which the circle carries.
+    range: [f64; 2],
     ball: bool,
     sticks: bool,
     /// Sine of theta at which a face has landed.
@@ -72,14 +73,14 @@ impl<L: Own> Slide<L> {
         let sloped = Slipping::of(&law.shape.map(dual), dual(law.strength), law.dry).varying(own);
         let sloped =
             sloped.with_losses(law.losses.map(|losses| losses.map(dual))).with_patch(law.patch().map(dual));
-        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let (range, ball) = (body.carries(), body.is_ball());
         let bare = law.with_losses(law.losses.map(Couples::off_the_contour));
         let flat = if losses.turn_endlessly() { FLATTER } else { FLAT };
         Self {
             law,
             sloped,
             bare,
-            theta_end,
+            range,
             ball,
             sticks: law.dry,
             flat,
@@ -145,11 +146,10 @@ impl<L: Own> Slide<L> {
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
         let at = self.acts((s, c), [y.w1, y.w2, y.w3], u);
-        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && at.w[1] > 0.0);
-        let side = self.theta_end - y.theta;
+        let tilts = if y.w2 == 0.0 { at.w[1] } else { y.w2 };
         if at.room <= 0.0 {
             Some(Halt::Jam)
-        } else if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+        } else if leaves(self.range, y.theta, tilts) {
             Some(Halt::Side)
         } else if at.free <= 0.0 {
             Some(Halt::LiftOff)

@@ -2,6 +2,7 @@
 
 use super::Slide;
 use super::creeps::is_still;
+use crate::laws::body::border_at;
 use crate::error::Error;
 use crate::laws::loss::Holds;
 use crate::laws::loss::Law;
@@ -93,7 +94,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let mut y = state(&self.at);
         if halt == Halt::Side {
-            y.theta = self.of.body.theta_end();
+            y.theta = border_at(self.of.body.carries(), y.theta);
         }
         self.of.state = y;
         let slip = self.at.slip();

@@ -2,7 +2,7 @@
 
 use super::turns::{PeriodAngleSeries, PeriodPoint};
 use super::{Grip, Midpoints, Swings};
-use crate::laws::body::{Body, Shape};
+use crate::laws::body::Body;
 use crate::laws::contact::Contact;
 use crate::laws::contact::reduced::Reduced;
 use crate::laws::pose::Pose;
@@ -64,7 +64,7 @@ fn compute_in_lanes<S: Simd, const ROUND: bool>(
 ) -> Option<()> {
     let &QuickTask { contact, body, start, times, mu, tol, pose } = asked;
     let number = |x: f64| <f64x8<S> as SimdBase<S>>::splat(simd, x);
-    let shape = Shape::of([number(body.ell()), number(body.i1()), number(body.i3()), number(body.fillet())]);
+    let shape = body.shape().map(number);
     let law = Reduced::of(contact, &shape, ROUND);
     let y = [number(start.theta), number(start.w1), number(start.w2), number(start.w3)];
     let swing = Swings::<f64x8<S>, TERMS, MIDPOINTS_OF_ONE>::about_start(&POINTS, TERMS, law, y);
@@ -129,8 +129,9 @@ fn compute_in_lanes<S: Simd, const ROUND: bool>(
         }
         k = first;
     }
-    let [_, high] = swing.inclinations(span);
-    if (body.theta_end() < PI && high[0] >= body.theta_end())
+    let ([least, most], [low, high]) = (swing.inclinations(span), body.carries());
+    if (high < PI && most[0] >= high)
+        || (low > 0.0 && least[0] <= low)
         || swing.bound::<ROUND>(Grip::Normal, span) <= 0.0
         || (mu.is_finite() && -swing.bound::<ROUND>(Grip::Friction, span) >= mu)
     {

@@ -213,8 +213,8 @@ impl<G: Own> LossyFlow<G> {
     /// of psi' and w_z.
     pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
         let mut all = [0.0; LOSSY_NUMBERS];
-        let (sine, cosine) = landing_angle(self.theta_end);
-        let there = f64::from(u8::from(self.theta_end < core::f64::consts::PI));
+        let (sine, cosine) = landing_angle(self.range[1]);
+        let there = f64::from(u8::from(self.range[1] < core::f64::consts::PI));
         all[..4].copy_from_slice(&[sine, cosine, there, self.mu]);
         for &law in Law::ALL {
             all[4 + law as usize] = self.law.losses.coefficient(law);

@@ -18,7 +18,7 @@ mod free;
 mod patched;
 mod steps;
 
-use crate::laws::body::Body;
+use crate::laws::body::{Body, leaves};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
@@ -65,7 +65,8 @@ pub(crate) struct LossyFlow<G = ()> {
     /// The sign of psi' of a settled contact.
     settled_way: f64,
     mu: f64,
-    theta_end: f64,
+    /// The inclinations within which the circle carries.
+    range: [f64; 2],
     ball: bool,
     pub tol: f64,
     /// Whether events other than a landing of the face end the flow.
@@ -84,7 +85,7 @@ impl<G: Own> LossyFlow<G> {
         y: &State,
     ) -> Self {
         let law = Lossy { losses: Couples::of(losses, |x| x).beside(own), rates: contact.rates(body) };
-        let (theta_end, ball) = (body.theta_end(), body.is_ball());
+        let (range, ball) = (body.carries(), body.is_ball());
         let mu = if contact == Contact::Smooth { f64::INFINITY } else { mu };
         let mut lossy = Self {
             law,
@@ -97,7 +98,7 @@ impl<G: Own> LossyFlow<G> {
             push: [0.0; 2],
             settled_way: 0.0,
             mu,
-            theta_end,
+            range,
             ball,
             tol,
             watch: true,
@@ -385,10 +386,9 @@ impl<G: Own> LossyFlow<G> {
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let acted = self.responds(angle, w);
-        let rises = y.w2 > 0.0 || (y.w2 == 0.0 && acted.w[1] > 0.0);
-        let side = self.theta_end - y.theta;
+        let tilts = if y.w2 == 0.0 { acted.w[1] } else { y.w2 };
         let [normal, along, across] = acted.force;
-        if self.theta_end < PI && (side < 0.0 || (side == 0.0 && !rises)) {
+        if leaves(self.range, y.theta, tilts) {
             Some(Halt::Side)
         } else if normal <= 0.0 {
             Some(Halt::LiftOff)

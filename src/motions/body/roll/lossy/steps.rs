@@ -107,15 +107,20 @@ impl<G: Own> LossyFlow<G> {
         let one = s.splat(1.0);
         let acted = law.at((s, c), precession, w, self.held(s));
         let endless = self.moves && self.law.losses.turn_endlessly();
-        let face = if self.ball {
+        let number = |x: f64| s.splat(x);
+        let border = |theta: f64, there: bool| {
+            let (sine, cosine) = landing_angle(theta);
+            from_side([sine, cosine, f64::from(u8::from(there))].map(number), (s, c))
+        };
+        let [low, high] = self.range;
+        let face = if low > 0.0 {
+            -border(low, true)
+        } else if self.ball {
             one
         } else {
             s - lands_at(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
         };
-        let number = |x: f64| s.splat(x);
-        let (high, far) = landing_angle(self.theta_end);
-        let there = f64::from(u8::from(self.theta_end < PI));
-        let side = from_side([high, far, there].map(number), (s, c));
+        let side = border(high, high < PI);
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
         let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
@@ -310,7 +315,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
 
     fn stuck<const N: usize>(&self, place: &FlowPlace<N>, _: &[Dual<f64>; MARGINS]) -> Option<Halt> {
         let [s, c, p, w2, w3] = core::array::from_fn(|i| place.y[i]);
-        if self.ball || s > CLOSE {
+        if self.ball || self.range[0] > 0.0 || s > CLOSE {
             return None;
         }
         if s < 1e-8 || (s < 1e-5 && !self.moves && c * w2 > 0.0) {
