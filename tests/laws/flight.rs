@@ -278,7 +278,7 @@ fn a_start_in_the_air_needs_a_restitution_and_a_place_above_the_table() {
     assert!(of(1.0, &ask).unwrap_err().to_string().starts_with("height = 1.0: expected None"));
     let on = ask.with_restitution(0.5);
     // At theta = 2 the other rim is 2 ell cos theta lower.
-    assert!(of(0.8, &on).unwrap_err().to_string().starts_with("height = -0.8: expected both rims above"));
+    assert!(of(0.8, &on).unwrap_err().to_string().starts_with("height = -0.8: expected all rims above"));
     assert!(of(0.84, &on).is_ok());
     let far = ask.with_restitution(1.01);
     assert!(

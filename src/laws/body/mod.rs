@@ -550,7 +550,7 @@ pub(crate) fn border_at([low, high]: [f64; 2], theta: f64) -> f64 {
 
 /// How the circle that carries is seen, and its place in the body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(crate) struct View {
     /// Whether the body is seen from its upper end.
     pub over: bool,

@@ -50,6 +50,7 @@ const SUMMED: f64 = 1e2;
 const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is computed hop by hop.
 const ROCKED: f64 = 1e-5;
+const ROCKED_LEANING: f64 = 1e-4;
 /// A smaller w2 after a landing is a rounding error.
 const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
@@ -449,7 +450,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.claims(rises * LASTS);
             return self.settles_on_side();
         }
-        if rises < ROCKED
+        let rocked = if self.of.body.has_row() { ROCKED_LEANING } else { ROCKED };
+        if rises < rocked
             && let Some((end, error)) = self.rocks_out()
         {
             self.claims(error);
