@@ -18,7 +18,7 @@
 use crate::numbers::Real;
 
 /// A rim, or eight rims in SIMD lanes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rim<T> {
     /// Depth of the rim below the centre of mass.
     pub ell: T,

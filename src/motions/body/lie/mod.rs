@@ -102,6 +102,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let [here, there] = self.normals(&mut flow);
                 let law = flow.law_at(flat);
                 let [low, up] = law.strength;
+                if std::env::var("DBG").is_ok() { let [p, q] = law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]); eprintln!("both slip: N {here} {there} p {p} q {q} w {w1} {w3} u {u_h} {u_2} {other} body {:?}", self.of.body); }
                 let room = if law.dry {
                     let [p, q] = law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]);
                     p + q
@@ -193,11 +194,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.lays_down();
         self.of.state.w2 = 0.0;
+        // As told from the other rim a slip of zero is a rounding error.
+        let [u_h, u_2] = self.at.slip();
+        let fastest = [self.at[W1], self.at[W3]].into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
+        if self.of.slide.law.dry && u_h.hypot(u_2) <= STILL_SLIP * fastest {
+            self.stop_slip();
+        }
         let slip = self.at.slip();
         if slip == [0.0; 2] && self.of.slide.law.dry {
             return after_rest(Phases::rests(self));
         }
         // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
+        if std::env::var("DBG").is_ok() { eprintln!("rises_on {here} slip {slip:?} {:?} jams {}", self.of.state, self.jams_here(slip)); }
         if self.jams_here(slip) { Next::Ends(Ending::Painleve) } else { Next::Slips }
     }
 
@@ -249,6 +257,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn rests_on_one(&mut self, flow: LyingFlow<G>, other: bool) -> Next {
         let flow = flow.in_stance(Stance::Pivots { other }, &self.at);
         let at = flow.lain(&self.at);
+        if std::env::var("DBG").is_ok() { eprintln!("rests_on_one {other} {:?} fixed {}", at.force, flow.fixed); }
         let [n, across, along] = at.force[usize::from(other)];
         let presses = at.force.iter().all(|force| force[0] >= 0.0);
         if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
@@ -323,6 +332,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let along = held.or_else(|| self.way_off(&free, against));
         let begins = along.is_some_and(|(alpha, _)| flow.lets_begin(&self.at, towards(alpha)));
         let found = if begins { self.way_off(&flow, against) } else { held };
+        if std::env::var("DBG").is_ok() { eprintln!("slips_off_two {other} {against:?} found {found:?} {:?} {:?}", self.of.state, self.of.body); }
         let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
         self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::SlipsOff { alpha, growth }

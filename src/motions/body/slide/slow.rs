@@ -1,8 +1,10 @@
 //! The slow slips of a body of revolution, as power series of all of its numbers.
 
+use crate::laws::body::Rim;
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
 use crate::laws::loss::Ways;
+use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use crate::motions::walk::numbers::{HEAT, PHI, PSI, TIME, X, Y, loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
@@ -11,9 +13,9 @@ use crate::numbers::{Real, Series};
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
-    /// Whether the body slips on one rim, and the signs of the motions that its dry losses resist, for which the law was
-    /// recorded.
-    one: bool,
+    /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
+    /// law was recorded.
+    one: Option<Rim<f64>>,
     ways: Option<Ways>,
     /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
@@ -36,12 +38,12 @@ impl BodySlips {
 
     /// Whether these are the slips of this body on one rim under this law.
     pub fn are_under(&self, law: &Slipping<f64>) -> bool {
-        self.one && self.ways == law.losses.and_then(|losses| losses.ways)
+        self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
     fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
-        let slips = SlowSlips::of(tol, |tape, [s, c, w1, _, w3], slip, way| {
+        let slips = SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
             let taped = law.map(|x| tape.number(x));
             let y = [w1, w3, slip[0], slip[1]];
             let [mu, _] = taped.strength;
@@ -50,18 +52,21 @@ impl BodySlips {
             let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
             let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
             let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
+            let angle = taped.border.angle;
             if poses(count) {
-                more.extend([w1, w3, slip[0], slip[1] + w3]);
+                let spin = spin_of(angle, w1, w3);
+                let radius = taped.border.circles[0].radius;
+                more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
             }
             if loses(count) {
                 lost = Some(more.len());
-                more.push(-(at.couple[0] * w1 + at.couple[1] * w3));
+                let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
+                more.push(at.couple[1] * rolling - at.couple[0] * drilling);
             }
             let still = tape.number(0.0);
-            let _ = (s, c);
             SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
         });
-        Self { slips, one: false, ways: None, lost }
+        Self { slips, one: None, ways: None, lost }
     }
 
     fn on_one(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
@@ -87,7 +92,7 @@ impl BodySlips {
             let [d1, d2, d3] = at.w;
             SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
         });
-        Self { slips, one: true, ways: law.losses.and_then(|losses| losses.ways), lost }
+        Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
 }
 
