@@ -167,7 +167,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
             Contact::Rolling => {
                 let [_, speed, _] = rolling::centre_velocity(shape, angle, w);
                 let across = shape.rim.height(angle) * tilting + lever * w2 * w2 - precession * speed;
-                ((m3 - shape.i3 * r3) / radius, across)
+                (rolling::force_along(shape, angle, w, [r1, tilting, r3], m3), across)
             }
         };
         let power = self.losses.power(&seen, pressing);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! v   = (L w2, V, -A w2),   V = A w3 - L w1      of the centre: the contact point rests
-//! F2  = -I3 w3'/A
+//! F2  = -I3 w3'/A = V' + w1 w2 (L cot theta + A)
 //! Fh  = h w2' + g w2^2 - (w1/s) V
 //! N   = 1 + g w2' - g' w2^2
 //! ```
@@ -39,11 +39,28 @@ pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2,
     [depth * w2, radius * w3 - depth * w1, -(radius * w2)]
 }
 
+/// F2 from w and w', and from the couple m3. On a tip, where A = 0, it follows from the motion of the centre:
+/// F2 = V' + cot theta L w1 w2.
+#[inline(always)]
+pub(crate) fn force_along<T: Real>(
+    shape: &Shape<T>,
+    angle: (T, T),
+    [w1, w2, _]: [T; 3],
+    [d1, _, d3]: [T; 3],
+    m3: T,
+) -> T {
+    let (radius, depth) = (shape.rim.radius(angle), shape.rim.depth(angle));
+    if radius.abs().is_lt(radius.splat(f64::MIN_POSITIVE)) {
+        return depth * (angle.1 / angle.0 * w1 * w2 - d1);
+    }
+    (m3 - shape.i3 * d3) / radius
+}
+
 /// The contact force N, F2 and Fh, from w and w'.
 #[inline(always)]
 pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let [w1, w2, _] = w;
-    let along = -(shape.i3 * dw[2]) / shape.rim.radius(angle);
+    let along = force_along(shape, angle, w, dw, w1.splat(0.0));
     let [_, speed, _] = centre_velocity(shape, angle, w);
     let across = shape.rim.height(angle) * dw[1] + shape.rim.lever(angle) * w2 * w2 - w1 / angle.0 * speed;
     [newton::normal(shape, angle, w2, dw[1]), along, across]

@@ -233,6 +233,9 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     }
 
     fn slips_known(walk: &mut BodyWalk<'_, N, G>) -> bool {
+        if walk.hops_shortly() {
+            return true;
+        }
         let left = walk.of.slide.has_died(&walk.at);
         walk.of.slide.died = left.is_some();
         if let Some(left) = left {

@@ -50,7 +50,6 @@ const SUMMED: f64 = 1e2;
 const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is computed hop by hop.
 const ROCKED: f64 = 1e-5;
-const ROCKED_LEANING: f64 = 1e-4;
 /// A smaller w2 after a landing is a rounding error.
 const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
@@ -433,7 +432,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let lift = self.of.takeoff.lift;
         let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction, &self.of.own)
         else {
-            return Next::Ends(Ending::Landing);
+            let left = self.at[W2].abs();
+            if left > RATTLED {
+                return Next::Ends(Ending::Landing);
+            }
+            // What so slow a landing changes is an error.
+            self.claims(left * LASTS);
+            return self.settles_on_side();
         };
         // The impact is told from the rim that lands.
         let (rims, carried) = (self.of.body.rims(), self.made.path.view.over);
@@ -450,8 +455,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.claims(rises * LASTS);
             return self.settles_on_side();
         }
-        let rocked = if self.of.body.has_row() { ROCKED_LEANING } else { ROCKED };
-        if rises < rocked
+        if rises < ROCKED
             && let Some((end, error)) = self.rocks_out()
         {
             self.claims(error);

@@ -11,6 +11,7 @@
 //! Error: the tolerance of the steps; rolling straight without losses is exact.
 
 pub(crate) mod flow;
+mod hop;
 mod rocks;
 
 use super::body_walk::BodyWalk;
@@ -47,6 +48,8 @@ const ROCKS_BESIDE: f64 = 1e-3;
 /// rockings. A longer rocking than `ROCKS_ON` is computed hop by hop.
 const ROCKS_LONG: f64 = 3.0;
 const ROCKS_ON: f64 = 1e-9;
+/// A slip slower than this stops at once where friction does not let it go on.
+const STOPS_AT_ONCE: f64 = 1e-6;
 /// The slip with which both rims begin to slip together.
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
@@ -87,7 +90,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let [_, other] = flow.law.other_slip(flat);
         let turns = 0.5 * flow.law.border.span() * flow.law.turning(w1, w3)[0];
         let size = STILL_SLIP * [turns, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        let mut still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        let slow = [u_2, other].iter().all(|across| flow.law.dry && u_h.hypot(*across) <= STOPS_AT_ONCE);
+        if slow && still == [false; 2] && !self.slips_soundly(&mut flow) {
+            still = [true; 2];
+        }
         for (sticks, across) in still.into_iter().zip([u_2, other]) {
             if sticks {
                 self.claims(u_h.hypot(across));
@@ -120,6 +127,24 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 self.sets_state();
                 self.rests_on_one(flow, !here)
             }
+        }
+    }
+
+    /// Whether friction lets a body slip on both rims, or on one while the other one rises. Where it does not, a slow slip
+    /// stops at once, by an impact along the table that takes hardly any energy.
+    fn slips_soundly(&mut self, flow: &mut LyingFlow<G>) -> bool {
+        let y @ [.., u_h, u_2] = flat(&self.at);
+        let [_, other] = flow.law.other_slip(y);
+        let [here, there] = self.normals(flow);
+        let [low, up] = flow.law_at(y).strength;
+        let [p, q] = flow.law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]);
+        match (here >= 0.0, there >= 0.0) {
+            (true, true) => p + q > 0.0,
+            (carries, _) => self.seen_from(carries != (p + q > 0.0), |walk| {
+                let State { w1, w3, .. } = walk.of.state;
+                let one = walk.of.slide.slips(walk.at.angle(), [w1, 0.0, w3], walk.at.slip(), None).0;
+                one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0
+            }),
         }
     }
 

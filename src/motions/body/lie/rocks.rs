@@ -17,8 +17,6 @@ use crate::motions::walk::numbers::{
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
-/// The same at a border that is no right angle, from which theta is known to a rounding only: the hops lose their digits.
-const SOON_OVER_LEANING: f64 = 1e-4;
 /// A rocking beside a slow slip is summed only if the slip turns by less than this angle in that time. Dry friction turns
 /// it at a rate of up to this many times mu over its speed.
 const TURNED: f64 = 1e-2;
@@ -87,7 +85,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.lands_as(&landed);
             self.at[HEAT] += landed.lost;
         }
-        let soon = if self.of.body.has_row() { SOON_OVER_LEANING } else { SOON_OVER };
         let share = 1.0 - self.at[W2] / begin[W2];
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
         (end[SIN], end[COS]) = self.of.body.border_angle();
@@ -95,6 +92,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
-        (share > 0.0 && left * fastest < soon && turns < TURNED).then_some((end, left * turns))
+        (share > 0.0 && left * fastest < SOON_OVER && turns < TURNED).then_some((end, left * turns))
     }
 }

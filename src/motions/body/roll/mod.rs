@@ -46,7 +46,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     ) -> Result<Option<WalkStep<N>>, Error> {
         let Friction::Coulomb { fixed, .. } = self.friction() else { return Ok(None) };
         let times = &self.since[self.made.motion.states.len()..];
-        if times.is_empty() {
+        if times.is_empty() || self.hops_shortly() {
             return Ok(None);
         }
         if !poses(N) && (self.of.uniform || self.of.slide.no_longer_drills(&self.at)) {

@@ -1,0 +1,140 @@
+//! A short hop: a body that has just risen from a landing of two unequal rims, and falls back soon.
+//!
+//! ```text
+//! chi' = w2,   chi = theta_end - theta;   w', u' at the inclination;   T > 0 with chi(T) = 0
+//! ```
+//! Theta is known to a rounding, so that a hop has no digits left where chi, which is w2^2/(2 gamma) at most, is as small.
+//! Here chi itself is the variable, over the hop as one step of the method of Runge and Kutta.
+//!
+//! Error: the fifth power of the duration of the hop.
+
+use super::super::body_walk::BodyWalk;
+use super::super::own::Own;
+use super::super::slide::contact_velocity;
+use crate::laws::contact::standstill::Standstill;
+use crate::laws::loss::Law;
+use crate::laws::state::{State, spin_of};
+use crate::motions::Ending;
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
+};
+use crate::motions::walk::{Next, Phases};
+
+/// A hop is short if its w2, and its duration, are below these.
+const SHORT_HOP: f64 = 1e-4;
+const SOON: f64 = 3e-3;
+/// A slip lasts longer than the hop if it is faster than what friction changes in that time by this factor.
+const OUTLASTS: f64 = 30.0;
+/// Number of corrections of the duration.
+const CORRECTIONS: usize = 4;
+
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
+    /// Computes the current phase if it is a short hop from two rims. Returns whether it is.
+    #[inline(never)]
+    pub(crate) fn hops_shortly(&mut self) -> bool {
+        let (state, rises) = (self.of.state, self.at[W2]);
+        let at_border = state.theta == self.of.body.theta_end() && self.has_two_rims();
+        if !self.of.body.has_row() || !at_border || !(0.0..SHORT_HOP).contains(&rises) || rises == 0.0 {
+            return false;
+        }
+        let pressed = self.ask.losses.coefficient(Law::RollingResistance) > 0.0;
+        if self.ask.restitution.is_none() || pressed {
+            return false;
+        }
+        let sticks = self.of.slide.law.dry && self.at.slip() == [0.0; 2];
+        if sticks && Phases::rests(self) != Standstill::Sticks {
+            return false;
+        }
+        (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+        let begin = self.at;
+        let falls = -self.hop_rates(&begin, 0.0, sticks)[W2];
+        let mut lasts = 2.0 * rises / falls;
+        let [u, v] = self.at.slip();
+        let friction = self.of.slide.law.strength * lasts * OUTLASTS;
+        if !(0.0..SOON).contains(&lasts) || !sticks && self.of.slide.law.dry && u.hypot(v) < friction {
+            return false;
+        }
+        for _ in 0..CORRECTIONS {
+            // chi/t falls through 0 at the end.
+            let (y, chi) = self.hopped(&begin, lasts, sticks);
+            let slope = (y[W2] - chi / lasts) / lasts;
+            lasts -= chi / lasts / slope;
+        }
+        if !(0.0..SOON).contains(&lasts) {
+            return false;
+        }
+        let now = begin[TIME];
+        while let Some(t) = self.until().filter(|t| *t < now + lasts) {
+            let (y, chi) = self.hopped(&begin, t - now, sticks);
+            self.hops_to(y, chi);
+            Phases::write_here(self);
+        }
+        let (y, _) = self.hopped(&begin, lasts, sticks);
+        self.hops_to(y, 0.0);
+        self.of.state.theta = self.of.body.theta_end();
+        if !sticks {
+            self.made.path.slipping += lasts;
+        }
+        self.continues_with(Next::Ends(Ending::Side));
+        true
+    }
+
+    /// Moves the walk to these numbers.
+    fn hops_to(&mut self, y: [f64; N], chi: f64) {
+        self.at = y;
+        self.of.state =
+            State { theta: self.of.body.theta_end() - chi, w1: y[W1], w2: y[W2], w3: y[W3] };
+    }
+
+    /// The numbers after this time of a hop, and chi.
+    fn hopped(&self, begin: &[f64; N], t: f64, sticks: bool) -> ([f64; N], f64) {
+        let moved = |by: f64, rates: &[f64; N]| -> [f64; N] {
+            core::array::from_fn(|i| begin[i] + by * rates[i])
+        };
+        // The rate of chi is w2.
+        let first = self.hop_rates(begin, 0.0, sticks);
+        let a = moved(0.5 * t, &first);
+        let second = self.hop_rates(&a, 0.5 * t * begin[W2], sticks);
+        let b = moved(0.5 * t, &second);
+        let third = self.hop_rates(&b, 0.5 * t * a[W2], sticks);
+        let d = moved(t, &third);
+        let fourth = self.hop_rates(&d, t * b[W2], sticks);
+        let mean: [f64; N] =
+            core::array::from_fn(|i| (first[i] + 2.0 * (second[i] + third[i]) + fourth[i]) / 6.0);
+        let chi = t * (begin[W2] + 2.0 * (a[W2] + b[W2]) + d[W2]) / 6.0;
+        let mut y = moved(t, &mean);
+        (y[SIN], y[COS]) = self.hop_angle(chi);
+        y[TIME] = begin[TIME] + t;
+        (y, chi)
+    }
+
+    fn hop_angle(&self, chi: f64) -> (f64, f64) {
+        let ((s, c), (sin, cos)) = (self.of.body.border_angle(), chi.sin_cos());
+        (s * cos - c * sin, c * cos + s * sin)
+    }
+
+    /// The rates of the numbers, without those of the inclination, which is theta_end - chi.
+    fn hop_rates(&self, y: &[f64; N], chi: f64, sticks: bool) -> [f64; N] {
+        let (angle, w, slip) = (self.hop_angle(chi), y.w(), y.slip());
+        let mut all = [0.0; N];
+        let (rate, drift, warms, taken) = if sticks {
+            let theta = self.of.body.theta_end() - chi;
+            let (rate, taken) = self.rolling_of(&State { theta, w1: w[0], w2: w[1], w3: w[2] });
+            (rate, [0.0; 2], 0.0, taken)
+        } else {
+            let (at, taken) = self.of.slide.slips(angle, w, slip, None);
+            (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
+        };
+        (all[W1], all[W2], all[W3]) = (rate[0], rate[1], rate[2]);
+        (all[UH], all[U2], all[HEAT]) = (drift[0], drift[1], warms);
+        if loses(N) {
+            all[N - 1] = taken;
+        }
+        if poses(N) {
+            let spin = spin_of(angle, w[0], w[2]);
+            let over = contact_velocity(&self.of.slide.law.shape.rim, angle, w[1], spin, slip);
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [w[0] / angle.0, spin], over));
+        }
+        all
+    }
+}
