@@ -109,7 +109,6 @@ fn a_short_frustum_rocks_to_rest_after_infinitely_many_landings() {
     let path = m.path.as_ref().unwrap();
     // Each landing turns w2 into 0.831 or 0.965 of it: (H + g g')/(H + g^2) with H = I1 + Z^2.
     let rests = path.phases.last().unwrap().time;
-    println!("{rests} err {} {:?}", m.error, path.phases.iter().rev().take(6).map(|p| (p.time, p.kind, p.state.w2)).collect::<Vec<_>>());
     assert!((rests - 6.701_437_58).abs() < 2e-8, "{rests}");
     let height = |theta: f64| body.ell() * theta.cos() + body.rim() * theta.sin();
     let lost: f64 = path.impacts.iter().map(|hit| hit.lost).sum();

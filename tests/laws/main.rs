@@ -4,7 +4,6 @@
 
 mod big_integers;
 mod circles;
-mod zz;
 mod common;
 mod custom;
 mod custom_stones;

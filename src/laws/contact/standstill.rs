@@ -161,11 +161,7 @@ pub(crate) fn standstill<G: OwnCouple<f64>>(
     let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.standstill([mu, fixed], doubtful),
-        None => {
-            let f = forces_at_rest(body, y, (friction, [mu, fixed]), of);
-            if std::env::var("DBG").is_ok() { eprintln!("standstill {y:?} mu {mu} limit {} free {} held {:?} doubtful {} ways {:?} against {}", painleve(body, y.theta), f.free, f.held, f.doubtful, f.slip_directions(), f.against); }
-            f.decides()
-        }
+        None => forces_at_rest(body, y, (friction, [mu, fixed]), of).decides(),
     }
 }
 
@@ -180,11 +176,7 @@ pub(crate) fn let_go<G: OwnCouple<f64>>(
     let of = linear(body, y, of);
     match together(body, y, mu, of.as_ref()) {
         Some((together, doubtful)) => together.lets_go([mu, fixed], doubtful),
-        None => {
-            let f = forces_at_rest(body, y, (friction, [mu, fixed]), of);
-            if std::env::var("DBG").is_ok() { eprintln!("lets_go mu {mu} limit {} free {} held {:?} doubtful {} ways {:?} against {}", painleve(body, y.theta), f.free, f.held, f.doubtful, f.slip_directions(), f.against); }
-            f.lets_go()
-        }
+        None => forces_at_rest(body, y, (friction, [mu, fixed]), of).lets_go(),
     }
 }
 

@@ -48,6 +48,8 @@ const ROCKS_BESIDE: f64 = 1e-3;
 /// rockings. A longer rocking than `ROCKS_ON` is computed hop by hop.
 const ROCKS_LONG: f64 = 3.0;
 const ROCKS_ON: f64 = 1e-9;
+/// Number of phases without a duration after which their order is not trusted.
+const REPEATED: u32 = 3;
 /// A slip slower than this stops at once where friction does not let it go on.
 const STOPS_AT_ONCE: f64 = 1e-6;
 /// The slip with which both rims begin to slip together.
@@ -90,7 +92,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let [_, other] = flow.law.other_slip(flat);
         let turns = 0.5 * flow.law.border.span() * flow.law.turning(w1, w3)[0];
         let size = STILL_SLIP * [turns, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        let mut still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        // The time of slower slips is lost in the rounding of theta.
+        let over = if self.does_not_advance() { STOPS_AT_ONCE } else { size };
+        let mut still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= over);
         let slow = [u_2, other].iter().all(|across| flow.law.dry && u_h.hypot(*across) <= STOPS_AT_ONCE);
         if slow && still == [false; 2] && !self.slips_soundly(&mut flow) {
             still = [true; 2];
@@ -109,7 +113,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let [here, there] = self.normals(&mut flow);
                 let law = flow.law_at(flat);
                 let [low, up] = law.strength;
-                if std::env::var("DBG").is_ok() { let [p, q] = law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]); eprintln!("both slip: N {here} {there} p {p} q {q} w {w1} {w3} u {u_h} {u_2} {other} body {:?}", self.of.body); }
                 let room = if law.dry {
                     let [p, q] = law.leans([low * u_h / u_h.hypot(u_2), up * u_h / u_h.hypot(other)]);
                     p + q
@@ -128,6 +131,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 self.rests_on_one(flow, !here)
             }
         }
+    }
+
+    /// Whether phases begin and end at one time.
+    pub(super) fn does_not_advance(&self) -> bool {
+        self.of.body.has_row() && self.still > REPEATED
     }
 
     /// Whether friction lets a body slip on both rims, or on one while the other one rises. Where it does not, a slow slip
@@ -230,7 +238,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return after_rest(Phases::rests(self));
         }
         // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
-        if std::env::var("DBG").is_ok() { eprintln!("rises_on {here} slip {slip:?} {:?} jams {}", self.of.state, self.jams_here(slip)); }
         if self.jams_here(slip) { Next::Ends(Ending::Painleve) } else { Next::Slips }
     }
 
@@ -282,7 +289,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn rests_on_one(&mut self, flow: LyingFlow<G>, other: bool) -> Next {
         let flow = flow.in_stance(Stance::Pivots { other }, &self.at);
         let at = flow.lain(&self.at);
-        if std::env::var("DBG").is_ok() { eprintln!("rests_on_one {other} {:?} fixed {}", at.force, flow.fixed); }
         let [n, across, along] = at.force[usize::from(other)];
         let presses = at.force.iter().all(|force| force[0] >= 0.0);
         if presses && across.hypot(along) <= flow.fixed * n * (1.0 + GRACE) {
@@ -306,7 +312,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let one = walk.of.slide.slips(walk.at.angle(), [w1, 0.0, w3], walk.at.slip(), None).0;
             one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0
         });
-        if slides { self.rises_on(other) } else { self.slips_off_two(flow, other, None) }
+        if slides {
+            return self.rises_on(other);
+        }
+        let (at, state) = (self.at, self.of.state);
+        let slips = flow.law.other_slip(flat(&at))[1].abs().max(at[U2].abs());
+        let next = self.slips_off_two(flow, other, None);
+        if !matches!(next, Next::Ends(Ending::Painleve)) || slips > STOPS_AT_ONCE {
+            return next;
+        }
+        if other {
+            self.turns_over();
+        }
+        (self.at, self.of.state) = (at, state);
+        self.claims(slips);
+        self.rolls_along(&flow.law);
+        self.begins_stance(flow, Stance::Rolls)
     }
 
     /// What is found while the walk is seen from the other rim, if `other`.
@@ -346,6 +367,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn slips_off_two(&mut self, mut flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
         if other {
             self.turns_over();
+            // The laws are those as seen from this rim.
+            let Some(seen) = self.flat() else { return Next::Ends(Ending::Painleve) };
+            flow = seen;
         }
         (self.at[UH], self.at[U2]) = (0.0, 0.0);
         flow.stance = Stance::Slips;
@@ -357,7 +381,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let along = held.or_else(|| self.way_off(&free, against));
         let begins = along.is_some_and(|(alpha, _)| flow.lets_begin(&self.at, towards(alpha)));
         let found = if begins { self.way_off(&flow, against) } else { held };
-        if std::env::var("DBG").is_ok() { eprintln!("slips_off_two {other} {against:?} found {found:?} {:?} {:?}", self.of.state, self.of.body); }
         let Some((alpha, growth)) = found else { return Next::Ends(Ending::Painleve) };
         self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::SlipsOff { alpha, growth }
