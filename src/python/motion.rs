@@ -249,7 +249,7 @@ pub fn roll<'py>(
     let loses = asked.couple.is_some() || !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
-            let body = Body::of_numbers(body.into())?;
+            let body = Body::of_rows(body.into(), &asked.circles)?;
             let state = State::from(<[f64; 4]>::from(state));
             let start = Start { state, slip: start.0, time: start.1, aloft };
             if asked.is_custom() {

@@ -113,7 +113,7 @@ impl Row {
         let none = Circle { radius: 0.0, depth: 0.0, fillet: 0.0 };
         let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0, over: false };
         let refuse = |value, expected| Err(Error::OutOfRange { name: "circles", value, expected });
-        for (k, circle) in given.iter().enumerate() {
+        'circles: for (k, circle) in given.iter().enumerate() {
             within("radius", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
             within("depth", circle.depth, (-1e100, 1e100), "-1e100 <= depth <= 1e100, of a circle")?;
             within("fillet", circle.fillet, (0.0, 1e100), "0 <= fillet <= 1e100, of a circle")?;
@@ -122,11 +122,17 @@ impl Row {
                 let Some([border, _]) = last.border(circle) else {
                     return refuse(k as f64, "circles of which none lies inside another");
                 };
+                // One that touches only at an end, as the inner edge of a tube does, never carries.
+                if (border - PI).abs() < JOINED {
+                    continue 'circles;
+                }
                 // A circle that would begin to carry before the one before it does lies inside the hull.
-                if row.count == 1 || border > row.border(row.count - 2) + JOINED {
+                let before = if row.count > 1 { row.border(row.count - 2) } else { 0.0 };
+                if border > before + JOINED || row.count == 1 && border < -JOINED {
                     break;
                 }
                 row.count -= 1;
+                row.circles[row.count] = none;
             }
             if row.count == MOST_CIRCLES {
                 return refuse(given.len() as f64, "at most 8 circles that touch the table");
@@ -227,7 +233,8 @@ impl Row {
         let mut first = 0;
         for k in 0..self.count {
             all.rims[k] = self.circles[k].rim();
-            let border = |k: usize| if self.over { PI - row.border(self.count - 2 - k) } else { row.border(k) };
+            let border =
+                |k: usize| if self.over { PI - row.border(self.count - 2 - k) } else { row.border(k) };
             if k + 1 < self.count {
                 all.tops[k] = border(k).cos();
             }
