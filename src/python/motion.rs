@@ -440,7 +440,7 @@ fn dictionary<'py, S: StateArrays>(
         )?;
         let mut impacts = room(path.impacts.len() * STRIKE)?;
         for at in &path.impacts {
-            let codes = [at.other as u8, at.hit as u8, at.stays as u8].map(f64::from);
+            let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
             impacts.push(at.time);
             impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse));
             for (state, velocity) in at.states.map(<[f64; 4]>::from).iter().zip(&at.velocities) {

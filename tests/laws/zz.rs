@@ -10,8 +10,13 @@ fn zz() {
     for (name, body) in [("bottle", bottle), ("cup", cup)] {
         println!("{name} {:?}", body.theta_end());
         for (theta, w, slip, e) in [
-            (1.0, [0.0, 0.0, 0.0], [0.0, 0.0], 0.0), (1.0, [0.3, 0.2, 3.0], [0.0, 0.0], 0.0), (1.2, [0.3, 0.2, 3.0], [0.1, 0.5], 0.3),
-            (2.0, [0.3, 0.2, 3.0], [0.1, 0.5], 0.3), (2.5, [0.0, 0.0, 0.0], [0.0, 0.0], 0.0), (1.9, [1.0, 0.0, 0.5], [0.0, 0.0], 0.0), (1.4, [1.0, -4.0, 0.5], [0.0, 0.0], 0.5),
+            (1.0, [0.0, 0.0, 0.0], [0.0, 0.0], 0.0),
+            (1.0, [0.3, 0.2, 3.0], [0.0, 0.0], 0.0),
+            (1.2, [0.3, 0.2, 3.0], [0.1, 0.5], 0.3),
+            (2.0, [0.3, 0.2, 3.0], [0.1, 0.5], 0.3),
+            (2.5, [0.0, 0.0, 0.0], [0.0, 0.0], 0.0),
+            (1.9, [1.0, 0.0, 0.5], [0.0, 0.0], 0.0),
+            (1.4, [1.0, -4.0, 0.5], [0.0, 0.0], 0.5),
         ] {
             let y = State { theta, w1: w[0], w2: w[1], w3: w[2] };
             let times: Vec<f64> = (0..6).map(|k| 10.0 * k as f64).collect();
@@ -20,10 +25,23 @@ fn zz() {
             match roll_with(&body, Start::from(y).with_slip(slip), &times, &ask, || true) {
                 Ok(Some(m)) => {
                     let p = m.path.as_ref().unwrap();
-                    println!("{theta} {w:?} {e}: {:?} err {:.1e} at {:?} phases {} hits {} {:?} {:.1} ms, rims {:?}", m.ending(), m.error, m.event.map(|e| (e.time, e.state.theta, e.rim)),
-                        p.phases.len(), p.impacts.len(), m.limit, now.elapsed().as_secs_f64() * 1e3, p.rims);
+                    println!(
+                        "{theta} {w:?} {e}: {:?} err {:.1e} at {:?} phases {} hits {} {:?} {:.1} ms, rims {:?}",
+                        m.ending(),
+                        m.error,
+                        m.event.map(|e| (e.time, e.state.theta, e.rim)),
+                        p.phases.len(),
+                        p.impacts.len(),
+                        m.limit,
+                        now.elapsed().as_secs_f64() * 1e3,
+                        p.rims
+                    );
                     let y = m.states.last().unwrap();
-                    println!("      {:.4?} {:?}", [y.theta, y.w1, y.w2, y.w3], p.phases.last().map(|p| (p.time, p.kind)));
+                    println!(
+                        "      {:.4?} {:?}",
+                        [y.theta, y.w1, y.w2, y.w3],
+                        p.phases.last().map(|p| (p.time, p.kind))
+                    );
                 }
                 r => println!("{theta} {w:?} {e}: {r:?}"),
             }

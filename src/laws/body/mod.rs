@@ -14,6 +14,7 @@
 //! excess is kept as an unevaluated sum of two doubles, because the steady states of a body near the critical shape
 //! depend on the last digits of the excess; `body::tube` gives its error.
 
+mod apex;
 #[cfg(feature = "serde")]
 mod file;
 mod hull;
@@ -27,6 +28,7 @@ use crate::error::{Error, within};
 use crate::laws::state::State;
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
+pub use apex::Apex;
 use core::f64::consts::{FRAC_PI_2, PI};
 pub use profile::Circle;
 use profile::Row;
@@ -151,8 +153,7 @@ impl Body {
     /// The body with these rows of radius, height above the centre of mass, and fillet, from the lower end up; rows with a
     /// radius of NaN do not count. Without a row it is the body of these numbers, of which else only i1 and i3 count.
     pub(crate) fn of_rows(numbers: [f64; 6], rows: &[[f64; 3]]) -> Result<Self, Error> {
-        let circle = |row: &[f64; 3]| Circle { radius: row[0], depth: 0.0 - row[1], fillet: row[2] };
-        let circles: Vec<Circle> = rows.iter().filter(|row| !row[0].is_nan()).map(circle).collect();
+        let circles = circles_of_rows(rows);
         if circles.is_empty() {
             return Self::of_numbers(numbers);
         }
@@ -240,6 +241,11 @@ impl Body {
             None if self.has_two_rims() => vec![here, Circle { depth: 0.0 - self.ell, ..here }],
             None => vec![here],
         }
+    }
+
+    /// Whether one of these circles, of which the body is made, lies in line with two others, with which it touches the table.
+    pub(crate) fn passes_over(&self, given: &[Circle]) -> bool {
+        self.row.is_some_and(|row| row.passes_over(given))
     }
 
     /// The circles of the body as rows of radius, height above the centre of mass, and fillet.
@@ -550,12 +556,23 @@ impl Body {
         if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }
     }
 
+    /// The largest inclination at which the body can be steady with its centre at rest: 0 for a tip, which cannot roll.
+    pub(crate) fn rests_up_to(&self) -> f64 {
+        if self.rim.hi == 0.0 && self.fillet == 0.0 { 0.0 } else { self.range() }
+    }
+
     /// The numbers of the body that enter the equations of motion.
     #[inline(always)]
     pub(crate) fn shape(&self) -> Shape<f64> {
         let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
         Shape { rim, i1: self.i1, i3: self.i3 }
     }
+}
+
+/// The circles with these rows of radius, height above the centre of mass, and fillet, without those whose radius is NaN.
+pub(crate) fn circles_of_rows(rows: &[[f64; 3]]) -> Vec<Circle> {
+    let circle = |row: &[f64; 3]| Circle { radius: row[0], depth: 0.0 - row[1], fillet: row[2] };
+    rows.iter().filter(|row| !row[0].is_nan()).map(circle).collect()
 }
 
 /// The inclination at which a body is assumed to land on its other rim: pi/2 for ell > 0 unless it is a ball, else pi.

@@ -14,7 +14,7 @@
 //!
 //! Error: a few roundings of the angle, divided by sqrt(1 - (drho/m)^2), which is 1 for two sharp circles.
 
-use super::rim::Rim;
+use super::{landing_angle, rim::Rim};
 use crate::error::{Error, within};
 use core::f64::consts::PI;
 
@@ -38,6 +38,11 @@ pub struct Circle {
 impl Circle {
     pub(crate) fn rim(self) -> Rim<f64> {
         Rim { ell: self.depth, a: self.radius, rho: self.fillet }
+    }
+
+    /// The height of the centre of mass above the table where this circle carries the body, at an inclination.
+    pub fn height(self, theta: f64) -> f64 {
+        self.rim().height(theta.sin_cos())
     }
 
     /// The border between this circle and the next one, and the distance D of their contacts there; None where one lies
@@ -152,6 +157,17 @@ impl Row {
             )?;
         }
         Ok(row)
+    }
+
+    /// Whether one of these circles, which is not in the row, touches the table together with two that are.
+    pub fn passes_over(&self, given: &[Circle]) -> bool {
+        let touches = |circle: &Circle, k: usize| {
+            let (angle, here) = (landing_angle(self.border(k)), self.circles[k].rim());
+            let lower = here.less(&circle.rim()).height(angle);
+            lower.abs() <= JOINED * (here.reach() + circle.rim().reach()) && self.both(k)[1] > 0.0
+        };
+        let others = given.iter().filter(|circle| !self.circles().contains(circle));
+        others.into_iter().any(|circle| (1..self.count).any(|k| touches(circle, k - 1)))
     }
 
     /// The circle that carries.

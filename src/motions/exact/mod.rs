@@ -177,7 +177,8 @@ pub(crate) fn check_in_air(body: &Body, y: &State) -> Result<(), Error> {
 }
 
 fn check_body(body: &Body) -> Result<(), Error> {
-    within("ell", body.ell(), (-body.rim() - body.fillet(), 1e6), "-1 < ell <= 1e6 for a motion")?;
+    let least = if body.has_row() { -1e6 } else { -body.rim() - body.fillet() };
+    within("ell", body.ell(), (least, 1e6), "-1 < ell <= 1e6 for a motion")?;
     within("i1", body.i1(), (1e-6, 1e12), "1e-6 <= i1 <= 1e12 for a motion")?;
     within("i3", body.i3(), (1e-6, 1e12), "1e-6 <= i3 <= 1e12 for a motion").map(drop)
 }
