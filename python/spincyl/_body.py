@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
 import numpy as np
 
 from spincyl import _core
+from spincyl._circles import FIELDS, extent_of, set_rims
 from spincyl._circular import circular as _circular
 from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
@@ -14,12 +15,10 @@ from spincyl._input.numbers import (
     Result,
     common_shape,
     elementwise,
-    in_range,
     is_scalar,
     keywords,
     lengths_in_metres,
     metres,
-    number,
     numbered,
     radians,
     read_only_copy,
@@ -28,7 +27,8 @@ from spincyl._input.numbers import (
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
-from spincyl._repr import FIELDS, repr_of_body
+from spincyl._outlines import Outlines
+from spincyl._repr import repr_of_body
 from spincyl._scale import Scale
 from spincyl._sized import Sized
 from spincyl._state import State, state_without_checks
@@ -43,7 +43,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Body(Laws, Sized, Hinting):
+class Body(Laws, Outlines, Sized, Hinting):
     """A rigid body of revolution that touches the table with its lower rim.
 
     If fields are arrays, the object is a family of bodies; the arrays broadcast, and every method broadcasts
@@ -69,6 +69,9 @@ class Body(Laws, Sized, Hinting):
     scale : Scale, optional
         Size, mass and gravity. A body with a scale is a measured body (see `measured`): its motions are in
         SI. Fields, methods and every `State` stay in natural units, except methods named after a unit.
+    rims : array_like, optional
+        (..., n, 3), the `circles` of a body that stands on several, as `profile` makes it; None for a body of
+        one circle or two equal rims. `ell`, `fillet` and `theta_end` are then those of the lowest circle.
 
     Raises
     ------
@@ -92,6 +95,7 @@ class Body(Laws, Sized, Hinting):
     fillet: Reals = 0.0
     theta_end: Reals = np.nan
     scale: Scale | None = field(default=None, kw_only=True)
+    rims: Any = field(default=None, kw_only=True)
     _measured: ClassVar[dict[str, float]] = {}  # the arguments of `from_metres`, for `__repr__`
     # of `parts.assembled`: name, form and numbers in R about the centre of mass
     _parts: ClassVar[tuple[tuple[str, int, tuple[float, ...]], ...]] = ()
@@ -99,6 +103,9 @@ class Body(Laws, Sized, Hinting):
 
     def __post_init__(self) -> None:
         self._check_scale()
+        if self.rims is not None:
+            set_rims(self)
+            return
         given = [reals(name, getattr(self, name)) for name in FIELDS]
         if is_scalar(*given):
             given = [float(x) + 0.0 for x in given]  # turns -0.0 into 0.0
@@ -146,41 +153,6 @@ class Body(Laws, Sized, Hinting):
             theta_end = _core.capsule_end(ell, fillet)
         # with a bore given, the core computes the moments of the tube
         return cls(depth, np.nan, np.nan, bore, fillet, theta_end)
-
-    @classmethod
-    def balls(
-        cls, separation: float = 1.0, *, diameter: float | None = None, mass: float | None = None
-    ) -> Self:
-        """Two equal solid balls fixed to each other: Hurricane balls.
-
-        Parameters
-        ----------
-        separation : float
-            Distance between the centres, in diameters: 1 if the balls touch, more if a light rod joins them.
-        diameter, mass : float, optional
-            Diameter of each ball in metres and mass of both in kilograms; a diameter makes a measured body.
-
-        Notes
-        -----
-        Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The upper ball lands at theta = pi/2.
-        """
-        i1, theta_end = _core.check_balls(separation := number("separation", separation))
-        return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)._across(diameter, mass)
-
-    @classmethod
-    @elementwise
-    def ball(
-        cls, offset: Reals, i1: Reals, i3: Reals, *, diameter: float | None = None, mass: float | None = None
-    ) -> Self:
-        """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
-
-        `i1`, `i3`: transverse and axial moments of inertia about the centre of mass, in M R^2. The axis may
-        pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms.
-        """
-        given = reals("offset", offset), reals("i1", i1), reals("i3", i3)
-        if is_scalar(*given):
-            _core.check_ball(*map(float, given))
-        return cls(*given, fillet=1.0)._across(diameter, mass)
 
     @classmethod
     def from_metres(
@@ -274,7 +246,7 @@ class Body(Laws, Sized, Hinting):
         -----
         Jackson et al., Am. J. Phys. 87, 85 (2019), Eq. 15, rearranged to avoid its cancellation.
         """
-        if type(theta) is float and self._single and not ufunc:
+        if type(theta) is float and self._single and self.rims is None and not ufunc:
             # one angle of one body: separate arguments are faster than unpacking a tuple
             one = _rate_of_one(theta, self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end)
             if one == one:
@@ -283,14 +255,12 @@ class Body(Laws, Sized, Hinting):
 
     @elementwise
     def _rates(self, theta: Reals, **ufunc: Any) -> Result:
-        return _core.rate(radians("theta", theta, self._leans), *self._numbers, **keywords(_core.rate, ufunc))
+        return _core.rate(*self._at(radians("theta", theta, self._leans)), **keywords(_core.rate, ufunc))
 
     @elementwise
     def region(self, theta: Reals, **ufunc: Any) -> Result:
         """`Region` code (uint8) at theta (radians): stable, unstable, forbidden, or outside the domain."""
-        return _core.region(
-            radians("theta", theta, self._leans), *self._numbers, **keywords(_core.region, ufunc)
-        )
+        return _core.region(*self._at(radians("theta", theta, self._leans)), **keywords(_core.region, ufunc))
 
     @elementwise
     def inclinations(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
@@ -341,11 +311,17 @@ class Body(Laws, Sized, Hinting):
             If a single inclination has no steady state; the message gives the forbidden band. An array of
             inclinations gives NaN there.
         """
-        numbers, plain = self._numbers, type(theta) is float and self._single and abs(theta) <= np.pi
-        theta = theta if plain else radians("theta", theta, self._leans)
-        if plain or is_scalar(theta, *numbers):
-            return state_without_checks(_core.steady_state(float(theta), numbers))
-        return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
+        plain = type(theta) is float and self._single and abs(theta) <= np.pi
+        given = theta if plain else radians("theta", theta, self._leans)
+        seen, *numbers = self._at(given)
+        if plain or is_scalar(given, *numbers):
+            found: Any = _core.steady_state(float(seen), numbers)
+            if self.rims is not None:
+                found = given, found[1], 0.0, float(self._sign(given) * found[3])
+            return state_without_checks(found)
+        w3 = _core.steady_w3(seen, *numbers)
+        w3 = w3 if self.rims is None else self._sign(given) * w3
+        return State(given, _core.steady_w1(seen, *numbers), given * 0.0, w3)
 
     @elementwise
     def circular(
@@ -383,20 +359,15 @@ class Body(Laws, Sized, Hinting):
     def _radius(self) -> float:
         if self.scale is not None:
             return self.scale.radius
+        if self._unit == self._unit:
+            return self._unit
         if not self._measured:
             raise TypeError("radius: expected the outer radius in metres; the body has no size yet")
         return self._measured["outer_diameter"] / 2
 
-    def _across(self, diameter: float | None, mass: float | None) -> Self:
-        """The body of one ball or two, measured if a diameter is given."""
-        if diameter is None:
-            if mass is not None:
-                raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
-            return self
-        across = in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
-        return self.in_metres(mass, radius=across / 2)
-
     def _bulk(self) -> tuple[str, tuple[float, float], float]:
+        if self.rims is not None and self._single:
+            return "body", extent_of(self.rims), 0.0
         if self._single and self.bore == self.bore:
             half = self.ell + self.fillet
             return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half
@@ -409,6 +380,7 @@ class Body(Laws, Sized, Hinting):
     def _with_scale(self, scale: Scale | None) -> Self:
         found = replace(self, scale=scale)
         object.__setattr__(found, "_parts", self._parts)
+        object.__setattr__(found, "_unit", self._unit)
         if scale is not None and self._measured.get("outer_diameter") == 2 * scale.radius:
             usual = {"mass": scale._is_weighed, "gravity": scale.gravity != Scale.gravity}
             shown = self._measured | {"mass": scale.mass, "gravity": scale.gravity}
@@ -434,6 +406,8 @@ class Body(Laws, Sized, Hinting):
 
     @property
     def _leans(self) -> str:
+        if self.rims is not None:
+            return "0 < theta < pi"
         own = is_lazy(self.fillet) or is_lazy(self.theta_end)
         own = own or bool(np.any(self.fillet == 1) or not np.all(np.isnan(self.theta_end)))
         return f"0 < theta <= {'theta_end of the body' if own else 'pi/2'}"

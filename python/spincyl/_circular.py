@@ -20,8 +20,16 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
         raise TypeError("precession, radius, w3: give exactly one of them")
     (name,) = chosen
     theta, number = radians("theta", theta, body._leans), reals(name, given[name])
-    numbers: Any = body._numbers
-    single = is_scalar(theta, number, *numbers)
+    if body.rims is None:
+        return _on_a_circle(body, theta, body._raw, name, number)
+    seen, *numbers = body._at(theta)
+    found = _on_a_circle(body, seen, numbers, name, body._sign(theta) * number if name == "w3" else number)
+    told = np.asarray(theta)[..., np.newaxis] if name == "w3" else theta
+    return State(told + 0.0 * found.w1, found.w1, found.w2, body._sign(told) * found.w3)
+
+
+def _on_a_circle(body: "Body", theta: Reals, numbers: Any, name: str, number: Reals) -> State:
+    given, single = number, is_scalar(theta, number, *numbers)
     asked = float(number) if single else number
     if name == "radius":
         number = _core.precession_of_radius(theta, number, *numbers)
@@ -32,11 +40,11 @@ def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: R
     if single:
         if np.isnan(asked):
             raise ValueError(f"{name} = nan: expected a number")
-        if np.isnan(number) and theta > body.theta_end:
+        if np.isnan(number) and body.rims is None and theta > body.theta_end:
             lands = f"expected at most theta_end = {body.theta_end!r}, where another part lands"
             raise ValueError(f"theta = {theta!r}: {lands}")
         if np.isnan(number):
-            raise ValueError(f"{name} = {given[name]!r}: no steady state at theta = {theta!r} has this value")
+            raise ValueError(f"{name} = {given!r}: no steady state at theta = {theta!r} has this value")
         return state_without_checks(_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)

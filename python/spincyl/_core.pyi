@@ -15,6 +15,7 @@ __all__ = [
     "assembled",
     "axis_up",
     "beta",
+    "body_circles",
     "body_i1",
     "body_i3",
     "boundary_rolling",
@@ -28,9 +29,11 @@ __all__ = [
     "check_ball",
     "check_balls",
     "check_body",
+    "check_profile",
     "check_stone",
     "check_stones",
     "check_tube",
+    "circle_height",
     "circular_state",
     "circular_w1",
     "circular_w3",
@@ -51,6 +54,7 @@ __all__ = [
     "extrema",
     "fold",
     "from_metres",
+    "frustum",
     "gamma",
     "growth_rate",
     "inclination",
@@ -58,6 +62,7 @@ __all__ = [
     "jellett_spin",
     "kappa_rolling",
     "kappa_smooth",
+    "lathe",
     "launch_number",
     "launch_spin",
     "loss_couple",
@@ -118,6 +123,7 @@ __all__ = [
     "thrown_w3",
     "turning_spin",
     "two_rims",
+    "unequal_balls",
     "uniform_stone",
     "units",
 ]
@@ -188,6 +194,7 @@ rests: np.ufunc
 lower_rim: np.ufunc
 two_rims: np.ufunc
 capsule_end: np.ufunc
+circle_height: np.ufunc
 stone_tilted: np.ufunc
 stone_inclinations: np.ufunc
 stone_spin: np.ufunc
@@ -201,9 +208,21 @@ def rate_of_one(
 ) -> float: ...
 def check_body(body: _Body) -> tuple[float, float]: ...
 def check_tube(half_length: float, bore: float, fillet: float) -> tuple[float, float, float, float]: ...
+
+_NumbersOfBody: TypeAlias = tuple[list[float], list[list[float]]]
+
 def assembled(
     given: Sequence[tuple[int, list[float], float, bool]],
-) -> tuple[list[float], float, float, float]: ...
+) -> tuple[_NumbersOfBody, float, float, float]: ...
+def check_profile(
+    rows: Sequence[Sequence[float]], i1: float, i3: float
+) -> tuple[_NumbersOfBody, list[list[float]], bool]: ...
+def body_circles(
+    body: Sequence[float], rows: Sequence[Sequence[float]]
+) -> tuple[list[list[float]], list[list[float]], list[int]]: ...
+def frustum(bottom: float, top: float, height: float, wall: float | None) -> _NumbersOfBody: ...
+def lathe(points: Sequence[Sequence[float]]) -> _NumbersOfBody: ...
+def unequal_balls(radii: Sequence[float], separation: float) -> _NumbersOfBody: ...
 def check_balls(separation: float) -> tuple[float, float]: ...
 def check_ball(offset: float, i1: float, i3: float) -> None: ...
 def steady_state(theta: float, body: _Body) -> list[float]: ...

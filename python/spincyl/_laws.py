@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
+from spincyl._circles import Circles
 from spincyl._contact import AnyContact, Contact, Coulomb, Viscous, is_rolling
 from spincyl._input.numbers import (
     Reals,
@@ -58,7 +59,7 @@ class Region(IntEnum):
 def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     """Warn of states that are not steady because the body stands on more than one point; skip lazy arrays."""
     theta = state.theta
-    if any(is_lazy(x) or hasattr(x, "dims") for x in (kappa, theta, *body._numbers)):
+    if body.rims is not None or any(is_lazy(x) or hasattr(x, "dims") for x in (kappa, theta, *body._numbers)):
         return
     two = _core.two_rims(*body._numbers) == 1
     for place, standing, more in (
@@ -71,19 +72,8 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
             warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 
-class Laws:
+class Laws(Circles):
     """Base of `Body`: its methods that evaluate one law each."""
-
-    ell: Reals
-    i1: Reals
-    i3: Reals
-    bore: Reals
-    fillet: Reals
-    theta_end: Reals
-
-    @property
-    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
-        return self.ell, self.i1, self.i3, self.bore, self.fillet, self.theta_end
 
     @property
     def _most(self) -> int:
@@ -146,9 +136,9 @@ class Laws:
         rolling = is_rolling(contact)
         if isinstance(at, State):
             law = _core.state_kappa_rolling if rolling else _core.state_kappa_smooth
-            return law(*numbers_without_slip(at, _ROLLS), *self._numbers, **keywords(law, ufunc, "stability"))
+            return law(*self._at(*numbers_without_slip(at, _ROLLS)), **keywords(law, ufunc, "stability"))
         law = _core.kappa_rolling if rolling else _core.kappa_smooth
-        return law(radians("at", at, self._leans), *self._numbers, **keywords(law, ufunc, "stability"))
+        return law(*self._at(radians("at", at, self._leans)), **keywords(law, ufunc, "stability"))
 
     @elementwise
     def stable(self, at: Reals | State, contact: Contact = "rolling") -> Result:
@@ -196,7 +186,7 @@ class Laws:
         chalk is pushed over a blackboard. `theta` is in radians. The limit is infinite at theta_balance, and
         at least sqrt(5)/2 = 1.118 for uniform tubes.
         """
-        return _core.painleve(radians("theta", theta, self._leans), *self._numbers)
+        return _core.painleve(*self._at(radians("theta", theta, self._leans)))
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""
@@ -225,17 +215,21 @@ class Laws:
         The velocity of the centre follows from rolling and the slip of the state. With `contact="smooth"` the
         centre moves only up and down; a state with a slip then raises ValueError.
         """
+        return self._energy(state, contact)
+
+    def _energy(self, state: State, contact: AnyContact, rim: Any = None) -> Result:
+        """The energy of a state that is told from a circle, by default from the one that carries."""
         if not isinstance(contact, Coulomb | Viscous) and not is_rolling(contact):
             why = "on a smooth table the centre moves only up and down; contact=sc.Coulomb(0.0) lets it slide"
-            return _core.energy_smooth(*numbers_without_slip(state, why), *self._numbers)
+            return _core.energy_smooth(*self._at(*numbers_without_slip(state, why), rim=rim))
         four = numbers(state)
         if state.slip is None:
-            energy = _core.energy(*four, *self._numbers)
+            energy = _core.energy(*self._at(*four, rim=rim))
         else:
-            energy = _core.energy_slip(*four, *state._slip, *self._numbers)
+            energy = _core.energy_slip(*self._at(*four, *state._slip, rim=rim))
         if state.height is None:
             return energy
-        rise = _core.centre_up(*four, 0.0, 0.0, *self._numbers)
+        rise = _core.centre_up(*self._at(*four, 0.0, 0.0, rim=rim))
         lift: Any = state.lift
         return energy + state.height + lift * (rise + 0.5 * lift)
 
@@ -276,17 +270,18 @@ class Laws:
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
         """Angular acceleration theta'' of a state, in g/R; 0 if the state is steady."""
         law = _core.acceleration if is_rolling(contact) else _core.acceleration_smooth
-        return law(*numbers_without_slip(state, _ROLLS), *self._numbers)
+        found = law(*self._at(*numbers_without_slip(state, _ROLLS)))
+        return found if self.rims is None else self._sign(state.theta) * found
 
     @elementwise
     def angular_momentum(self, state: State) -> Result:
         """Magnitude of the angular momentum about the centre of mass, in M R^2 sqrt(g/R)."""
-        return _core.angular_momentum(*numbers(state), *self._numbers)
+        return _core.angular_momentum(*self._at(*numbers(state)))
 
     @elementwise
     def beta(self, state: State) -> Result:
         """Angle from the symmetry axis to the angular momentum, in radians."""
-        return _core.beta(*numbers(state), *self._numbers)
+        return _core.beta(*numbers(state), *self._raw)
 
     @elementwise
     def speed_o(self, state: State) -> Result:
@@ -295,7 +290,7 @@ class Laws:
         O is the mirror image of the contact point in the centre of mass; for a tube with sharp rims, the
         uppermost point of the upper rim. Its speed is 0 if the centre is at rest.
         """
-        return _core.speed_o(*numbers_without_slip(state, _ROLLS), *self._numbers)
+        return _core.speed_o(*self._at(*numbers_without_slip(state, _ROLLS)))
 
     @elementwise
     def speed_x(self, state: State) -> Result:
@@ -304,9 +299,9 @@ class Laws:
         X is the highest point of the circle of the body along which it touches the table. With a sharp rim
         and the centre at rest its speed is 2 ell w1.
         """
-        return _core.speed_x(*numbers_without_slip(state, _ROLLS), *self._numbers)
+        return _core.speed_x(*self._at(*numbers_without_slip(state, _ROLLS)))
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
         """Radius of the circle on which the centre moves, in R; 0 at rest, infinite for a straight line."""
-        return _core.centre_radius(*numbers_without_slip(state, _ROLLS), *self._numbers)
+        return _core.centre_radius(*self._at(*numbers_without_slip(state, _ROLLS)))

@@ -13,7 +13,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import with_hints
-from spincyl._input.numbers import Floats, Reals, in_range, is_scalar, metres, reals, refuse_bad_value, si
+from spincyl._input.numbers import Floats, Reals, in_range, metres, reals, refuse_bad_value, si
 from spincyl._phases import IMPULSE_COLUMNS, LOST_COLUMN
 from spincyl._scale import Scale, scale_of, unit_of_output
 
@@ -107,7 +107,7 @@ def sized_body(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
     """A single body and its scale: the given one, its own, or that of the measures it was made from."""
     if not isinstance(body, Body):
         raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
-    if not is_scalar(*body._numbers):
+    if not body._single:
         raise ValueError(f"{name}: expected a single body, not a family")
     found = scale_of(scale, body)
     if found is None and body._measured:

@@ -152,18 +152,21 @@ class Motion(Outputs):
         The sum of `energy`, `dissipated`, `lost_in_impacts` and `work_lost` is constant.
         """
         free = self.contact == "smooth" and self._phases is not None
-        energy: Floats = self.body.energy(self.states, Coulomb(0.0) if free else self.contact)
+        energy: Floats = self.body._energy(self.states, Coulomb(0.0) if free else self.contact, self.rim)
         return self._told("energy", energy)
 
     @property
     def height(self) -> Floats:
         """(n,) height of the lowest point of the body above the table, R or m. Needs `restitution=`."""
         rim = output_in_units(self.natural, "height", ALOFT)
-        return self._told("height", lowest_point_height(self.body, self.theta, rim))
+        return self._told("height", lowest_point_height(self.body, self.theta, rim, self.rim))
 
     @property
     def rim(self) -> NDArray[np.uint8]:
         """(n,) code of the rim from which the body is seen at each time: 0 its first rim, 1 the other one.
+
+        For a body of several circles it is the number of the circle that carries the body, or that would
+        carry it in the air, in `Body.circles`; theta is then always told from the lower end of the body.
 
         The first rim is that of the initial state. Theta, w, phi, psi, the contact point, `slip`, `normal`
         and `friction` refer to this rim; `centre` and `orientation` do not depend on it. Always 0 without
@@ -394,9 +397,12 @@ class Motion(Outputs):
 
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """Compute a motion without warnings; `numbers` are those of body and state, if known."""
-    of, start = numbers or numbers_of_one(body, state)
+    of, start = numbers or numbers_of_one(body, state, several=True)
     slip = None if state.slip is None else single_slip(state)
-    found = _core.roll(of, start, asked.times, options_for_core(asked, slip, single_aloft(state)))
+    options = options_for_core(asked, slip, single_aloft(state))
+    if body.rims is not None:
+        options["circles"] = body._rows
+    found = _core.roll(of, start, asked.times, options)
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl import _core
+from spincyl._circles import lowest_point_of
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, is_scalar, number
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air, state_without_checks
@@ -21,8 +22,9 @@ Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
 HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 
+Rim: TypeAlias = Literal["first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth"]
 #: Rim from which a state is seen, for each code in `Motion.rim`.
-RIMS: tuple[Literal["first", "other"], ...] = ("first", "other")
+RIMS: tuple[Rim, ...] = ("first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 
 class Phase(NamedTuple):
@@ -45,7 +47,7 @@ class Phase(NamedTuple):
     time: float
     kind: Kind
     state: State
-    rim: Literal["first", "other"] = "first"
+    rim: Rim = "first"
 
     def __repr__(self) -> str:
         return f"({self.time:.12g}, {self.kind!r})"
@@ -81,7 +83,7 @@ class Impact(NamedTuple):
     """
 
     time: float
-    rim: Literal["first", "other"]
+    rim: Rim
     kind: Hit
     impulse: tuple[float, float, float]
     lost: float
@@ -202,7 +204,11 @@ def has_two_rims(body: "Body") -> bool:
     return bool(_core.two_rims(*body._numbers) == 1)
 
 
-def lowest_point_height(body: "Body", theta: Floats, rim: Floats) -> Floats:
-    """(n,) height of the lowest point of a body, from that of one rim; in the air the other may be lower."""
-    found: Floats = np.maximum(rim + _core.lower_rim(theta, *body._numbers), 0.0)
+def lowest_point_height(body: "Body", theta: Floats, rim: Floats, told: Any) -> Floats:
+    """(n,) height of the lowest point of a body, from that of one rim; in the air another may be lower."""
+    if body.rims is not None:
+        lower = lowest_point_of(body, theta, told)
+    else:
+        lower = _core.lower_rim(theta, *body._numbers)
+    found: Floats = np.maximum(rim + lower, 0.0)
     return found

@@ -4,21 +4,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spincyl._circles import FIELDS
 from spincyl._input.numbers import is_scalar
 from spincyl._input.reprs import is_lazy, repr_of_call
 
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-#: The numbers of a body, in the order of the core.
-FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
-
 
 def repr_of_body(found: "Body") -> str:
     """A call of the shortest constructor that makes the body: `Body` with all fields if no other does."""
     if found._measured:
         return repr_of_call("Body.from_metres" if found.scale is None else "measured", **found._measured)
-    fields = dict(zip(FIELDS, found._numbers, strict=True))
+    fields = {name: getattr(found, name) for name in FIELDS}
+    if found.rims is not None:
+        fields["rims"] = tuple(map(tuple, found._rows)) if found._single else found.rims
+        del fields["bore"]
+        if found._single and found.scale is None:
+            return repr_of_call("Body.profile", fields["rims"], i1=found.i1, i3=found.i3)
+        if found.scale is None:
+            return repr_of_call("Body", **fields)
     if found.scale is not None:
         return f"{repr_of_call('Body', **fields)[:-1]}, scale={found.scale!r})"
     sharp = is_scalar(found.fillet) and found.fillet == 0

@@ -222,7 +222,7 @@ def roll(
 
             losses_of_stone(losses, body)
     else:
-        numbers, start = numbers_of_one(one, given), given
+        numbers, start = numbers_of_one(one, given, several=True), given
     scale, seconds, given_step = body.scale, t, step
     if scale is not None:
         if losses is not None:

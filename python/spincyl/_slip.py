@@ -18,16 +18,25 @@ def _numbers_of_rim(body: "Laws") -> tuple[Reals, ...]:
     return body.ell, 1.0, 1.0, np.nan, body.fillet, np.nan
 
 
+def _centre_moves(body: "Laws", state: State, slip: tuple[Reals, Reals]) -> tuple[Result, Result]:
+    """The horizontal velocity of the centre, along e_h and e2, with a slip."""
+    given = *numbers(state), *slip
+    if body.rims is None:
+        given = *given, *_numbers_of_rim(body)
+        return _core.centre_along(*given), _core.centre_across(*given)
+    sign, given = body._sign(state.theta), body._at(*given)
+    return sign * _core.centre_along(*given), sign * _core.centre_across(*given)
+
+
 def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
     """The slip for a given horizontal velocity of the centre."""
-    given = *numbers(state), 0.0, 0.0, *_numbers_of_rim(body)
-    return along - _core.centre_along(*given), across - _core.centre_across(*given)
+    moves = _centre_moves(body, state, (0.0, 0.0))
+    return along - moves[0], across - moves[1]
 
 
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
     """The horizontal velocity of the centre, along e_h and e2."""
-    given = *numbers(state), *state._slip, *_numbers_of_rim(body)
-    return _core.centre_along(*given), _core.centre_across(*given)
+    return _centre_moves(body, state, state._slip)
 
 
 def lever_of_stone(stone: "Ellipsoid", vertical: Floats) -> Floats:

@@ -111,9 +111,10 @@ _Four: TypeAlias = tuple[float, float, float, float]
 _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
-def numbers_of_one(body: Body, state: State) -> tuple[_Six, _Four]:
-    """The numbers of a single body and a single state."""
-    of, at = instance_of("body", body, Body)._numbers, numbers(state)
+def numbers_of_one(body: Body, state: State, *, several: bool = False) -> tuple[_Six, _Four]:
+    """The numbers of a single body, which may have `several` circles, and a single state."""
+    one = instance_of("body", body, Body)
+    of, at = one._raw if several else one._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
     if body._single and type(theta) is type(w1) is type(w2) is type(w3) is float:
         return of, at

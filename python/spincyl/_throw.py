@@ -151,10 +151,10 @@ def dropped(
     moves = (reals("velocity", x if scale is None else si("velocity", x, "metre/second")) for x in velocity)
     along, across, upwards = (x * (second / metre) for x in moves)
     state = State(theta, *w)
-    rise = upwards - _core.centre_up(*numbers(state), 0.0, 0.0, *body._numbers)
+    rise = upwards - _core.centre_up(*body._at(*numbers(state), 0.0, 0.0))
     found = body.with_centre_velocity(state, along, across)
     # beyond pi/2 the other rim is lower than the rim to which theta refers
-    over = _core.lower_rim(state.theta, *body._numbers)
+    over = 0.0 if body.rims is not None else _core.lower_rim(state.theta, *body._numbers)
     return replace(found, height=height / metre - over + 0.0 * rise, lift=rise + 0.0 * height)
 
 

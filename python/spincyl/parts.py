@@ -240,11 +240,10 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     Body
         Measured body. Its `scale` has the outer radius of its rim and the mass of all parts together;
         `natural` is the same body in natural units. Pictures, films and pages show the parts. The body stands
-        on its lowest edge or ball; if several edges are equally low, on the widest. `theta_end` is the
-        inclination at which another part touches the table. If the upper rim is as wide as the lower and as
-        far from the centre of mass, `theta_end` is pi/2: the body has two equal rims, and may lie on both. If
-        the upper rim is as wide but nearer or farther, as that of a half-full can, `theta_end` is the number
-        below pi/2, and motions end there. Moments have errors of a few roundings.
+        on its lowest edge or ball; if several edges are equally low, on the widest. It can land on every
+        other circle of its convex hull (`circles`); `theta_end` is the inclination at which the first of them
+        touches the table. A body of two circles, equally wide and equally far from the centre of mass, has
+        two equal rims. Moments have errors of a few roundings.
 
     Raises
     ------
@@ -286,7 +285,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     # heights are relative to the lowest point, so that they keep their digits
     placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
-    (ell, i1, i3, fillet, theta_end), mass, radius, centre = found
+    numbers, mass, radius, centre = found
     for i, part in enumerate(placed[1:], 1):
         solid = part.form != _RING or part.numbers[0] > 0
         if part.at is None and solid and not any(below._carries(part) for below in placed[:i]):
@@ -297,7 +296,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     )
     if why:
         warnings.warn(why, UserWarning, stacklevel=2)
-    body = Body(ell, i1, i3, fillet=fillet, theta_end=theta_end, scale=Scale(radius, mass, gravity))
+    body = Body._made(numbers, scale=Scale(radius, mass, gravity))
     shape = tuple((part.name, part.form, _scaled(part, centre, radius)) for part in placed)
     object.__setattr__(body, "_parts", shape)
     return body

@@ -1,5 +1,8 @@
 //! Columns of numbers, by name.
 
+use crate::laws::body::MOST_CIRCLES;
+use crate::many::columns::at;
+use crate::many::motions::CirclesOfRow;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -54,6 +57,23 @@ impl<'a> FilledColumns<'a> {
         let mut first = Some(first);
         Some(names.map(|name| first.take().or_else(|| self.take(name)).unwrap_or_default()))
     }
+}
+
+/// The circles of bodies that have several, from the columns radius0, height0, fillet0, radius1 and so on: a row for each
+/// body, or one for all; none without these columns.
+pub fn circles_of(given: &GivenColumns<'_>) -> PyResult<Vec<CirclesOfRow>> {
+    let (mut circles, mut columns) = (Vec::new(), Vec::new());
+    for k in 0..MOST_CIRCLES {
+        let names = ["radius", "height", "fillet"].map(|name| format!("{name}{k}"));
+        columns.extend(given.some(names.each_ref().map(String::as_str))?);
+    }
+    let rows = columns.iter().flatten().map(|column| column.len()).max().unwrap_or(0);
+    for i in 0..rows {
+        let mut row = [[f64::NAN; 3]; MOST_CIRCLES];
+        row.iter_mut().zip(&columns).for_each(|(to, columns)| *to = columns.map(|column| at(column, i)));
+        circles.push(row);
+    }
+    Ok(circles)
 }
 
 /// A column of codes that is filled.

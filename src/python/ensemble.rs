@@ -1,6 +1,6 @@
 //! Many motions: the functions read and fill columns by name.
 
-use super::columns::{FilledColumns, GivenColumns, STATE, code_column};
+use super::columns::{FilledColumns, GivenColumns, STATE, circles_of, code_column};
 use super::custom::with_laws;
 use super::loss::parameters;
 use super::options::{MotionAsked, table_of};
@@ -64,7 +64,9 @@ pub fn ensemble<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
     let given = GivenColumns::of(&given)?;
+    let circles = circles_of(&given)?;
     let starts = MotionStarts {
+        circles: &circles,
         bodies: given.all(MOTION_BODY)?,
         states: given.all(STATE)?,
         slips: given.some(SLIP)?,

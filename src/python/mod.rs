@@ -15,6 +15,7 @@ mod sweep;
 mod ufunc;
 mod watch;
 
+use crate::laws::body::Circle;
 use crate::laws::contact::landing::two_rims;
 use crate::laws::contact::slip::{self, centre_velocity};
 use crate::laws::throw;
@@ -290,6 +291,11 @@ static LAWS: &[ArrayFunction] = &[
         }),
     },
     ArrayFunction {
+        name: "circle_height",
+        inputs: 4,
+        value: Value::One(|x| Circle { radius: x[1], depth: 0.0 - x[2], fillet: x[3] }.height(x[0])),
+    },
+    ArrayFunction {
         name: "capsule_end",
         inputs: 2,
         value: Value::One(|x| or_nan(Body::rounded_tube(x[0], 0.0, x[1]).map(|b| capsule_end(&b)))),
@@ -357,7 +363,7 @@ mod _core {
     #[pymodule_export]
     use super::options::motion_options;
     #[pymodule_export]
-    use super::parts::of_parts;
+    use super::parts::{body_circles, check_profile, frustum, lathe, of_parts, unequal_balls};
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,

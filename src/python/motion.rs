@@ -249,7 +249,7 @@ pub fn roll<'py>(
     let loses = asked.couple.is_some() || !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
-            let body = Body::of_numbers(body.into())?;
+            let body = Body::of_rows(body.into(), &asked.circles)?;
             let state = State::from(<[f64; 4]>::from(state));
             let start = Start { state, slip: start.0, time: start.1, aloft };
             if asked.is_custom() {
@@ -440,7 +440,7 @@ fn dictionary<'py, S: StateArrays>(
         )?;
         let mut impacts = room(path.impacts.len() * STRIKE)?;
         for at in &path.impacts {
-            let codes = [at.other as u8, at.hit as u8, at.stays as u8].map(f64::from);
+            let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
             impacts.push(at.time);
             impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse));
             for (state, velocity) in at.states.map(<[f64; 4]>::from).iter().zip(&at.velocities) {

@@ -55,6 +55,8 @@ options! {
     pub struct MotionAsked {
         t0: f64 = 0.0,
         slip: [f64; 2] = [0.0; 2],
+        /// Rows of radius, height and fillet of a body that has several circles.
+        circles: Vec<[f64; 3]> = Vec::new(),
         table: u8 = TableKind::Rolling as u8,
         /// Mu or c, the static coefficient, and the radius of the patch.
         coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],

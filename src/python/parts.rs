@@ -1,6 +1,7 @@
-//! Bodies put together from parts, for Python.
+//! Bodies put together from parts or circles, for Python.
 
 use crate::laws::body::parts::{Amount, Assembled, BodyPart, Form, assembled};
+use crate::laws::body::{Body, circles_of_rows};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -20,11 +21,66 @@ fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
     })
 }
 
-/// Numbers of the body of these parts (ell, I1, I3, fillet and theta_end), its mass, its R, and the height of its
-/// centre of mass, or ValueError.
+/// The six numbers of a body, and its circles as rows of radius, height above the centre of mass, and fillet, if it has
+/// several. The six numbers are then those of its lowest circle, whose bore is minus the radius.
+pub type NumbersOfBody = ([f64; 6], Vec<[f64; 3]>);
+
+fn numbers_of(body: &Body) -> NumbersOfBody {
+    let (bore, rows) =
+        if body.has_row() { (0.0 - body.rim(), body.rows().collect()) } else { (f64::NAN, Vec::new()) };
+    ([body.ell(), body.i1(), body.i3(), bore, body.fillet(), body.theta_end()], rows)
+}
+
+/// The body of these circles, its borders as rows of the inclination and the distance of both points of contact, and
+/// whether a circle was left out that lies in line with two others; or ValueError.
+#[pyfunction]
+pub fn check_profile(
+    rows: Vec<[f64; 3]>,
+    i1: f64,
+    i3: f64,
+) -> PyResult<(NumbersOfBody, Vec<[f64; 2]>, bool)> {
+    let circles = circles_of_rows(&rows);
+    let body = Body::profile(&circles, i1, i3)?;
+    Ok((numbers_of(&body), body.borders(), body.passes_over(&circles)))
+}
+
+/// The circles of a body, and for each two neighbours the inclination at which both touch the table, the distance of both
+/// points of contact, the three numbers of `Apex`, and whether the body rests on both.
+#[pyfunction]
+pub fn body_circles(
+    body: [f64; 6],
+    rows: Vec<[f64; 3]>,
+) -> PyResult<(Vec<[f64; 3]>, Vec<[f64; 5]>, Vec<usize>)> {
+    let body = Body::of_rows(body, &rows)?;
+    let borders = body.borders().into_iter().enumerate().map(|(k, [theta, span])| {
+        let apex = body.apex(k).map_or([f64::NAN; 3], |apex| [apex.radius, apex.rate, apex.friction]);
+        [theta, span, apex[0], apex[1], apex[2]]
+    });
+    Ok((body.rows().collect(), borders.collect(), body.rests()))
+}
+
+/// A uniform frustum, or ValueError.
+#[pyfunction]
+pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> PyResult<NumbersOfBody> {
+    Ok(numbers_of(&Body::frustum(bottom, top, height, wall)?))
+}
+
+/// A uniform solid with this outline, or ValueError.
+#[pyfunction]
+pub fn lathe(points: Vec<[f64; 2]>) -> PyResult<NumbersOfBody> {
+    Ok(numbers_of(&Body::lathe(&points)?))
+}
+
+/// Two balls of these radii, or ValueError.
+#[pyfunction]
+pub fn unequal_balls(radii: [f64; 2], separation: f64) -> PyResult<NumbersOfBody> {
+    Ok(numbers_of(&Body::unequal_balls(radii, separation)?))
+}
+
+/// The body of these parts, its mass, its R, and the height of its centre of mass, or ValueError.
 #[pyfunction]
 #[pyo3(name = "assembled")]
-pub fn of_parts(given: Vec<Given>) -> PyResult<([f64; 5], f64, f64, f64)> {
+pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, f64, f64, f64)> {
     let part = |(kind, numbers, amount, dense): &Given| {
         let amount = if *dense { Amount::Density(*amount) } else { Amount::Mass(*amount) };
         let form = form(*kind, numbers).ok_or_else(|| PyValueError::new_err("parts: an unknown form"))?;
@@ -32,5 +88,5 @@ pub fn of_parts(given: Vec<Given>) -> PyResult<([f64; 5], f64, f64, f64)> {
     };
     let parts: Vec<BodyPart> = given.iter().map(part).collect::<PyResult<_>>()?;
     let Assembled { body, mass, radius, centre } = assembled(&parts)?;
-    Ok(([body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()], mass, radius, centre))
+    Ok((numbers_of(&body), mass, radius, centre))
 }

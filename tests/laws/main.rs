@@ -29,6 +29,7 @@ mod many_ends;
 mod many_near_turns;
 mod measured;
 mod near_folds;
+mod outlines;
 mod paper;
 mod parts;
 mod patch;
@@ -53,5 +54,6 @@ mod uniform;
 mod units;
 mod upright;
 mod whirrs;
+mod zz;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};

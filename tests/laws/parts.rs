@@ -118,7 +118,8 @@ fn it_stands_on_its_lowest_edge_and_ends_where_the_next_one_touches() {
     // Half a ball on its round side goes on to its edge, and then on this edge, which is another body.
     let half = Form::Ball { radius: 1.0, hollow: 0.0, centre: 1.0, ends: [0.0, 1.0] };
     let bowl = whole(&[part(half, STEEL)]);
-    assert!((bowl.body.theta_end() - FRAC_PI_2).abs() < 1e-15 && bowl.body.theta_end() < FRAC_PI_2);
+    assert!((bowl.body.theta_end() - FRAC_PI_2).abs() < 1e-15);
+    assert_eq!(bowl.body.circles().len(), 2);
     assert!((bowl.body.ell() + 0.375).abs() < 1e-15, "its centre of mass is 3/8 R below the middle");
     // The other half on its flat side goes on to its round side: a ball that is tangential to the edge.
     let dome = Form::Shell { radius: 1.0, centre: 0.0, ends: [0.0, 1.0] };
@@ -134,15 +135,18 @@ fn it_stands_on_its_lowest_edge_and_ends_where_the_next_one_touches() {
 }
 
 #[test]
-fn another_rim_at_the_same_height_but_not_at_the_same_distance_is_no_second_rim() {
+fn another_rim_as_wide_but_not_at_the_same_distance_is_a_circle_of_its_own() {
     let half_full = [
         part(Form::Wall { radii: [33.0; 2], ends: [0.0, 115.0] }, Amount::Density(0.002)),
         part(cylinder(32.9, 0.0, [0.0, 57.0]), Amount::Density(1e-6)),
     ];
     let can = whole(&half_full);
-    assert_eq!(can.body.theta_end(), FRAC_PI_2.next_down());
+    let [low, high] = can.body.circles()[..] else { panic!("{:?}", can.body) };
+    assert!((low.radius, high.radius) == (1.0, 1.0) && low.depth + high.depth < -5e-3, "{low:?} {high:?}");
+    assert_eq!(can.body.theta_end(), FRAC_PI_2);
     let empty = whole(&half_full[..1]);
     assert_eq!(empty.body.theta_end(), FRAC_PI_2);
+    assert_ne!(empty.body, can.body);
 }
 
 #[test]
@@ -161,7 +165,6 @@ fn what_is_no_body_is_refused_by_name() {
         ("parts", Form::Ring { radius: 0.0, height: 1.0 }, Amount::Mass(1.0)),
         ("parts", cylinder(1.0, 0.0, [0.0, 1.0]), Amount::Mass(0.0)),
         ("height", cylinder(1.0, 0.0, [1e9, 1e9 + 1.0]), Amount::Mass(1.0)),
-        ("parts", Form::Wall { radii: [0.0, 1.0], ends: [0.0, 1.0] }, Amount::Mass(1.0)),
         ("parts", cylinder(1.0, 1.0, [0.0, 1.0]), Amount::Mass(1.0)),
     ] {
         assert!(named(form, amount).starts_with(said), "{said}: {}", named(form, amount));
@@ -318,53 +321,44 @@ fn depth(form: &Form, theta: f64) -> f64 {
 }
 
 #[test]
-fn a_body_of_parts_stands_on_its_lowest_points_and_ends_where_others_touch() {
+fn a_body_of_parts_stands_on_its_lowest_points_at_every_inclination() {
     let (mut drawn, mut tried, mut kinds) = (Drawn(64), 0, [0; 5]);
     while tried < 6000 {
         let parts = drawn.parts();
         let found = match assembled(&parts) {
             Ok(found) => found,
             Err(error) => {
-                // Nothing but points, or a tip below everything else.
+                // Nothing but points.
                 assert!(error.to_string().starts_with("parts"), "{error}: {parts:?}");
                 kinds[4] += 1;
                 continue;
             }
         };
         tried += 1;
-        let body = &found.body;
-        let [r, rho] = [body.rim(), body.fillet()].map(|x| x * found.radius);
-        let z = found.centre - body.ell() * found.radius;
-        let rim = |theta: f64| r * theta.sin() - z * theta.cos() + rho;
-        let below = |theta: f64| {
-            parts.iter().map(|part| depth(&part.form, theta)).fold(f64::NEG_INFINITY, f64::max) - rim(theta)
+        let (body, end) = (&found.body, found.body.theta_end());
+        let (circles, borders) = (body.circles(), body.borders());
+        assert!(borders.len() + 1 == circles.len() && borders.first().map_or(PI, |first| first[0]) == end);
+        let carries = |theta: f64| {
+            let circle = &circles[borders.iter().filter(|[border, _]| theta > *border).count()];
+            let low = circle.depth * theta.cos() + circle.radius * theta.sin() + circle.fillet;
+            low * found.radius - found.centre * theta.cos()
         };
-        let end = body.theta_end();
+        let deepest =
+            |theta: f64| parts.iter().map(|part| depth(&part.form, theta)).fold(f64::NEG_INFINITY, f64::max);
         for k in 0..400 {
             let share = f64::from(k) / 400.0;
-            for theta in
-                [end * share, end * 10f64.powf(-8.0 * share) - 1e-9, end - 10f64.powf(-1.0 - 8.0 * share)]
-            {
-                if theta >= 0.0 {
-                    let gap = below(theta);
-                    assert!(gap.abs() < 1e-11, "{gap} at {theta} before {end}: {found:?} {parts:?}");
-                }
+            let all = [
+                PI * share,
+                end * share,
+                end * 10f64.powf(-8.0 * share),
+                end - 10f64.powf(-1.0 - 8.0 * share),
+            ];
+            for theta in all.into_iter().filter(|theta| *theta >= 0.0) {
+                let gap = deepest(theta) - carries(theta);
+                assert!(gap.abs() < 1e-11, "{gap} at {theta}, {borders:?}: {found:?} {parts:?}");
             }
         }
-        if end < PI - 1e-4 {
-            // Beyond a cut of the ball on which it stands, the body is no longer as deep as the whole ball.
-            let gap = below(end + 1e-4).abs();
-            assert!(gap > 1e-11, "{gap} beyond {end}: {found:?} {parts:?}");
-        }
-        kinds[if end == PI {
-            0
-        } else if end == FRAC_PI_2 {
-            1
-        } else if end == FRAC_PI_2.next_down() {
-            2
-        } else {
-            3
-        }] += 1;
+        kinds[circles.len().min(4) - 1] += 1;
     }
-    assert!(kinds.iter().all(|count| *count > 50), "{kinds:?}");
+    assert!(kinds.iter().all(|count| *count > 30), "{kinds:?}");
 }

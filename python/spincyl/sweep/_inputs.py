@@ -6,10 +6,10 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
+from spincyl._circles import CIRCLE_COLUMNS, FIELDS, columns_of_circles
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, Reals, components, floats, instance_of, optional_library
 from spincyl._loss import LAWS, Loss, Sum, marked_as_si
-from spincyl._repr import FIELDS
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl.loss import KINDS
@@ -27,6 +27,7 @@ _NORMAL = ("n1", "n2", "n3")
 #: The coordinates of all inputs, with their units; in the units of a stone, a replaces R.
 _UNITS = (
     dict(zip((f"body_{name}" for name in FIELDS), ("R", "M R^2", "M R^2", "1", "R", "rad"), strict=True))
+    | dict.fromkeys((f"body_{name}" for names in CIRCLE_COLUMNS for name in names), "R")
     | dict(zip((f"body_{name}" for name in _AXES[:-1]), ["R"] * 3 + ["M R^2"] * 6 + ["R"] * 3, strict=True))
     | {f"start_{name}": "sqrt(g/R)" for name in _W}
     | {f"start_{name}": "1" for name in _NORMAL}
@@ -45,6 +46,7 @@ def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, R
     tube = not hasattr(bodies.bore, "chunks") or bodies.bore.chunks is None
     tube = tube and not np.isnan(np.asarray(bodies.bore)).any()
     found = {f"body_{name}": getattr(bodies, name) for name in FIELDS if not (tube and name in _MOMENTS)}
+    found |= {f"body_{name}": x for name, x in columns_of_circles(bodies).items()}
     found |= {f"start_{name}": getattr(states, name) for name in ("theta", *_W)}
     if states.slip is not None:
         found |= zip(("start_slip_along", "start_slip_across"), states.slip, strict=True)
@@ -202,7 +204,13 @@ def _input(array: Any) -> Any:
 
 
 def _body_and_start(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
-    body = Body(*(given.get(f"body_{name}", np.nan) for name in FIELDS), scale=scale)
+    several = [[f"body_{name}" for name in names] for names in CIRCLE_COLUMNS if f"body_{names[0]}" in given]
+    if several:
+        columns = np.broadcast_arrays(*(np.asarray(given[name]) for names in several for name in names))
+        rims = np.stack(columns, -1).reshape(*columns[0].shape, len(several), 3)
+        body = Body(np.nan, *(np.asarray(given[f"body_{name}"]) for name in _MOMENTS), scale=scale, rims=rims)
+    else:
+        body = Body(*(given.get(f"body_{name}", np.nan) for name in FIELDS), scale=scale)
     slip = tuple(given[f"start_slip_{way}"] for way in ("along", "across") if f"start_slip_{way}" in given)
     more = {name: given.get(f"start_{name}") for name in ("height", "lift")}
     state = State(*(given[f"start_{name}"] for name in ("theta", *_W)), slip=slip or None, **more)

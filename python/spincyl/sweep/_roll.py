@@ -9,6 +9,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._asked import Asked, checked_max_nfev
 from spincyl._body import Body
+from spincyl._circles import columns_of_circles
 from spincyl._contact import (
     TABLES,
     AnyContact,
@@ -364,6 +365,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
     fields: dict[str, Any] = {
         name: getattr(bodies, name) for name in ("ell", "i1", "i3", "fillet", "theta_end")
     }
+    fields |= columns_of_circles(bodies)
     fields |= zip(_STATE, states._numbers, strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)

@@ -86,7 +86,7 @@ impl Hull {
         [a.r - b.r, a.z - b.z, a.rho - b.rho].iter().all(|x| x.abs() <= self.small)
     }
 
-    /// The edge on which the body stands as soon as its axis is no longer upright; None if this is a point.
+    /// The edge on which the body stands as soon as its axis is no longer upright, which may be a tip.
     ///
     /// Of several edges at one height this is the widest, since its depth grows fastest, and of balls the largest one.
     pub fn rim(&self) -> Option<Edge> {
@@ -94,9 +94,8 @@ impl Hull {
         let deepest = down().map(|edge| edge.depth(0.0)).fold(f64::NEG_INFINITY, f64::max);
         let lowest = || down().filter(|edge| edge.depth(0.0) >= deepest - self.small);
         let widest = lowest().map(|edge| edge.r).fold(0.0, f64::max);
-        let rim =
-            lowest().filter(|edge| edge.r >= widest - self.small).max_by(|a, b| a.rho.total_cmp(&b.rho));
-        rim.filter(|rim| rim.outer() > 0.0).copied()
+        let rims = lowest().filter(|edge| edge.r >= widest - self.small);
+        rims.max_by(|a, b| a.rho.total_cmp(&b.rho)).copied()
     }
 
     /// The edges on which the body stands one after the other as it tilts from the upright to the inverted position.
@@ -105,19 +104,20 @@ impl Hull {
         let mut from = 0.0;
         // Each edge can carry once, and a ball between its cuts again.
         while let Some(last) = all.last().filter(|_| all.len() <= 2 * self.edges.len()) {
-            let (end, next) = self.after(last);
-            let Some(next) = next.filter(|_| end >= from) else { break };
+            let (end, next) = self.after(last, from);
+            let Some(next) = next else { break };
             from = end;
             all.push(next);
         }
         all
     }
 
-    /// The inclination up to which an edge that carries the body does so, and the edge that touches the table there;
-    /// pi and None if no other one does.
-    pub fn after(&self, rim: &Edge) -> (f64, Option<Edge>) {
+    /// The inclination up to which an edge that carries the body from an inclination on does so, and the edge that touches the
+    /// table there; pi and None if no other one does.
+    pub fn after(&self, rim: &Edge, from: f64) -> (f64, Option<Edge>) {
         let others = || self.edges.iter().filter(|edge| !self.same(edge, rim));
-        let end = others().filter_map(|other| self.passes(rim, other)).fold(rim.to, f64::min);
+        let passes = others().filter_map(|other| self.passes(rim, other));
+        let end = passes.filter(|theta| *theta >= from - ALIKE).fold(rim.to, f64::min);
         // Of several that touch at once the body goes on to the one that becomes deepest.
         let touches = |edge: &&Edge| {
             (edge.depth(end) - rim.depth(end)).abs() <= self.small && end <= edge.to && end >= edge.from

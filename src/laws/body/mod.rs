@@ -14,9 +14,11 @@
 //! excess is kept as an unevaluated sum of two doubles, because the steady states of a body near the critical shape
 //! depend on the last digits of the excess; `body::tube` gives its error.
 
+mod apex;
 #[cfg(feature = "serde")]
 mod file;
 mod hull;
+mod makers;
 pub mod parts;
 mod profile;
 pub(crate) mod rim;
@@ -26,10 +28,11 @@ use crate::error::{Error, within};
 use crate::laws::state::State;
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
+pub use apex::Apex;
 use core::f64::consts::{FRAC_PI_2, PI};
 pub use profile::Circle;
-pub(crate) use profile::{Landings, MOST_CIRCLES};
 use profile::Row;
+pub(crate) use profile::{Landings, MOST_CIRCLES};
 pub(crate) use rim::{Border, Rim, Shape, Touching};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
@@ -38,9 +41,6 @@ const ELL: (f64, f64) = (0.0, 1e150);
 const I1: (f64, f64) = (1e-3, 1e300);
 const I3: (f64, f64) = (1e-150, 1e150);
 const FILLET: (f64, f64) = (0.0, 1.0);
-/// The theta_end of a body that lies level on two rims of one radius which are not equal, such as a half-full can: the
-/// number below pi/2, which itself stands for two equal rims.
-pub(crate) const LEVEL_ON_UNEQUAL_RIMS: f64 = FRAC_PI_2.next_down();
 
 /// A rigid body of revolution that touches the table with its lower rim.
 ///
@@ -132,20 +132,32 @@ impl Body {
             (ELL.0, "0 <= ell <= 1e150")
         };
         within("ell", ell, (low, ELL.1), expected)?;
-        within("i1", i1, I1, "1e-3 <= i1 <= 1e300 (in units of M R^2, not in kg m^2)")?;
-        within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
-        Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(ell, fillet) }.of_this_world()
+        Self::bare(ell, fillet).with_moments(i1, i3)?.of_this_world()
     }
 
     /// The body with the numbers ell, i1, i3, bore, fillet and theta_end. A bore of NaN means a general body, a
-    /// theta_end of NaN the inclination that follows from the shape.
+    /// theta_end of NaN the inclination that follows from the shape. A bore with the sign minus, which may be -0, is that of
+    /// one circle of a body that has several: its radius is minus the bore, and theta_end is where the next one lands.
     pub(crate) fn of_numbers([ell, i1, i3, bore, fillet, theta_end]: [f64; 6]) -> Result<Self, Error> {
         let body = if bore.is_nan() {
             Self::rounded(ell, i1, i3, fillet)
+        } else if bore.is_sign_negative() {
+            let row = Row::of(&[Circle { radius: -bore, depth: ell, fillet }])?;
+            return Ok(Self { theta_end, row: None, ..Self::bare(0.0, 0.0).with_moments(i1, i3)?.on(row) });
         } else {
             Self::tube_on(ell, bore, fillet)
         }?;
         if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
+    }
+
+    /// The body with these rows of radius, height above the centre of mass, and fillet, from the lower end up; rows with a
+    /// radius of NaN do not count. Without a row it is the body of these numbers, of which else only i1 and i3 count.
+    pub(crate) fn of_rows(numbers: [f64; 6], rows: &[[f64; 3]]) -> Result<Self, Error> {
+        let circles = circles_of_rows(rows);
+        if circles.is_empty() {
+            return Self::of_numbers(numbers);
+        }
+        Self::profile(&circles, numbers[1], numbers[2])
     }
 
     /// Two equal solid balls (Hurricane balls), which touch (`separation = 1`) or have their centres `separation`
@@ -186,11 +198,24 @@ impl Body {
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     pub fn profile(circles: &[Circle], i1: f64, i3: f64) -> Result<Self, Error> {
+        let row = Row::of(circles)?;
+        Self::bare(0.0, 0.0).with_moments(i1, i3)?.on(row).of_this_world()
+    }
+
+    fn with_moments(self, i1: f64, i3: f64) -> Result<Self, Error> {
         within("i1", i1, I1, "1e-3 <= i1 <= 1e300 (in units of M R^2, not in kg m^2)")?;
         within("i3", i3, I3, "1e-150 <= i3 <= 1e150")?;
-        let row = Row::of(circles)?;
-        let bare = Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..Self::bare(0.0, 0.0) };
-        bare.on(row).of_this_world()
+        Ok(Self { i1, i3, excess: Sum::of(i1, -i3) / i3.into(), ..self })
+    }
+
+    /// The inclinations at which one circle of the body follows another, in radians, and the distance of both points of
+    /// contact there, which is 0 at a smooth joint.
+    pub fn borders(&self) -> Vec<[f64; 2]> {
+        match &self.row {
+            Some(row) => row.borders().collect(),
+            None if self.has_two_rims() => vec![[FRAC_PI_2, 2.0 * self.ell]],
+            None => Vec::new(),
+        }
     }
 
     /// This body on the circle of a row that carries.
@@ -216,6 +241,16 @@ impl Body {
             None if self.has_two_rims() => vec![here, Circle { depth: 0.0 - self.ell, ..here }],
             None => vec![here],
         }
+    }
+
+    /// Whether one of these circles, of which the body is made, lies in line with two others, with which it touches the table.
+    pub(crate) fn passes_over(&self, given: &[Circle]) -> bool {
+        self.row.is_some_and(|row| row.passes_over(given))
+    }
+
+    /// The circles of the body as rows of radius, height above the centre of mass, and fillet.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.circles().into_iter().map(|circle| [circle.radius, 0.0 - circle.depth, circle.fillet])
     }
 
     /// Whether another circle of the body lands at theta_end.
@@ -521,12 +556,23 @@ impl Body {
         if self.is_sharp() { self.theta_end.min(FRAC_PI_2) } else { self.theta_end }
     }
 
+    /// The largest inclination at which the body can be steady with its centre at rest: 0 for a tip, which cannot roll.
+    pub(crate) fn rests_up_to(&self) -> f64 {
+        if self.rim.hi == 0.0 && self.fillet == 0.0 { 0.0 } else { self.range() }
+    }
+
     /// The numbers of the body that enter the equations of motion.
     #[inline(always)]
     pub(crate) fn shape(&self) -> Shape<f64> {
         let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
         Shape { rim, i1: self.i1, i3: self.i3 }
     }
+}
+
+/// The circles with these rows of radius, height above the centre of mass, and fillet, without those whose radius is NaN.
+pub(crate) fn circles_of_rows(rows: &[[f64; 3]]) -> Vec<Circle> {
+    let circle = |row: &[f64; 3]| Circle { radius: row[0], depth: 0.0 - row[1], fillet: row[2] };
+    rows.iter().filter(|row| !row[0].is_nan()).map(circle).collect()
 }
 
 /// The inclination at which a body is assumed to land on its other rim: pi/2 for ell > 0 unless it is a ball, else pi.

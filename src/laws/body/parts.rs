@@ -11,9 +11,9 @@
 //! Error: a few roundings of the moments about a point within the body; theta_end has as many.
 
 use super::hull::{Edge, Hull};
-use super::{Body, LEVEL_ON_UNEQUAL_RIMS};
+use super::{Body, Circle};
 use crate::error::{Error, within};
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::f64::consts::{PI, TAU};
 
 /// The amount of matter in a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +95,8 @@ pub struct Assembled {
     pub body: Body,
     /// Its mass, in the unit of the parts.
     pub mass: f64,
-    /// The unit of length R, the outer radius of the rim, in the unit of the parts.
+    /// The unit of length R, the outer radius of the rim on which the body stands, in the unit of the parts; the largest
+    /// outer radius if it stands on a tip.
     pub radius: f64,
     /// The height of the centre of mass, in the unit of the parts.
     pub centre: f64,
@@ -103,7 +104,7 @@ pub struct Assembled {
 
 /// Mass, first and second moment of z, and the moment of inertia about the axis.
 #[derive(Clone, Copy)]
-struct Mass {
+pub(super) struct Mass {
     whole: f64,
     height: f64,
     /// Sum of (z - height)^2 dm.
@@ -128,7 +129,7 @@ const SIZE: (f64, f64) = (0.0, 1e100);
 
 impl Form {
     /// Returns an error that names the number that is out of range.
-    fn check(&self) -> Result<(), Error> {
+    pub(super) fn check(&self) -> Result<(), Error> {
         let size = |name, values: &[f64]| {
             values.iter().try_for_each(|x| within(name, *x, SIZE, "lengths of 0 to 1e100").map(drop))
         };
@@ -183,7 +184,7 @@ impl Form {
     }
 
     /// The mass at density 1, with its moments.
-    fn mass(&self) -> Mass {
+    pub(super) fn mass(&self) -> Mass {
         let of = |ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]| Mass::between(ends, slice);
         match *self {
             Self::Solid { radii, bores, ends, .. } => of(ends, &|x| {
@@ -219,7 +220,7 @@ impl Form {
     }
 
     /// The edges, and the ball, with which the part may touch the table.
-    fn edges(&self) -> Vec<Edge> {
+    pub(super) fn edges(&self) -> Vec<Edge> {
         match *self {
             Self::Solid { radii, ends, fillet, .. } => vec![
                 Edge::of(radii[0] - fillet, ends[0] + fillet, fillet),
@@ -304,27 +305,26 @@ impl Mass {
         Self { whole, height, along: moved(self) - moved(inner), axial: self.axial - inner.axial }
     }
 
-    fn times(self, factor: f64) -> Self {
+    pub(super) fn times(self, factor: f64) -> Self {
         let Self { whole, height, along, axial } = self;
         Self { whole: factor * whole, height, along: factor * along, axial: factor * axial }
     }
 }
 
+fn none(value: f64) -> Error {
+    let expected = "parts with a mass, and a rim or a ball on which the body stands";
+    Error::OutOfRange { name: "parts", value, expected }
+}
+
 /// Assembles a body from parts on one axis.
 ///
-/// The body stands on its lowest edge or ball, and on the widest of several edges at one height. Parts inside a concave
-/// outline do not touch the table. A body has two equal rims if its other rim is as wide and as far from the centre of
-/// mass; then theta_end is pi/2. If the other rim is as wide but nearer or farther, theta_end is the number below pi/2,
-/// since such a body lies on two rims that are not equal.
+/// The body stands on its lowest edge or ball, and on the widest of several edges at one height; it lands on every other
+/// circle of its convex hull. Parts inside a concave outline do not touch the table. A body has two equal rims if it has
+/// two circles, of which the other is as wide and as far from the centre of mass; then theta_end is pi/2.
 ///
 /// Errors: `OutOfRange` with the number of a part that is out of range, or with "parts" for a body without mass or
-/// extent; and the errors of [`Body::rounded`].
+/// extent; and the errors of [`Body::rounded`] and [`Body::profile`].
 pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
-    let none = |value| Error::OutOfRange {
-        name: "parts",
-        value,
-        expected: "parts with a mass, and a rim or a ball on which the body stands",
-    };
     let (mut masses, mut edges) = (Vec::new(), Vec::new());
     for BodyPart { form, amount } in parts {
         form.check()?;
@@ -344,6 +344,15 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
         });
         edges.extend(form.edges());
     }
+    of_masses(&masses, edges, |circles| circles[0].outer())
+}
+
+/// The body of these masses with these edges, whose unit of length is chosen among the circles on which it stands.
+pub(super) fn of_masses(
+    masses: &[Mass],
+    edges: Vec<Edge>,
+    unit: impl Fn(&[Edge]) -> f64,
+) -> Result<Assembled, Error> {
     let whole: f64 = masses.iter().map(|x| x.whole).sum();
     if whole.is_nan() || whole <= 0.0 {
         return Err(none(whole));
@@ -355,22 +364,44 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let wide = edges.iter().map(Edge::outer).fold(0.0, f64::max);
     within("height", far, (0.0, FARTHEST * wide), "heights measured from a point of the axis near the body")?;
     let hull = Hull::new(edges);
-    let rim = hull.rim().ok_or(none(0.0))?;
-    let (theta_end, lands) = hull.after(&rim);
+    let circles = hull.sequence();
+    let rim = circles.first().ok_or(none(0.0))?;
+    let widest = widest(&circles);
+    if widest <= 0.0 {
+        return Err(none(0.0));
+    }
+    let (theta_end, _) = hull.after(rim, 0.0);
     if theta_end < LEAST_END {
         let expected = "parts of which the next one lands at an inclination of at least 1e-6 radians";
         return Err(Error::OutOfRange { name: "parts", value: theta_end, expected });
     }
-    let radius = rim.outer();
+    let radius = match unit(&circles) {
+        0.0 => widest,
+        given => given,
+    };
     let per = 1.0 / (whole * radius * radius);
+    let [i1, i3] = [(0.5 * axial + along) * per, axial * per];
     let (ell, fillet) = ((centre - rim.z) / radius, rim.rho / radius);
-    if ell < 0.0 && (fillet < 1.0 || ell <= -1.0) {
-        let expected = "parts whose centre of mass is above the rim, or the lowest point of the ball, on which they stand";
-        return Err(Error::OutOfRange { name: "parts", value: ell, expected });
-    }
-    let body = Body::rounded(ell, (0.5 * axial + along) * per, axial * per, fillet)?;
-    let other = lands.filter(|_| theta_end == FRAC_PI_2);
-    let unequal = other.is_some_and(|other| !hull.same(&other, &rim.mirrored(centre)));
-    let theta_end = if unequal { LEVEL_ON_UNEQUAL_RIMS } else { theta_end };
-    Ok(Assembled { body: body.with_theta_end(theta_end)?, mass: whole, radius, centre })
+    let plain = match circles.as_slice() {
+        [_] => ell >= 0.0 || fillet == 1.0 && ell > -1.0,
+        [_, other] => hull.same(other, &rim.mirrored(centre)),
+        _ => false,
+    };
+    let body = match plain && radius == rim.outer() {
+        true => Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?,
+        false => {
+            let circle = |edge: &Edge| Circle {
+                radius: edge.r / radius,
+                depth: (centre - edge.z) / radius,
+                fillet: edge.rho / radius,
+            };
+            Body::profile(&circles.iter().map(circle).collect::<Vec<_>>(), i1, i3)?
+        }
+    };
+    Ok(Assembled { body, mass: whole, radius, centre })
+}
+
+/// The largest outer radius.
+pub(super) fn widest(circles: &[Edge]) -> f64 {
+    circles.iter().map(Edge::outer).fold(0.0, f64::max)
 }

@@ -14,7 +14,7 @@
 //!
 //! Error: a few roundings of the angle, divided by sqrt(1 - (drho/m)^2), which is 1 for two sharp circles.
 
-use super::rim::Rim;
+use super::{landing_angle, rim::Rim};
 use crate::error::{Error, within};
 use core::f64::consts::PI;
 
@@ -38,6 +38,11 @@ pub struct Circle {
 impl Circle {
     pub(crate) fn rim(self) -> Rim<f64> {
         Rim { ell: self.depth, a: self.radius, rho: self.fillet }
+    }
+
+    /// The height of the centre of mass above the table where this circle carries the body, at an inclination.
+    pub fn height(self, theta: f64) -> f64 {
+        self.rim().height(theta.sin_cos())
     }
 
     /// The border between this circle and the next one, and the distance D of their contacts there; None where one lies
@@ -113,7 +118,7 @@ impl Row {
         let none = Circle { radius: 0.0, depth: 0.0, fillet: 0.0 };
         let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0, over: false };
         let refuse = |value, expected| Err(Error::OutOfRange { name: "circles", value, expected });
-        for (k, circle) in given.iter().enumerate() {
+        'circles: for (k, circle) in given.iter().enumerate() {
             within("radius", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
             within("depth", circle.depth, (-1e100, 1e100), "-1e100 <= depth <= 1e100, of a circle")?;
             within("fillet", circle.fillet, (0.0, 1e100), "0 <= fillet <= 1e100, of a circle")?;
@@ -122,11 +127,17 @@ impl Row {
                 let Some([border, _]) = last.border(circle) else {
                     return refuse(k as f64, "circles of which none lies inside another");
                 };
+                // One that touches only at an end, as the inner edge of a tube does, never carries.
+                if (border - PI).abs() < JOINED {
+                    continue 'circles;
+                }
                 // A circle that would begin to carry before the one before it does lies inside the hull.
-                if row.count == 1 || border > row.border(row.count - 2) + JOINED {
+                let before = if row.count > 1 { row.border(row.count - 2) } else { 0.0 };
+                if border > before + JOINED || row.count == 1 && border < -JOINED {
                     break;
                 }
                 row.count -= 1;
+                row.circles[row.count] = none;
             }
             if row.count == MOST_CIRCLES {
                 return refuse(given.len() as f64, "at most 8 circles that touch the table");
@@ -146,6 +157,17 @@ impl Row {
             )?;
         }
         Ok(row)
+    }
+
+    /// Whether one of these circles, which is not in the row, touches the table together with two that are.
+    pub fn passes_over(&self, given: &[Circle]) -> bool {
+        let touches = |circle: &Circle, k: usize| {
+            let (angle, here) = (landing_angle(self.border(k)), self.circles[k].rim());
+            let lower = here.less(&circle.rim()).height(angle);
+            lower.abs() <= JOINED * (here.reach() + circle.rim().reach()) && self.both(k)[1] > 0.0
+        };
+        let others = given.iter().filter(|circle| !self.circles().contains(circle));
+        others.into_iter().any(|circle| (1..self.count).any(|k| touches(circle, k - 1)))
     }
 
     /// The circle that carries.
@@ -227,7 +249,8 @@ impl Row {
         let mut first = 0;
         for k in 0..self.count {
             all.rims[k] = self.circles[k].rim();
-            let border = |k: usize| if self.over { PI - row.border(self.count - 2 - k) } else { row.border(k) };
+            let border =
+                |k: usize| if self.over { PI - row.border(self.count - 2 - k) } else { row.border(k) };
             if k + 1 < self.count {
                 all.tops[k] = border(k).cos();
             }

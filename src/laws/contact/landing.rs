@@ -29,7 +29,7 @@
 use super::lying::Lying;
 use super::slip::Friction;
 use crate::error::{Error, within};
-use crate::laws::body::{Body, Border, LEVEL_ON_UNEQUAL_RIMS};
+use crate::laws::body::{Body, Border};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
 use crate::laws::state::{State, drilling_of};
@@ -72,13 +72,10 @@ pub(crate) fn two_rims(body: &Body) -> Result<(), Error> {
     Ok(())
 }
 
-/// Returns an error for a body that lies level on two rims that are not equal, since its motion ends where it lies.
+/// Returns an error for a body of several circles that are not two equal rims.
 pub(crate) fn equal_rims(body: &Body) -> Result<(), Error> {
-    if body.theta_end() != LEVEL_ON_UNEQUAL_RIMS {
-        return Ok(());
-    }
-    let expected = "a centre of mass midway between two equal rims: on its side this body lies on two unequal ones, where its motion ends";
-    Err(Error::OutOfRange { name: "ell", value: body.ell(), expected })
+    let (count, expected) = (body.circles().len() as f64, "one circle, or two equal rims");
+    if body.has_row() { Err(Error::OutOfRange { name: "circles", value: count, expected }) } else { Ok(()) }
 }
 
 /// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.

@@ -2,7 +2,7 @@
 
 use super::Answer;
 use crate::error::Error;
-use crate::laws::body::{Body, beyond};
+use crate::laws::body::{Body, MOST_CIRCLES, beyond};
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::many::columns::{LossColumns, Split, at, fit, rows};
@@ -26,7 +26,13 @@ pub struct MotionStarts<'a> {
     pub losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
     pub aloft: Option<[&'a [f64]; 2]>,
+    /// The circles of bodies that have several, from the lower end up, of which i1 and i3 alone are told by `bodies`: n
+    /// rows or a single one, or none if no body has several.
+    pub circles: &'a [CirclesOfRow],
 }
+
+/// Radius, height above the centre of mass, and fillet of the circles of a body; a radius of NaN means no such circle.
+pub type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 
 /// The columns of bodies and their initial states, in pairs.
 ///
@@ -48,6 +54,7 @@ pub struct MotionStarts<'a> {
 pub struct MotionColumns {
     bodies: [Vec<f64>; 5],
     states: [Vec<f64>; 4],
+    circles: Vec<CirclesOfRow>,
 }
 
 impl FromIterator<(Body, State)> for MotionColumns {
@@ -57,6 +64,14 @@ impl FromIterator<(Body, State)> for MotionColumns {
             let numbers = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()];
             all.bodies.iter_mut().zip(numbers).for_each(|(column, x)| column.push(x));
             all.states.iter_mut().zip(<[f64; 4]>::from(state)).for_each(|(column, x)| column.push(x));
+            let mut circles = [[f64::NAN; 3]; MOST_CIRCLES];
+            if body.has_row() {
+                circles.iter_mut().zip(body.rows()).for_each(|(to, row)| *to = row);
+            }
+            all.circles.push(circles);
+        }
+        if all.circles.iter().all(|circles| circles[0][0].is_nan()) {
+            all.circles.clear();
         }
         all
     }
@@ -65,17 +80,16 @@ impl FromIterator<(Body, State)> for MotionColumns {
 impl MotionColumns {
     /// The initial conditions of these motions, without slip and without losses, with the contact of the job.
     pub fn starts(&self) -> MotionStarts<'_> {
-        MotionStarts::new(
-            self.bodies.each_ref().map(Vec::as_slice),
-            self.states.each_ref().map(Vec::as_slice),
-        )
+        let (bodies, states) = (self.bodies.each_ref(), self.states.each_ref());
+        let starts = MotionStarts::new(bodies.map(Vec::as_slice), states.map(Vec::as_slice));
+        MotionStarts { circles: &self.circles, ..starts }
     }
 }
 
 impl<'a> MotionStarts<'a> {
     /// Bodies and states without slip and without losses, with the contact of the job.
     pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
-        Self { bodies, states, slips: None, coefficients: None, losses: None, aloft: None }
+        Self { bodies, states, slips: None, coefficients: None, losses: None, aloft: None, circles: &[] }
     }
 
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
@@ -87,7 +101,7 @@ impl<'a> MotionStarts<'a> {
 
     /// The number of initial states.
     pub fn len(&self) -> usize {
-        rows(self.columns())
+        if self.circles.len() > 1 { self.circles.len() } else { rows(self.columns()) }
     }
 
     /// Whether there are no initial states.
@@ -96,7 +110,18 @@ impl<'a> MotionStarts<'a> {
     }
 
     pub(super) fn fit(&self) -> bool {
-        fit(self.columns(), self.len())
+        fit(self.columns(), self.len()) && [0, 1, self.len()].contains(&self.circles.len())
+    }
+
+    /// The circles of the body of motion `i`; empty if it has one circle or two equal rims.
+    fn circles(&self, i: usize) -> &'a [[f64; 3]] {
+        let found = self.circles.get(if self.circles.len() == 1 { 0 } else { i });
+        found.filter(|rows| !rows[0][0].is_nan()).map_or(&[], |rows| &rows[..])
+    }
+
+    /// Whether the body of motion `i` has several circles, and so is left to a walk.
+    pub(super) fn has_row(&self, i: usize) -> bool {
+        !self.circles(i).is_empty()
     }
 
     pub(super) fn is_rounded(&self, i: usize) -> bool {
@@ -106,7 +131,7 @@ impl<'a> MotionStarts<'a> {
     /// The body of motion `i`, or the error of an invalid body.
     pub(super) fn body(&self, i: usize) -> Result<Body, Error> {
         let [ell, i1, i3, fillet, theta_end] = self.bodies.map(|x| at(x, i));
-        Body::of_numbers([ell, i1, i3, f64::NAN, fillet, theta_end])
+        Body::of_rows([ell, i1, i3, f64::NAN, fillet, theta_end], self.circles(i))
     }
 
     pub(super) fn state(&self, i: usize) -> State {

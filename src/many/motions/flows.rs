@@ -120,14 +120,13 @@ impl<'a> MotionBlock<'a> {
                 continue;
             }
             walked.push(k);
+            let in_lanes = wide && !starts.has_row(i) && can_roll_in_lanes(&ask.table);
             for &tol in tols {
                 let walk = body.and_then(|body| {
                     let (seen, start) = starts.start(i).seen_on(&body);
                     BodyWalk::of_body(&seen, &ask, tol, times, &start)
                 });
-                all.walks.push(
-                    walk.map(|walk| walk.leaving_rolling_to_caller(wide && can_roll_in_lanes(&ask.table))),
-                );
+                all.walks.push(walk.map(|walk| walk.leaving_rolling_to_caller(in_lanes)));
             }
         }
         for i in 0..all.walks.len() {

@@ -38,7 +38,7 @@ use crate::motions::ask::{check_conserving, check_flow, check_times_after};
 use crate::motions::{Ask, Method};
 use crate::numbers::codes::coded;
 use columns::TimedOutput;
-pub use columns::{MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
+pub use columns::{CirclesOfRow, MotionColumns, MotionOutput, MotionStarts, SUMMARIES, Summary};
 pub(crate) use customs::{CustomLaws, roll_custom};
 use fearless_simd::Level;
 use std::sync::OnceLock;
@@ -230,7 +230,8 @@ fn conserved(
     (count, out): (usize, &mut MotionOutput<'_>),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    for i in work.run(level, (0..count).collect(), out, go_on) {
+    let (alone, in_lanes): (Vec<_>, _) = (0..count).partition(|i| work.starts.has_row(work.first + i));
+    for i in work.run(level, in_lanes, out, go_on).into_iter().chain(alone) {
         if !go_on() {
             return Ok(());
         }

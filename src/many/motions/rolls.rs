@@ -76,7 +76,13 @@ impl MotionBlock<'_> {
         let y = starts.state(row);
         let glides = starts.slips.is_some_and(|all| all.iter().any(|x| at(x, row) != 0.0));
         let other = starts.aloft.is_some() || !starts.losses(row).is_none();
-        if glides || other || y.w1 == 0.0 && y.w3 == 0.0 || fillet == 1.0 || starts.is_down(row) {
+        if glides
+            || other
+            || y.w1 == 0.0 && y.w3 == 0.0
+            || fillet == 1.0
+            || starts.has_row(row)
+            || starts.is_down(row)
+        {
             return false;
         }
         match self.job.table(starts.coefficients(row)) {

@@ -109,9 +109,13 @@ pub(super) fn roll(
     let extremes =
         [Summary::ThetaMin, Summary::ThetaMax, Summary::NormalMin, Summary::FrictionCoefficientMax];
     let extremes_wanted = extremes.iter().any(|x| out.wants(*x));
+    // These summaries are of one circle.
+    let extremes_wanted = extremes_wanted && !body.has_row();
     let easily = job.ask.beyond && job.step().is_none();
     let turning = out.wants(Summary::PrecessionPerPeriod);
-    let swing = if easily || extremes_wanted || turning || out.wants(Summary::Period) {
+    let swing = if body.has_row() {
+        None
+    } else if easily || extremes_wanted || turning || out.wants(Summary::Period) {
         Swing::new(&body, &start, job.contact(), turning).ok()
     } else {
         None

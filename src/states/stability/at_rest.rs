@@ -428,7 +428,7 @@ pub(crate) trait AtRest<T: Real> {
 impl Rounded<f64> {
     pub fn of(body: &Body) -> Self {
         let (ell, rho, a, excess) = (body.ell(), body.fillet(), body.rim_sum(), body.excess_sum());
-        let (i1, i3, most) = (body.i1(), body.i3(), body.range());
+        let (i1, i3, most) = (body.i1(), body.i3(), body.rests_up_to());
         Self { ell, rho, a, excess, i1, i3, per_i1: 1.0 / i1, most }
     }
 }

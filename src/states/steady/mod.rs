@@ -124,7 +124,7 @@ pub(crate) fn square_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: 
 /// at any rate at theta0, and a thin disk (`ell = 0`) at any rate at exactly pi/2, which is not a double.
 pub fn rate(body: &Body, theta: f64) -> f64 {
     if !body.is_plain() {
-        return terms_of(body, theta).rate(theta, body.range());
+        return terms_of(body, theta).rate(theta, body.rests_up_to());
     }
     let (ell, excess) = (body.ell(), body.excess_sum());
     in_lanes!(

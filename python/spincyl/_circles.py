@@ -1,0 +1,265 @@
+"""The circles of a body: what a user reads of them, and the numbers of the circle that carries."""
+
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from spincyl import _core
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    common_shape,
+    floats,
+    number,
+    read_only_copy,
+    reals,
+    warn,
+    whole,
+)
+
+#: The numbers of a body, in the order of the core.
+FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
+_MOMENTS = ("i1", "i3")
+#: The columns of radius, height and fillet of each circle in a sweep.
+CIRCLE_COLUMNS = [[f"{name}{k}" for name in ("radius", "height", "fillet")] for k in range(8)]
+
+
+@compared_by_value
+class Apex(NamedTuple):
+    """How a body rolls on two neighbouring circles round its apex, the point where its axis meets the table.
+
+    Attributes
+    ----------
+    radius : float
+        Radius of the circle of the centre of mass about the apex, in R; infinite for two equal circles, on
+        which the body rolls straight on.
+    rate : float
+        Precession rate at which the narrow end rises, in sqrt(g/R): infinite for two equal circles, NaN if
+        the body does not rest on both.
+    friction : float
+        Ratio of friction to normal force at this rate. With a smaller coefficient of friction the body slips
+        outward before the narrow end rises.
+    """
+
+    radius: float
+    rate: float
+    friction: float
+
+
+class Circles:
+    """Base of `Laws`: the circles of a body."""
+
+    ell: Reals
+    i1: Reals
+    i3: Reals
+    bore: Reals
+    fillet: Reals
+    theta_end: Reals
+    rims: Any
+    _borders: ClassVar[Any] = None  # of bodies with `rims`: where the next circle lands
+
+    @property
+    def circles(self) -> Floats:
+        """(n, 3) the circles on which a single body can stand, from its lower end up.
+
+        Each row has the radius of the circle, its height above the centre of mass (negative below it), and
+        its fillet, in R. A tip is a circle of radius 0, a ball one of radius 0 with a fillet.
+        """
+        return np.array(self._told()[0])
+
+    @property
+    def borders(self) -> Floats:
+        """(n - 1,) inclinations in radians at which the next circle lands; see `circles`."""
+        return self._told()[1][:, 0].copy()
+
+    @property
+    def spans(self) -> Floats:
+        """(n - 1,) distances, in R, of both points of contact at the inclinations `borders`.
+
+        A distance of 0 is a smooth joint, as between a ball and the edge at which it is cut: nothing lands
+        there.
+        """
+        return self._told()[1][:, 1].copy()
+
+    @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """(n - 1,) whether each two neighbouring circles touch at a smooth joint."""
+        found: NDArray[np.bool_] = self.spans == 0
+        return found
+
+    def apex(self, k: int = 0) -> Apex:
+        """How the body rolls round its apex on the circles k and k + 1 of `circles`.
+
+        Raises
+        ------
+        ValueError
+            If there are no such circles, or if they touch at a smooth joint.
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> sc.Body.cone(2.0).apex().radius.round(6)
+        np.float64(1.341641)
+        """
+        told = self._told()[1]
+        if not len(told):
+            raise ValueError("k: the body has a single circle, and no apex")
+        row = told[whole("k", k, 0, len(told) - 1)]
+        if row[1] == 0:
+            raise ValueError(f"k = {k}: these circles touch at a smooth joint, where the body does not lie")
+        return Apex(*row[2:])
+
+    def rests(self) -> tuple[int, ...]:
+        """The circles k that can be at rest on the table together with circle k + 1."""
+        return tuple(self._told()[2])
+
+    def _told(self) -> tuple[list[list[float]], Floats, list[int]]:
+        """Circles, borders and rests of a single body."""
+        numbers = self._raw
+        if np.ndim(self.rims) > 2 or any(np.ndim(x) for x in numbers):
+            raise ValueError("body: expected a single body, not a family; `rims` has the circles of a family")
+        rows, borders, rests = _core.body_circles([float(x) for x in numbers], self._rows)
+        return rows, np.array(borders).reshape(-1, 5), rests
+
+    @property
+    def _raw(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+        """The six numbers of the core; those of the lowest circle, with its radius, if there are several."""
+        bore = self.bore if self.rims is None else -self.rims[..., 0, 0]
+        return self.ell, self.i1, self.i3, bore, self.fillet, self.theta_end
+
+    @property
+    def _rows(self) -> list[list[float]]:
+        """The circles of a single body of several, for the core; else none."""
+        return [] if self.rims is None else self.rims.tolist()
+
+    @property
+    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+        """The six numbers, or ValueError for a body of several circles."""
+        if self.rims is not None:
+            several = f"not {self.rims.shape[-2]} circles (body.circles)"
+            raise ValueError(f"body: expected one circle or two equal rims, {several}")
+        return self._raw
+
+    def _at(self, theta: Reals, *w: Reals, rim: Any = None) -> tuple[Any, ...]:
+        """A state, with w1, w2, w3 and a slip if given, and the numbers of the circle that carries.
+
+        Both are seen from the end of the body that is nearer to the table; `rim` says which circle is meant.
+        """
+        if self.rims is None:
+            return theta, *w, *self._raw
+        at = floats(theta)
+        shape = np.broadcast_shapes(at.shape, np.shape(self.i1), np.shape(self.i3), self.rims.shape[:-2])
+        borders = np.broadcast_to(self._borders, (*shape, self._borders.shape[-1]))
+        k = (borders < np.broadcast_to(at, shape)[..., np.newaxis]).sum(-1) if rim is None else rim
+        k = np.broadcast_to(np.asarray(k, np.int64), shape)[..., np.newaxis]
+        rows = np.broadcast_to(self.rims, (*shape, *self.rims.shape[-2:]))
+        radius, height, fillet = np.moveaxis(
+            np.take_along_axis(rows, k[..., np.newaxis], -2)[..., 0, :], -1, 0
+        )
+        edges = np.concatenate([np.zeros((*shape, 1)), borders, np.full((*shape, 1), np.nan)], -1)
+        low, high = (np.take_along_axis(edges, k + i, -1)[..., 0] for i in (0, 1))
+        over = at > np.pi / 2
+        sign = np.where(over, -1.0, 1.0)
+        seen = np.where(over, np.pi - at, at)
+        end = np.where(over, np.pi - low, np.where(np.isnan(high), np.pi, high))
+        turned = (x if i == 0 else sign * x for i, x in enumerate(w))
+        numbers = -sign * height, self.i1, self.i3, -radius, fillet, end
+        return tuple(np.asarray(x)[()] for x in (seen, *turned, *numbers))
+
+    def _sign(self, theta: Reals) -> Any:
+        """The sign that `_at` gives to vectors along e_h, e2 and e3, and to w2 and w3."""
+        return 1.0 if self.rims is None else np.where(floats(theta) > np.pi / 2, -1.0, 1.0)
+
+
+def rows_of(circles: Iterable[Sequence[float]], centre: float) -> list[list[float]]:
+    """Rows of radius, height above the centre of mass, and fillet, from the argument of `Body.profile`."""
+    try:
+        given = [list(row) for row in circles]
+    except TypeError:
+        raise TypeError("circles: expected rows (radius, height) or (radius, height, fillet)") from None
+    if any(len(row) not in (2, 3) for row in given):
+        raise ValueError("circles: expected rows (radius, height) or (radius, height, fillet)")
+    rows = [[number(f"circles[{i}]", x) for x in (*row, 0.0)[:3]] for i, row in enumerate(given)]
+    return [[radius, height - centre, fillet] for radius, height, fillet in rows]
+
+
+def set_rims(body: Any) -> None:
+    """Check the field `rims` of a new body, and set all its fields; `rims` becomes None if it is not needed.
+
+    The circles of a single body may turn out to be one circle or two equal rims.
+    """
+    given, moments = floats(reals("rims", body.rims)), [reals(name, getattr(body, name)) for name in _MOMENTS]
+    if given.ndim < 2 or given.shape[-1] != 3 or not given.shape[-2]:
+        raise ValueError("rims: expected rows of radius, height and fillet, an array (..., n, 3)")
+    six: Any
+    rims: Any
+    borders: Any
+    shape = common_shape(dict(zip((*_MOMENTS, "rims"), (*moments, given[..., 0, 0]), strict=True)))
+    if shape:
+        six, rims, borders = _family(given, [floats(x) for x in moments], shape)
+    else:
+        (six, rows), ends, in_line = _core.check_profile(given.tolist(), *map(float, moments))
+        rims, borders = (np.array(rows), np.array([theta for theta, _ in ends])) if rows else (None, None)
+        if in_line:
+            warn(
+                "circles: a circle in line with two others is left out; its share of the load is undetermined"
+            )
+    for name, of_circle in zip(FIELDS, six, strict=True):
+        own = np.nan if name == "bore" and rims is not None else of_circle
+        value, unsaid = np.asarray(getattr(body, name)), 0.0 if name == "fillet" else np.nan
+        if np.any((value != own) & ~np.isnan(value) & ~np.isnan(own) & (value != unsaid)):
+            why = "that of the lowest circle in `rims`; for a body without its circles give rims=None"
+            raise ValueError(f"{name} = {getattr(body, name)!r}: expected {own!r}, {why}")
+        object.__setattr__(body, name, read_only_copy(own if shape else float(own)))
+    for name, value in (("rims", rims), ("_borders", borders)):
+        object.__setattr__(body, name, None if value is None else read_only_copy(value))
+    object.__setattr__(body, "_single", not shape)
+
+
+def _family(
+    given: Floats, moments: list[Floats], shape: tuple[int, ...]
+) -> tuple[list[Floats], Floats, Floats]:
+    """The numbers, the circles and the borders of bodies; NaN for impossible ones."""
+    most = given.shape[-2]
+    found, rims = np.full((*shape, len(FIELDS)), np.nan), np.full((*shape, most, 3), np.nan)
+    borders, given = np.full((*shape, most - 1), np.nan), np.broadcast_to(given, rims.shape)
+    i1, i3 = (np.broadcast_to(x, shape) for x in moments)
+    for at in np.ndindex(shape):
+        with suppress(ValueError):
+            (six, rows), ends, _ = _core.check_profile(given[at].tolist(), float(i1[at]), float(i3[at]))
+            rows = rows or _core.body_circles(six, [])[0]
+            found[at], rims[at][: len(rows)], borders[at][: len(ends)] = six, rows, [x for x, _ in ends]
+    found[..., FIELDS.index("bore")] = np.nan
+    return list(np.moveaxis(found, -1, 0)), rims, borders
+
+
+def columns_of_circles(bodies: Any) -> dict[str, Reals]:
+    """The circles of bodies that have several, as columns radius0, height0, fillet0, radius1 and so on."""
+    if bodies.rims is None:
+        return {}
+    rows = np.moveaxis(bodies.rims, (-2, -1), (0, 1))
+    names = CIRCLE_COLUMNS[: len(rows)]
+    return {
+        name: x
+        for row, columns in zip(rows, names, strict=True)
+        for name, x in zip(columns, row, strict=True)
+    }
+
+
+def extent_of(rims: Floats) -> tuple[float, float]:
+    """Length and width of a single body with these circles."""
+    radius, height, fillet = rims.T
+    return float((height + fillet).max() - (height - fillet).min()), float(2 * (radius + fillet).max())
+
+
+def lowest_point_of(body: Circles, theta: Floats, rim: Any) -> Any:
+    """The height of the lowest point of a body above that of one of its several circles; 0 or less."""
+
+    def centre(circles: Any) -> Any:
+        return _core.circle_height(theta, *np.moveaxis(body.rims[circles], -1, 0))
+
+    return centre(rim) - centre((body._borders < theta[..., np.newaxis]).sum(-1))

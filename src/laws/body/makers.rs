@@ -1,0 +1,110 @@
+//! Uniform bodies with several circles: solids of revolution, hollow frusta, cones, and two balls of different radii.
+//!
+//! ```text
+//! m = int r^2,   I3 = int r^4/2 / m,   I1 = int (r^4/4 + r^2 z^2)/m - z0^2,   z0 = int r^2 z / m
+//! ```
+//! The integrals are those of `body::parts`, whose rule is exact on each straight piece of the outline. A piece that goes
+//! down takes away what is within it.
+//!
+//! Error: a few roundings of the largest integral that is added or taken away.
+
+use super::Body;
+use super::hull::Edge;
+use super::parts::{Form, of_masses, widest};
+use crate::error::{Error, within};
+
+const LENGTH: (f64, f64) = (0.0, 1e50);
+
+impl Body {
+    /// Uniform frustum of a cone, from its lower end, of radius `bottom`, to its upper end, of radius `top`, all in one unit
+    /// of length; the body is told in R, the larger of the two. With a `wall` it is hollow and open at both ends, and the
+    /// wall, measured across the axis, is so thick; 0 is a thin wall.
+    ///
+    /// ```
+    /// let cup = spincyl::Body::frustum(0.7, 1.0, 2.0, None)?;
+    /// assert!((cup.i1() - 0.512_453_524_7).abs() < 1e-10);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> Result<Self, Error> {
+        within("bottom", bottom, LENGTH, "a radius of 0 to 1e50")?;
+        within("top", top, LENGTH, "a radius of 0 to 1e50, and one of both radii above 0")?;
+        within("top", bottom.max(top), (1e-50, LENGTH.1), "one of both radii above 0")?;
+        within("height", height, (1e-50, LENGTH.1), "1e-50 <= height <= 1e50")?;
+        let (radii, ends) = ([bottom, top], [0.0, height]);
+        let form = match wall {
+            None => Form::Solid { radii, bores: [0.0; 2], ends, fillet: 0.0 },
+            Some(0.0) => Form::Wall { radii, ends },
+            Some(wall) => {
+                within("wall", wall, (0.0, bottom.min(top)), "a wall of at most the smaller radius")?;
+                Form::Solid { radii, bores: radii.map(|r| r - wall), ends, fillet: 0.0 }
+            }
+        };
+        uniform(&[(form, 1.0)], form.edges())
+    }
+
+    /// Uniform cone that stands on its tip, of this height over the radius R of its base.
+    pub fn cone(height: f64) -> Result<Self, Error> {
+        Self::frustum(0.0, 1.0, height, None)
+    }
+
+    /// Uniform solid whose outline is a line of straight pieces between these points (radius, height), from its lower end
+    /// to its upper end, all in one unit of length; the body is told in R, its largest radius. The line may go down into
+    /// the body, as inside a cup, but must not cross itself; where it begins or ends beside the axis, a flat face closes it.
+    ///
+    /// ```
+    /// let cup = spincyl::Body::lathe(&[[0.7, 0.0], [1.0, 2.0], [0.9, 2.0], [0.6, 0.1], [0.0, 0.1]])?;
+    /// assert_eq!(cup.circles().len(), 2);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn lathe(points: &[[f64; 2]]) -> Result<Self, Error> {
+        for [radius, height] in points {
+            within("points", *radius, LENGTH, "radii of 0 to 1e50")?;
+            within("points", *height, (-LENGTH.1, LENGTH.1), "heights of -1e50 to 1e50")?;
+        }
+        let piece = |pair: &[[f64; 2]]| {
+            let ([r, low], [s, high]) = (pair[0], pair[1]);
+            let (radii, ends, sign) =
+                if low < high { ([r, s], [low, high], 1.0) } else { ([s, r], [high, low], -1.0) };
+            (Form::Solid { radii, bores: [0.0; 2], ends, fillet: 0.0 }, sign)
+        };
+        let rises = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
+        let edges = points.iter().map(|[r, z]| Edge::of(*r, *z, 0.0)).collect();
+        uniform(&rises.map(piece).collect::<Vec<_>>(), edges).map_err(|error| match error {
+            Error::OutOfRange { name: "parts" | "height", value, .. } => {
+                let expected = "an outline that rises from its lower end around a volume, near the height 0";
+                Error::OutOfRange { name: "points", value, expected }
+            }
+            other => other,
+        })
+    }
+
+    /// Two solid balls of one density and of these radii, the lower one first, which touch (`separation = 1`) or have their
+    /// centres `separation` times the sum of the radii apart on a light rod. The body is told in R, the larger radius.
+    pub fn unequal_balls(radii: [f64; 2], separation: f64) -> Result<Self, Error> {
+        within("separation", separation, (1.0, 1e3), "1 <= separation <= 1000")?;
+        let [lower, upper] = radii;
+        for radius in radii {
+            let most = lower.max(upper).min(LENGTH.1);
+            within(
+                "radii",
+                radius,
+                (1e-3 * most, most),
+                "two radii, the smaller one at least a thousandth of the larger",
+            )?;
+        }
+        let ball = |radius: f64, centre: f64| Form::Ball {
+            radius,
+            hollow: 0.0,
+            centre,
+            ends: [centre - radius, centre + radius],
+        };
+        let forms = [ball(lower, 0.0), ball(upper, separation * (lower + upper))];
+        uniform(&forms.map(|form| (form, 1.0)), forms.iter().flat_map(Form::edges).collect())
+    }
+}
+
+/// The body of forms that are added, or taken away with the sign -1.
+fn uniform(forms: &[(Form, f64)], edges: Vec<Edge>) -> Result<Body, Error> {
+    let masses: Vec<_> = forms.iter().map(|(form, sign)| form.mass().times(*sign)).collect();
+    Ok(of_masses(&masses, edges, widest)?.body)
+}
