@@ -54,6 +54,5 @@ mod uniform;
 mod units;
 mod upright;
 mod whirrs;
-mod zz;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};
