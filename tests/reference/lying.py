@@ -34,7 +34,7 @@ import gmpy2
 from flight_vectors import first_fall
 from gmpy2 import mpfr
 from lying_forms import LAWS, ZERO
-from lying_phases import TINY, TOLD, Both
+from lying_phases import RATES, TINY, TOLD, Both
 from lying_reduced import Reduced
 from lying_vectors import Vectors
 from phases import Record, departure, first_event, onset, sampled, slipping, step_size
@@ -73,34 +73,38 @@ def follow(model, loud=False):
     samples = [mpfr(t) for t in scene.samples]
     both = Both(model, out)
     y = model.start()
+    # how a gap to a border, from which the body comes, begins: with this power of the time
+    own, kind, origin = 0, "steep", None
     if scene.lies:
         y, kind = model.lie(y), "both"
-        kind, own = ("both", 0)
-        low = model.there("LL", both.signs(y), y).normals if gmpy2.hypot(*y[:2]) > 0 else None
-        if low is not None and min(n.c[0] for n in low) < 0:
-            assert low[1].c[0] < 0
-            y, kind, own = model.rise(y), "slip", 2
-    else:
-        own, kind = 0, "steep"
-        if not scene.smooth:
-            kind, y = slipping(model, y, out) if y[0] == 0 and y[1] == 0 else ("slip", y)
+    elif not scene.smooth:
+        kind, y = slipping(model, y, out) if y[0] == 0 and y[1] == 0 else ("slip", y)
     rocked, last = [], None
+
+    def alone(y, order):
+        """The told circle carries on alone."""
+        nonlocal own, origin
+        y, own, origin, model.o = model.rise(y), order, model.o, None
+        return y
+
     while True:
         if kind == "both":
             now, signs, y = both.enter(y)
             if now == "one":
-                if signs == 1:  # the rim that carries on
+                if signs == 1:  # the circle that carries on
                     y = model.other(y)
-                y, own = model.rise(y), 2
-                kind = "slip" if gmpy2.hypot(*y[:2]) > TINY else "roll"
-                out.add("rises", y[3], y)
+                y, kind = alone(y, 2), "slip"
+                if gmpy2.hypot(*y[:2]) <= TINY:
+                    kind, y = slipping(model, y, out)
+                if y[3] > 0:
+                    out.add("rises", y[3], y)
                 continue
-            name = {"LL": "slides", "SL": "pivots", "LS": "pivots", "SS": "straight"}[now]
+            name = {"LL": "slides", "SL": "pivots", "LS": "pivots", "SS": scene.rolls}[now]
             # a landing, or what dry friction does, has had its row
             if last not in (None, *TOLD) or (last == "lies" and now != "LL"):
                 out.add(name, y[6], y)
             last = name
-            if now == "SS" and both.most()[1] and not signs[1]:
+            if now == "SS" and model.dry[1] and not signs[1]:
                 out.add("rests", y[6], y)
                 return out
             both.sense = None
@@ -111,26 +115,24 @@ def follow(model, loud=False):
                 y = [ZERO] * 4 + y[4:]
             elif what == "lets go":
                 rim = 0 if now == "SL" else 1
-                if model.static == model.mu:
-                    out.add("slides", y[6], y)
-                    y, last = both.lets_go(y, rim, signs), "lies"
-                else:
-                    out.add("slides", y[6], y)
-                    y, last = both.departs(y, rim, signs), "lies"
-            elif what in ("w1", "w3"):
-                which = ("w1", "w3").index(what)
-                y = model.at_rest(y, what)
+                out.add("slides", y[6], y)
+                begins = both.lets_go if model.static == model.mu else both.departs
+                y, last = begins(y, rim, signs), "lies"
+            elif what in RATES:
+                which = RATES.index(what)
+                y = model.at_rest(y, which)
                 stopped = tuple(0 if k == which else x for k, x in enumerate(signs))
-                held = model.there(now, stopped, y).couples[which]
+                there = model.there(now, stopped, y)
                 if now == "SS":
                     out.add("rests", y[6], y)
                     return out
-                if abs(held.c[0]) > both.most()[which]:
+                if there.holds[which].c[0] < 0:
                     both.sense = which, -signs[which]
                     last = "crosses"
+                    out.add(last, y[6], y)
                 else:
-                    last = f"holds {what}"
-                out.add(last, y[6], y)
+                    last = "held"
+                    out.add(f"holds {scene.rates[which]}", y[6], y)
             elif what in (0, 1):
                 last = "goes on"
                 out.add(last, y[6], y)
@@ -138,8 +140,10 @@ def follow(model, loud=False):
                 if what == "sinks":
                     y = model.other(y)
                 carrying = now if what == "rises" else now[::-1]
-                y, own = model.rise(y), 3
+                y = alone(y, 3)
                 kind = "roll" if carrying[0] == "S" else "slip"
+                if scene.smooth:
+                    kind = "steep"
                 if kind == "roll":
                     y = [ZERO, ZERO, *y[2:]]
                 out.add("rises", y[3], y)
@@ -149,36 +153,48 @@ def follow(model, loud=False):
         tape.expand(y, model.order)
         out.steps += 1
         h = step_size(phase, model.order, model.tolerance)
-        events = [(name, node) for name, node in model.events(phase, kind) if name != "side"]
-        place, name = first_event(events, h)
-        # the own place at pi/2 is left behind by its order
-        side = first_fall(phase.up.c[own:], h if place is None else place, own)
-        if side is not None:
-            place, name = side, "side"
+        place, name = first_event(model.events(phase, kind), h)
+        # the own place at a border is left behind by its order
+        for o, gap in phase.gaps.items():
+            begun = own if o == origin else 0
+            side = first_fall(gap.c[begun:], h if place is None else place, begun)
+            if side is not None:
+                place, name = side, o
         h, own = h if name is None else place, 0
         sampled(out, samples, tape.states[3], h, kind == "slip")
         if not samples:
             return out
         y = [node.at(h) for node in tape.states]
-        if name == "side":
+        if isinstance(name, int):
+            if origin != name:
+                rocked = []
+            origin, model.o = name, name
+            if model.border.smooth:
+                y = model.other(y)
+                own, origin, model.o = 1, model.o, None
+                if kind == "roll":
+                    kind, y = slipping(model, [ZERO, ZERO, *y[2:]], out)
+                assert model.at(kind, y).normal.c[0] > 0
+                out.add("joint", y[3], y)
+                continue
             y, what = model.land(y)
             if what == "lies":
-                kind, last = "both", "lies"
+                kind, last, rocked = "both", "lies", []
                 out.add("lies", y[6], y)
                 continue
-            if model.falling(y) > scene.brief:
+            fall, own, origin, model.o = model.falling(y), 1, model.o, None
+            if fall > scene.brief:
                 out.add("rocks", y[3], y)
-            rocked.append((model.falling(y), y))
-            (fall, _), earlier = rocked[-1], rocked[-3] if len(rocked) > 2 else None
-            kind, y = slipping(model, y, out) if y[0] == 0 and y[1] == 0 else ("slip", y)
-            own = 1
+            rocked.append((fall, y))
+            earlier = rocked[-3] if len(rocked) > 2 else None
+            if not scene.smooth:
+                kind, y = slipping(model, y, out) if y[0] == 0 and y[1] == 0 else ("slip", y)
             if fall < CLATTER and earlier is not None:
                 ratio = fall / earlier[0]
                 more = [(a - b) * ratio / (1 - ratio) for a, b in zip(y, earlier[1], strict=True)]
-                y = model.lie(
-                    model.settled([a + b for a, b in zip(y, model.unwound(more, ratio), strict=True)])
-                )
-                kind, last = "both", "lies"
+                model.o = origin
+                y = model.lie(model.settled([a + b for a, b in zip(y, more, strict=True)]))
+                kind, last, rocked = "both", "lies", []
                 out.add("rocked", y[6], y)
         elif name == "slips":
             y = [ZERO, ZERO, *y[2:]]
@@ -209,7 +225,7 @@ def follow(model, loud=False):
 class Scene:
     """A body, its contact and losses, a start (theta, w1, w2, w3, u_h, u_2) and times; it lies at pi/2."""
 
-    theta_end = None
+    rolls, rates, circle, apex = "straight", ("w1", "w3"), 0, None
 
     def __init__(
         self, name, body, mu, start, end, law="coulomb", static=None, losses=None, samples=5, brief=0.0
@@ -222,7 +238,22 @@ class Scene:
         self.end, self.brief = float(end), brief
         self.samples = sorted({float(end * k / samples) for k in range(1, samples + 1)})
         self.smooth = law == "viscous" or self.mu == 0
-        self.side, self.lies = True, self.start[0] == math.pi / 2 and self.start[2] == 0
+        self.lies = self.start[0] == math.pi / 2 and self.start[2] == 0
+        self.other = 1 if self.lies else None
+        ell, _, _, rho = map(mpfr, self.body)
+        self.circles = [(1 - rho, side * ell, rho) for side in (1, -1)]
+
+    def told(self):
+        """The body, for the table."""
+        return {"body": self.body}
+
+    def shown(self, model, row):
+        """Told from the rim that carries."""
+        pi = gmpy2.const_pi()
+        theta, w1, w2, w3, *slips, heat, work, phi, psi, x, y = row
+        if model.k:
+            theta, w2, w3, psi, slips = pi - theta, -w2, -w3, -psi, [-u for u in slips]
+        return [theta, w1, w2, w3, *slips, heat, work, phi + pi * model.changes, psi, x, y]
 
 
 HALF_PI = math.pi / 2
@@ -284,7 +315,7 @@ def made(scene):
     return {
         "name": scene.name,
         "law": scene.law,
-        "body": scene.body,
+        **scene.told(),
         "mu": scene.mu,
         "static": scene.static,
         "losses": [scene.losses.get(name, 0.0) for name in LAWS],

@@ -1,4 +1,4 @@
-"""How a body on both rims goes on, for lying.py: which phase follows, and where it ends."""
+"""How a body on two circles goes on, for lying.py and rims.py: which phase follows, and where it ends."""
 
 import gmpy2
 from gmpy2 import mpfr
@@ -7,22 +7,22 @@ from phases import first_event, sampled
 
 TINY = mpfr("1e-30")
 
-TOLD = ("lies", "holds w1", "holds w3", "crosses", "goes on")
+TOLD = ("lies", "held", "crosses", "goes on")
+RATES = ("turn", "spin")
 
 
 class Margin:
-    """A series times a sign, or a level less its square."""
+    """A series times a sign."""
 
-    def __init__(self, node, sign=1, most=None):
-        self.node, self.sign, self.most = node, sign, most
+    def __init__(self, node, sign):
+        self.node, self.sign = node, sign
 
     def at(self, h):
-        x = self.node.at(h)
-        return self.sign * x if self.most is None else self.most * self.most - x * x
+        return self.sign * self.node.at(h)
 
 
 def on_rim(y, rim, first, second):
-    """The state with this slip of a rim."""
+    """The state with this slip of a circle."""
     return [*y[: 2 * rim], first, second, *y[2 * rim + 2 :]]
 
 
@@ -31,40 +31,44 @@ def sign(x):
 
 
 class Both:
-    """What a body on both rims does next: a kind of phase, the signs of its rates, and the state."""
+    """What a body on two circles does next: a kind of phase, the signs of its rates, and the state."""
 
     def __init__(self, model, out):
         self.model, self.out, self.sense = model, out, None
 
-    def most(self):
-        """The couples by which dry friction can hold w1 and w3."""
-        law = self.model.losses
-        return law["drilling"], law["dry"] + law["rolling"]
-
     def signs(self, y, kind="LL"):
-        """The signs of w1 and w3, and that of w1 for a pivot; 0 where dry friction holds them."""
+        """The signs of turn and spin, and that of the turn for a pivot; 0 where dry friction holds them."""
         there = self.model.there("SS", (0, 1, 1), y)
-        w1, w3 = there.w1.c[0], there.w3.c[0]
-        found = [sign(w1), sign(w3), sign(w1)]
+        yaw, spin = there.yaw.c[0], there.spin.c[0]
+        found = [sign(yaw), sign(spin), sign(yaw)]
         if kind == "SS":
             found[0] = 0
-        if abs(w1) < TINY:
+        if abs(yaw) < TINY:
             found[0] = 0
-        if abs(w3) < TINY:
+        if abs(spin) < TINY:
             found[1] = 0
         if self.sense is not None:  # what has just passed through 0
             found[self.sense[0]] = self.sense[1]
         return tuple(found)
 
     def enter(self, y):
-        """The phase of a state on both rims; or "one" and the rim that carries on alone."""
+        """The phase of a state on both circles; or "one" and that which carries on alone."""
         m = self.model
         if m.scene.smooth:
             return "LL", self.signs(y), y
         sizes = [gmpy2.hypot(*y[2 * r : 2 * r + 2]) for r in (0, 1)]
         rest = [size < TINY for size in sizes]
         if all(rest):
-            return "SS", self.signs(y, "SS"), [ZERO] * 4 + y[4:]
+            y, signs = [ZERO] * 4 + y[4:], self.signs(y, "SS")
+            there = m.there("SS", signs, y)
+            normals = [n.c[0] for n in there.normals]
+            if min(normals) < 0:
+                return "one", 0 if normals[1] < 0 else 1, y
+            pull = [there.forces[0][i].c[0] + there.forces[1][i].c[0] for i in (0, 1)]
+            size = gmpy2.hypot(*pull)
+            if size > m.static:  # both slip off against it
+                return "LL", self.signs(y), [-TINY * x / size for x in (*pull, *pull)] + y[4:]
+            return "SS", signs, y
         if not any(rest):
             signs = self.signs(y)
             there = m.there("LL", signs, y)
@@ -85,7 +89,7 @@ class Both:
         return "LL", signs, self.departs(y, rim, signs)
 
     def departs(self, y, rim, signs):
-        """The slip of a rim that cannot stick: the one direction in which it grows and does not turn."""
+        """The slip of a circle that cannot stick: the one direction in which it grows and does not turn."""
         m, kind = self.model, f"onset{rim}"
 
         def turning(angle):
@@ -158,14 +162,14 @@ class Both:
                 if phase.demand[rim] is not None and kind != "SS":
                     events.append(("lets go", phase.demand[rim]))
             if kind in ("SL", "LS"):
-                events.append(("turned", Margin(phase.w1, signs[2])))
-            elif signs[0] and m.losses["drilling"]:
-                events.append(("w1", Margin(phase.w1, signs[0])))
-            if signs[1] and m.losses["dry"] + m.losses["rolling"]:
-                events.append(("w3", Margin(phase.w3, signs[1])))
-            for which, couple, most in zip((0, 1), phase.couples, self.most(), strict=True):
-                if couple is not None and kind != "SS":
-                    events.append((which, Margin(couple, most=most)))
+                events.append(("turned", Margin(phase.yaw, signs[2])))
+            elif signs[0] and m.dry[0] and kind != "SS":
+                events.append(("turn", Margin(phase.yaw, signs[0])))
+            if signs[1] and m.dry[1]:
+                events.append(("spin", Margin(phase.spin, signs[1])))
+            for which, margin in enumerate(phase.holds):
+                if margin is not None and kind != "SS":
+                    events.append((which, margin))
             place, name = first_event(events, h)
             h = h if name is None else place
             if name in (0, 1):  # dry friction lets go against what it has held with

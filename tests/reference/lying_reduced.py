@@ -1,4 +1,4 @@
-"""A body on both rims by the closed equations, one of the two formulations of lying_forms.py."""
+"""A body on two circles by the closed equations, one of the two formulations of lying_forms.py."""
 
 import gmpy2
 import slip_forms
@@ -15,155 +15,204 @@ class Reduced(Lying, slip_forms.Reduced):
         self.prepare(scene)
 
     def start(self):
-        y = super().start()
-        if self.scene.lies:
-            y[4] = gmpy2.const_pi() / 2
-        return y
+        theta, w1, w2, w3, *slip = self.beginning()
+        return [*slip, ZERO, ZERO, theta, w1, w2, w3, *[ZERO] * 4]
+
+    def axis(self, phase):
+        return phase.tape.sin_cos(phase.tape.states[4])
+
+    def gap(self, border, s, c):
+        """The sine of the angle to a border."""
+        return border.s * c - border.c * s
+
+    def responses(self, held):
+        """How the rates of w1 and w3 answer couples along e1 and e3, and what holds turn and spin, per unit of them.
+
+        What is held takes a couple along the vertical, or against the lean.
+        """
+        s, c = self.border.s, self.border.c
+        ways = [way for way, is_held in zip(((s, c), (-c, s)), held, strict=True) if is_held]
+        light = [1 / self.i1, 1 / self.i3]
+        answer = [[light[0], ZERO], [ZERO, light[1]]]
+        holding = [[None, None], [None, None]]
+        if len(ways) == 2:
+            return [[ZERO, ZERO], [ZERO, ZERO]], [scaled(-1, way) for way in ways]
+        for way in ways:
+            swung = [x * n for x, n in zip(light, way, strict=True)]
+            whole = swung[0] * way[0] + swung[1] * way[1]
+            answer = [[answer[i][k] - swung[i] * swung[k] / whole for k in (0, 1)] for i in (0, 1)]
+            holding[0 if held[0] else 1] = scaled(-1 / whole, swung)
+        return answer, holding
 
     def lying(self, kind, signs):
         tape = self.tape()
-        slips = low, _ = self.slips(tape, kind)
+        slips = self.slips(tape, kind)
         for _ in range(3):
             tape.state()
         w1, w3, phi, _, _, _ = (tape.state() for _ in range(6))
-        l, i1, i3, zero = self.ell, self.i1, self.i3, tape.constant(0)  # noqa: E741
-        one, three = self.couples(tape, signs, w1, w3)
-        held = [not signs[0] and self.losses["drilling"] > 0 and kind != "SS"]
-        held.append(not signs[1] and self.losses["dry"] + self.losses["rolling"] > 0)
-        gyro, free = i3 * (w1 * w3), [None, None]
+        s, c = self.border.s, self.border.c
+        i1, i3, zero, places = self.i1, self.i3, tape.constant(0), self.places
+        z, g = places[0].height, [place.g for place in places]
+        apart = g[0] - g[1]
+        turn, spin = s * w1 + c * w3, s * w3 - c * w1
+        precession = w1 / s
+        gyro = i3 * (w1 * w3) - (i1 * c) * (precession * w1)
+        held, stuck = self.held(kind, signs), None
+        # the velocity of the centre, and the force along the lean
         if kind == "SS":
-            pull = zero if held[1] else three / (1 + i3)
-            if held[1]:
-                free[1] = zero
-            forces = [[zero, pull / 2, zero + mpfr(0.5)] for _ in (0, 1)]
-            w1_rate, w3_rate = zero, (three - pull) / i3 if not held[1] else zero
-            rates = [[zero, zero], [zero, zero]]
-            v_2 = w3
-            v_h = zero
+            v_h, v_2 = zero, z * spin
+            f_h = -(precession * v_2)
         elif kind in ("SL", "LS"):
-            side = 1 if kind == "SL" else -1
-            v_h, v_2 = zero, w3 - side * l * w1
-            pull = -(w1 * v_2)  # along the axis, all at the rim that sticks
-            sense = mpfr(signs[2])
-            normals = [(l + gyro - pull) / (2 * l), (l - gyro + pull) / (2 * l)]
-            slides = self.mu * sense * (normals[1] if side > 0 else -normals[0])
-            # u_2' = 0 of the rim that sticks: v_2' + side l w1' - w3' = 0
-            own, cross_term = 1 + 1 / i3 + l * l / i1, 1 + 1 / i3 - l * l / i1
-            if held[1]:
-                own, cross_term = own - 1 / i3, cross_term - 1 / i3
-                across = -(cross_term * slides + (side * l / i1) * one) / own
-                free[1] = across + slides
-            else:
-                across = -(cross_term * slides + (side * l / i1) * one - three / i3) / own
-            stuck, sliding = [pull, across], [zero, slides]
-            both = [stuck, sliding] if side > 0 else [sliding, stuck]
-            forces = [[*f, n] for f, n in zip(both, normals, strict=True)]
-            w1_rate = (l * forces[0][1] - l * forces[1][1] + one) / i1
-            w3_rate = zero if held[1] else (three - forces[0][1] - forces[1][1]) / i3
-            whole = across + slides
-            other = whole - side * l * w1_rate - w3_rate
-            rates = [[zero, zero], [zero, other]]
-            rates = rates if side > 0 else rates[::-1]
+            stuck = kind.index("S")
+            v_h, v_2 = zero, places[stuck].radius * w3 - places[stuck].depth * w1
+            f_h = -(precession * v_2)
         else:
-            u = low[0]
+            u = slips[0][0]
+            v_h, v_2 = u[0], u[1] - places[0].depth * w1 + places[0].radius * w3
             pushes = [self.push(slip) for slip in slips]
-            if self.scene.law == "viscous":
-                normals = [(l + gyro + self.mu * u[0]) / (2 * l)]
-                normals.append(1 - normals[0])
-            elif not self.mu:
-                normals = [(l + gyro) / (2 * l), (l - gyro) / (2 * l)]
-            else:
-                alpha, beta = pushes[0][0] + l, -pushes[1][0] + l
-                normals = [(gyro + beta) / (alpha + beta), (alpha - gyro) / (alpha + beta)]
-            forces = [[n * p[0], n * p[1], n] for n, p in zip(normals, pushes, strict=True)]
-            f_h, f_2 = forces[0][0] + forces[1][0], forces[0][1] + forces[1][1]
-            couple = l * (forces[0][1] - forces[1][1])
-            if held[0]:
-                free[0] = -couple
-                w1_rate = zero
-            else:
-                w1_rate = (couple + one) / i1
+            f_h = pushes[0][0] if self.scene.law == "viscous" else zero
+        # the normal forces
+        if kind[:1] in ("L", "o") and kind != "LS" and self.scene.law != "viscous" and self.mu:
+            levers = [z * push[0] + x for push, x in zip(pushes, g, strict=True)]
+            normals = [(gyro - levers[1]) / (levers[0] - levers[1])]
+            normals.append((levers[0] - gyro) / (levers[0] - levers[1]))
+        else:
+            moment = gyro - z * f_h
+            normals = [(moment - g[1]) / apart, (g[0] - moment) / apart]
+        # the couples, along e1 and e3
+        down = zero
+        for place, normal in zip(places, normals, strict=True):
+            down = down + normal * self.against(place, signs, spin)
+        up = -self.losses["drilling"] * mpfr(signs[0]) if kind != "SS" else ZERO
+        couples = [s * up - c * down, c * up + s * down]
+        size = self.losses["air"]
+        if self.losses["air2"]:
+            size = self.losses["air2"] * tape.sqrt(w1 * w1 + w3 * w3) + size
+        if self.losses["air"] or self.losses["air2"]:
+            couples = [couples[0] - size * w1, couples[1] - size * w3]
+        answer, holding = self.responses(held)
+        ways = [[place.depth, -place.radius] for place in places]
+
+        def answered(way, torque):
+            """What of a rate across, along a way, a couple gives."""
+            return sum(
+                (way[i] * answer[i][k]) * torque[k] for i in (0, 1) for k in (0, 1) if answer[i][k] != 0
+            )
+
+        # the forces
+        free = [None, None]
+        if kind == "SS":
+            inertia = i1 * c * c + i3 * s * s + z * z
+            rolled = zero if held[1] else (c * couples[0] - s * couples[1]) / inertia
+            total = -z * rolled
+            moment = ((i1 - i3) * s * c) * rolled - s * couples[0] - c * couples[1]
+            across = [(moment - g[1] * total) / apart, (g[0] * total - moment) / apart]
+            forces = [[f_h / 2, f, n] for f, n in zip(across, normals, strict=True)]
+            w1_rate, w3_rate = c * rolled, -s * rolled
             if held[1]:
-                free[1] = f_2 + 0
-                w3_rate = zero
+                free[1] = c * couples[0] - s * couples[1]
+            rates = [[zero, zero], [zero, zero]]
+        else:
+            if stuck is not None:
+                moving = 1 - stuck
+                sense = mpfr(signs[2]) * gmpy2.sign(g[stuck] - g[moving])
+                slides = (self.mu * sense) * normals[moving]
+                own = 1 + answered(ways[stuck], ways[stuck])
+                more = 1 + answered(ways[stuck], ways[moving])
+                grip = -(more * slides + answered(ways[stuck], couples)) / own
+                forces = [[f_h, grip, normals[stuck]], [zero, slides, normals[moving]]]
+                forces = forces[::-1] if stuck else forces
             else:
-                w3_rate = (three - f_2) / i3
-            v_h, v_2 = u[0], u[1] - l * w1 + w3
-            along, across = f_h + w1 * v_2, f_2 - w1 * v_h
-            rates = [[along, across + side * l * w1_rate - w3_rate] for side in (1, -1)]
+                forces = [[n * p[0], n * p[1], n] for n, p in zip(normals, pushes, strict=True)]
+            torque = [
+                forces[0][1] * ways[0][i] + forces[1][1] * ways[1][i] + couples[i] for i in (0, 1)
+            ]
+            w1_rate, w3_rate = (row[0] * torque[0] + row[1] * torque[1] for row in answer)
+            for i, row in enumerate(holding):
+                if held[i]:
+                    free[i] = row[0] * torque[0] + row[1] * torque[1]
+            along = forces[0][0] + forces[1][0] + precession * v_2
+            across = forces[0][1] + forces[1][1] - precession * v_h
+            rates = [[along, across + way[0] * w1_rate + way[1] * w3_rate] for way in ways]
+            if stuck is not None:
+                rates[1 - stuck][0] = zero
+        power = couples[0] * w1 + couples[1] * w3
         sin_phi, cos_phi = tape.sin_cos(phi)
-        moved, aside = v_h, v_2 + l * w1  # of the point on the table below the first rim
-        path = [moved * cos_phi - aside * sin_phi, moved * sin_phi + aside * cos_phi]
-        moving = [w1_rate + 0, w3_rate + 0, w1 + 0, w3 + 0, *path]
-        return self.rates_of(tape, kind, slips, rates, forces, (one, three), free, w1, w3, moving)
+        out, aside = v_h, v_2 + places[0].p * w1  # of the told point on the table
+        path = [out * cos_phi - aside * sin_phi, out * sin_phi + aside * cos_phi]
+        moved = [w1_rate + 0, w3_rate + 0, precession, w3 - c * precession, *path]
+        return self.rates_of(tape, kind, slips, rates, forces, power, free, turn, spin, moved)
+
+    def turn_of(self, w1, w3):
+        return self.border.s * w1 + self.border.c * w3
 
     def lie(self, y):
         u_h, u_2, heat, t, _, w1, _, w3, *pose = y
-        return [u_h, u_2, u_h, u_2 - 2 * self.ell * w1, heat, self.work, t, w1, w3, *pose]
+        one, other = self.places
+        return [u_h, u_2, u_h, u_2 - (one.g - other.g) * self.turn_of(w1, w3), heat, self.work, t, w1, w3, *pose]
 
     def rise(self, y):
         self.work = y[5]
-        return [y[0], y[1], y[4], y[6], gmpy2.const_pi() / 2, y[7], ZERO, y[8], *y[9:]]
+        theta = gmpy2.atan2(self.border.s, self.border.c)
+        return [y[0], y[1], y[4], y[6], theta, y[7], ZERO, y[8], *y[9:]]
 
     def other(self, y):
-        whole = gmpy2.const_pi()
+        """Told from the other circle, which carries from now on."""
+        one, other = self.places
+        apart = one.g - other.g
+        *_, phi, _, a, b = y
+        placed = [a - apart * gmpy2.cos(phi), b - apart * gmpy2.sin(phi)]
+        self.swap()
         if len(y) == 13:
-            low, up, rest = y[0:2], y[2:4], y[4:7]
-            w1, w3, phi, psi, a, b = y[7:]
-            pose = self.placed(phi, psi, a, b)
-            return [*scaled(-1, up), *scaled(-1, low), *rest, w1, -w3, *pose]
-        u_h, u_2, heat, t, theta, w1, w2, w3, phi, psi, a, b = y
-        # at theta = pi/2, where the contact of the other rim is 2 ell further along -h
-        slip = [-u_h, 2 * self.ell * w1 - u_2]
-        return [*slip, heat, t, whole - theta, w1, -w2, -w3, *self.placed(phi, psi, a, b)]
-
-    def placed(self, phi, psi, a, b):
-        apart = 2 * self.ell
-        return [phi + gmpy2.const_pi(), -psi, a - apart * gmpy2.cos(phi), b - apart * gmpy2.sin(phi)]
+            return [*y[2:4], *y[0:2], *y[4:-2], *placed]
+        return [y[0], y[1] - apart * self.turn_of(y[5], y[7]), *y[2:-2], *placed]
 
     def at_rest(self, y, what):
-        k = 7 if what == "w1" else 8
-        return [*y[:k], ZERO, *y[k + 1 :]]
-
-    def unwound(self, change, ratio):
-        """phi gains a whole turn in two landings, which is none."""
-        return [x - 2 * gmpy2.const_pi() * ratio / (1 - ratio) if k == 8 else x for k, x in enumerate(change)]
+        """The state on two circles with the turn or the spin stopped."""
+        s, c = self.border.s, self.border.c
+        way = (s, c) if what == 0 else (-c, s)
+        rate = way[0] * y[7] + way[1] * y[8]
+        return [*y[:7], y[7] - rate * way[0], y[8] - rate * way[1], *y[9:]]
 
     def settled(self, y):
-        return [*y[:4], gmpy2.const_pi() / 2, y[5], ZERO, *y[7:]]
+        return [*y[:4], gmpy2.atan2(self.border.s, self.border.c), y[5], ZERO, *y[7:]]
 
     def falling(self, y):
-        return y[6]
+        return abs(y[6])
 
     def land(self, y):
-        """By cases: which rims stay, and which of them stick."""
+        """By cases: which circles stay, and which of them stick."""
         u_h, u_2, heat, t, _, w1, w2, w3, *pose = y
-        l, i1, i3, fall = self.ell, self.i1, self.i3, -w2  # noqa: E741
+        i1, i3, places = self.i1, self.i3, self.places
+        z, (g, g1) = places[0].height, (place.g for place in places)
         outcomes = []
+        v_h, v_2 = u_h + z * w2, u_2 - places[0].depth * w1 + places[0].radius * w3
 
         def after(both, q):
-            """Normal impulses, and velocities after, for these impulses along and across at either rim."""
+            """Normal impulses, and velocities after, for these impulses along and across at either circle."""
             along, across = q[0][0] + q[1][0], q[0][1] + q[1][1]
             if both:
                 normal = [
-                    (l * l * fall - i1 * fall - along) / (2 * l),
-                    (l * l * fall + i1 * fall + along) / (2 * l),
+                    ((g * g1 + i1) * w2 - z * along) / (g - g1),
+                    (-(g * g + i1) * w2 + z * along) / (g - g1),
                 ]
                 new_w2 = ZERO
             else:
-                up = (2 * l * fall + l * along / i1) / (1 + l * l / i1)
-                normal, new_w2 = [ZERO, up], -fall + (l * up - along) / i1
-            new_w1 = w1 + l * (q[0][1] - q[1][1]) / i1
-            new_w3 = w3 - across / i3
-            v_h, v_2 = u_h + w2 + along, u_2 - l * w1 + w3 + across
-            slips = [[v_h - new_w2, v_2 + side * l * new_w1 - new_w3] for side in (1, -1)]
+                up = -((g - g1) * w2 * i1 + z * g1 * along) / (i1 + g1 * g1)
+                normal, new_w2 = [ZERO, up], w2 - (g1 * up + z * along) / i1
+            new_w1 = w1 + sum(place.depth * q[r][1] for r, place in enumerate(places)) / i1
+            new_w3 = w3 - sum(place.radius * q[r][1] for r, place in enumerate(places)) / i3
+            slips = [
+                [v_h + along - z * new_w2, v_2 + across + place.depth * new_w1 - place.radius * new_w3]
+                for place in places
+            ]
             return normal, slips, (new_w1, new_w2, new_w3)
 
         for both in (True, False):
             for sticks in ((True, True), (True, False), (False, True), (False, False)):
                 if not both and sticks[0]:
                     continue
-                found = self.case(after, both, sticks)
+                found = self.case(after, both, sticks, gmpy2.sign(w2))
                 if found is not None:
                     outcomes.append((both, *found))
         distinct = []
@@ -171,31 +220,28 @@ class Reduced(Lying, slip_forms.Reduced):
             if not any(abs(outcome[3][0] - x[3][0]) + abs(outcome[3][2] - x[3][2]) < 1e-30 for x in distinct):
                 distinct.append(outcome)
         ((both, q, (_, slips, (n1, n2, n3)), _),) = distinct
-        slips = [[ZERO, ZERO] if gmpy2.hypot(*s) < mpfr("1e-40") else s for s in slips]
-        v_h, v_2 = u_h + w2, u_2 - l * w1 + w3
+        slips = [[ZERO, ZERO] if gmpy2.hypot(*u) < mpfr("1e-40") else u for u in slips]
         a_h, a_2 = v_h + q[0][0] + q[1][0], v_2 + q[0][1] + q[1][1]
         own = (
             v_h**2 - a_h**2 + v_2**2 - a_2**2 + i1 * (w1**2 - n1**2 + w2**2 - n2**2) + i3 * (w3**2 - n3**2)
         ) / 2
-        # the vertical velocity of the centre is ell w2 before, and that or its mirror image after
-        lost = own + l * l * (w2**2 - n2**2) / 2
+        # the vertical velocity of the centre
+        lost = own + (g * g * w2**2 - g1 * g1 * n2**2) / 2
         if both:
-            new = [*slips[0], *slips[1], heat + lost, self.work, t, n1, n3, *pose]
-            return new, "lies"
-        new = [*slips[0], heat + lost, t, gmpy2.const_pi() / 2, n1, n2, n3, *pose]
-        # the slip of the old rim is that of its lowest point; of the other one it is told anew
-        new = self.other(new)
-        new[:2] = scaled(-1, slips[1])
+            return [*slips[0], *slips[1], heat + lost, self.work, t, n1, n3, *pose], "lies"
+        theta = gmpy2.atan2(self.border.s, self.border.c)
+        new = self.other([*slips[0], heat + lost, t, theta, n1, n2, n3, *pose])
+        new[:2] = slips[1]
         return new, "rocks"
 
-    def case(self, after, both, sticks):
-        """The impulses where these rims stick or slip, by Newton's steps from several starts; or None."""
+    def case(self, after, both, sticks, sense):
+        """The impulses where these circles stick or slip, by Newton's steps from several starts; or None."""
         rims = (0, 1) if both else (1,)
         mu, tau = self.mu, 2 * gmpy2.const_pi()
         slipping = [r for r in rims if not sticks[r]]
 
         def impulses(x):
-            """Of unknowns: both parts of a rim that sticks, and the direction of one that slips."""
+            """Of unknowns: both parts of a circle that sticks, and the direction of one that slips."""
             q, at = [[ZERO, ZERO], [ZERO, ZERO]], 0
             for r in rims:
                 if sticks[r]:
@@ -253,7 +299,7 @@ class Reduced(Lying, slip_forms.Reduced):
                 continue
             q = impulses(x)
             normal, slips, ws = made = after(both, q)
-            good = all(normal[r] >= 0 for r in rims) and (both or ws[1] < 0)
+            good = all(normal[r] >= 0 for r in rims) and (both or ws[1] * sense > 0)
             for r in rims:
                 if sticks[r]:
                     good = good and gmpy2.hypot(*q[r]) <= mu * normal[r] * (1 + mpfr("1e-40"))
@@ -264,10 +310,11 @@ class Reduced(Lying, slip_forms.Reduced):
                 return q, made, ws
         return None
 
-    def read(self, y, lean=None):
+    def told(self, y):
         if len(y) == 13:
             w1, w3, *pose = y[7:]
-            return [gmpy2.const_pi() / 2, w1, ZERO, w3, *y[:4], y[4], y[5], *pose]
+            theta = gmpy2.atan2(self.border.s, self.border.c)
+            return [theta, w1, ZERO, w3, *y[:4], y[4], y[5], *pose]
         return [*y[4:8], y[0], y[1], mpfr("nan"), mpfr("nan"), y[2], self.work, *y[8:]]
 
 
