@@ -233,7 +233,8 @@ def test_two_equal_rims_make_the_motion_of_a_body_that_lies_on_its_side():
     case, _ = of("cylinder falls and lies")
     known, _ = of("cylinder falls and lies", table("lying.json"))
     with mp.workdps(40):
-        assert [row.kind.replace("round", "straight") for row in case.rows] == [row.kind for row in known.rows]
+        kinds = [row.kind.replace("round", "straight") for row in case.rows]
+        assert kinds == [row.kind for row in known.rows]
         for a, b in zip(case.rows, known.rows, strict=True):
             assert a.circle == 0  # else that table tells the state from the other end
             for name in (*STATE, "t", "heat", "phi", "psi", "x", "y"):
@@ -261,7 +262,8 @@ def test_what_rolls_round_its_apex_rests_when_its_closed_solution_says():
     with mp.workdps(40):
         case, rows = of("cup rests by rolling resistance in air")
         begin, stop = start_of(case), rows["rests"]
-        inertia, air, resistance = rolling(case, 0, begin.theta), mpf(case.losses["air"]), mpf(case.losses["rolling"])
+        inertia = rolling(case, 0, begin.theta)
+        air, resistance = (mpf(case.losses[name]) for name in ("air", "rolling"))
         assert abs(stop.t - inertia / air * mp.log(1 + air * mpf(case.apex) / resistance)) < TIGHT * stop.t
         case, rows = of("rolling resistance and drilling stop a cup")
         begin, stop = rows["round"], rows["rests"]

@@ -96,7 +96,9 @@ class Profile:
         phase = super().equations(kind)
         s, c = self.axis(phase)
         phase.sine = s
-        phase.gaps = {o: self.gap(border, s, c) * (1 if o > self.k else -1) for o, border in self.neighbours()}
+        phase.gaps = {
+            o: self.gap(border, s, c) * (1 if o > self.k else -1) for o, border in self.neighbours()
+        }
         return phase
 
     def events(self, phase, kind):

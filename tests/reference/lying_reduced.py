@@ -124,9 +124,7 @@ class Reduced(Lying, slip_forms.Reduced):
                 forces = forces[::-1] if stuck else forces
             else:
                 forces = [[n * p[0], n * p[1], n] for n, p in zip(normals, pushes, strict=True)]
-            torque = [
-                forces[0][1] * ways[0][i] + forces[1][1] * ways[1][i] + couples[i] for i in (0, 1)
-            ]
+            torque = [forces[0][1] * ways[0][i] + forces[1][1] * ways[1][i] + couples[i] for i in (0, 1)]
             w1_rate, w3_rate = (row[0] * torque[0] + row[1] * torque[1] for row in answer)
             for i, row in enumerate(holding):
                 if held[i]:
@@ -149,7 +147,18 @@ class Reduced(Lying, slip_forms.Reduced):
     def lie(self, y):
         u_h, u_2, heat, t, _, w1, _, w3, *pose = y
         one, other = self.places
-        return [u_h, u_2, u_h, u_2 - (one.g - other.g) * self.turn_of(w1, w3), heat, self.work, t, w1, w3, *pose]
+        return [
+            u_h,
+            u_2,
+            u_h,
+            u_2 - (one.g - other.g) * self.turn_of(w1, w3),
+            heat,
+            self.work,
+            t,
+            w1,
+            w3,
+            *pose,
+        ]
 
     def rise(self, y):
         self.work = y[5]

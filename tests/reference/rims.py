@@ -129,10 +129,37 @@ def scenes():
     yield Scene("unequal balls spin and lie", balls, 0.3, (0,), (1.3, 0.5, 0, 0.4, 0.2, -0.3), 6, brief=0.02)
     yield lying("rounded frustum pivots", rounded, 0.3, (1, 0), (0.3, 0.25), (0.02, 0.1), 4)
     held = {"rolling": 0.03, "drilling": 0.02}
-    yield lying("rolling resistance and drilling stop a cup", cup, 0.3, either, (0.6, 1), (0.1, 0.4), 60, losses=held)
-    yield rolling("cup rests by rolling resistance in air", cup, 0.5, either, 1.5, 90, losses={"rolling": 0.02, "air": 0.03})
-    yield rolling("cup rolls round under viscous contour and quadratic air", cup, 0.5, either, 1.5, 20, losses={"viscous": 0.03, "air2": 0.02})
-    yield lying("dry contour and air on a frustum that slides", rounded, 0.2, either, (0.4, 0.6), (0.8, -0.5), 12, losses={"dry": 0.02, "air": 0.05})
+    yield lying(
+        "rolling resistance and drilling stop a cup", cup, 0.3, either, (0.6, 1), (0.1, 0.4), 60, losses=held
+    )
+    yield rolling(
+        "cup rests by rolling resistance in air",
+        cup,
+        0.5,
+        either,
+        1.5,
+        90,
+        losses={"rolling": 0.02, "air": 0.03},
+    )
+    yield rolling(
+        "cup rolls round under viscous contour and quadratic air",
+        cup,
+        0.5,
+        either,
+        1.5,
+        20,
+        losses={"viscous": 0.03, "air2": 0.02},
+    )
+    yield lying(
+        "dry contour and air on a frustum that slides",
+        rounded,
+        0.2,
+        either,
+        (0.4, 0.6),
+        (0.8, -0.5),
+        12,
+        losses={"dry": 0.02, "air": 0.05},
+    )
     yield Scene("frustum falls on a smooth table", cup, 0, (0,), (1.1, 0.6, 0, 0.4, 0.3, -0.2), 4)
     yield lying("frustum on a film", cup, 0.4, either, (0.5, 0.6), (0.8, -0.5), 8, law="viscous")
     yield lying("cup pivots by static friction", cup, 0.3, (1, 0), (0.3, 0.25), (0, 0), 4, static=0.45)
