@@ -21,9 +21,9 @@ and friction impulses Q that oppose the slip after it, Q = -mu P u/|u|, or hold 
 """
 
 import gmpy2
+from borders import Profile
 from gmpy2 import mpfr
 from phases import Phase
-from borders import Profile
 from series import Node
 
 LAWS = ("dry", "viscous", "rolling", "drilling", "air", "air2")

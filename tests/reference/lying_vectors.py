@@ -29,7 +29,7 @@ class Vectors(Lying, slip_forms.Vectors):
     def gap(self, border, s, c):
         """How much lower the lower circle reaches; at a smooth joint, its slope."""
         da, dl, dr = border.apart
-        return (dl * s - da * c) * (1 if dr < 0 else -1) if border.smooth else da * s + dl * c + dr
+        return (dl * s - da * c) * (1 if dr > 0 else -1) if border.smooth else da * s + dl * c + dr
 
     def lying(self, kind, signs):
         tape = self.tape()

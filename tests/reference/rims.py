@@ -27,6 +27,7 @@ formulations in all numbers of a motion, over 1 or the number if that is more.
 
 import math
 import pathlib
+from itertools import pairwise
 
 from borders import Border
 from gmpy2 import mpfr
@@ -43,7 +44,7 @@ def solid(points):
     """Circles and moments of a uniform solid whose generator goes straight through points (radius, height)."""
     m = height = i3 = i1 = 0.0
     node = math.sqrt(0.6) / 2
-    for (r, z), (r1, z1) in zip(points, points[1:], strict=False):
+    for (r, z), (r1, z1) in pairwise(points):
         for at, weight in ((0.5 - node, 5 / 18), (0.5, 8 / 18), (0.5 + node, 5 / 18)):
             q, h, part = r + (r1 - r) * at, z + (z1 - z) * at, weight * (z1 - z)
             m, height = m + part * q**2, height + part * q**2 * h
@@ -112,7 +113,7 @@ def scenes():
     balls = ([(0, 0.609375, 1), (0, -1.190625, 0.8)], 1.0768616780, 0.3512380952)
     hemisphere = ([(0, -0.375, 1), (1, -0.375, 0)], 83 / 320, 0.4)
     rounded = ([(0.6, 1, 0.2), (0.9, -0.8, 0.1)], 0.5, 0.38)
-    reversed_cup = ([(a, -l, rho) for a, l, rho in cup[0][::-1]], *cup[1:])
+    reversed_cup = ([(a, -depth, rho) for a, depth, rho in cup[0][::-1]], *cup[1:])
     long = tube(2.5, 0.0)
     equal = ([(1, 2.5, 0), (1, -2.5, 0)], *long[1:3])
 
