@@ -4,6 +4,8 @@
 
 mod big_integers;
 mod circles;
+mod zz;
+mod circles_reference;
 mod common;
 mod custom;
 mod custom_stones;

@@ -86,9 +86,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.turns_over();
         }
         self.lays_down();
-        self.of.state = State { theta: self.of.body.theta_end(), w2: 0.0, ..self.of.state };
+        let [w1, w3] = [self.at[W1], self.at[W3]];
+        self.of.state = State { theta: self.of.body.theta_end(), w1, w2: 0.0, w3 };
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
-        let flat @ [w1, w3, u_h, u_2] = [self.at[W1], self.at[W3], self.at[UH], self.at[U2]];
+        let flat @ [.., u_h, u_2] = [w1, w3, self.at[UH], self.at[U2]];
         let [_, other] = flow.law.other_slip(flat);
         let turns = 0.5 * flow.law.border.span() * flow.law.turning(w1, w3)[0];
         let size = STILL_SLIP * [turns, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
@@ -122,7 +123,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 match (here >= 0.0, there >= 0.0) {
                     (true, true) if room > 0.0 => self.begins_stance(flow, Stance::Slips),
                     (true, true) => Next::Ends(Ending::Painleve),
-                    (carries, _) => self.rises_on(carries == (room > 0.0)),
+                    (carries, _) => self.rises_on(carries == (room > 0.0), false),
                 }
             }
             [here, _] => {
@@ -196,7 +197,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let slips = |[n, across, _]: [f64; 3]| across.abs() > flow.fixed * n * (1.0 + GRACE);
             if let Some(lower) = (0..2).find(|k| force[*k][0] < 0.0) {
                 // The other end carries the body, and this one rises.
-                return self.rises_on(lower == 1);
+                return self.rises_on(lower == 1, true);
             }
             let pull = law.pulls_to_apex(flat(&self.at));
             if pull.abs() > flow.holds_together(&force) {
@@ -220,11 +221,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(stance.kind())
     }
 
-    /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`.
-    fn rises_on(&mut self, here: bool) -> Next {
-        if !here {
-            self.turns_over();
-        }
+    /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
+    /// does not slip.
+    fn rises_on(&mut self, here: bool, still: bool) -> Next {
+        self.turns_to(!here, still);
         self.lays_down();
         self.of.state.w2 = 0.0;
         // As told from the other rim a slip of zero is a rounding error.
@@ -239,6 +239,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         // The friction of one rim alone may press it into the table: an impact stops the slip or raises the other rim.
         if self.jams_here(slip) { Next::Ends(Ending::Painleve) } else { Next::Slips }
+    }
+
+    /// Changes to the view from the other rim, if `other`. A rim that is `still` has a slip of exactly zero, whatever the
+    /// rounding of the slip of the rim from which it was seen.
+    fn turns_to(&mut self, other: bool, still: bool) {
+        if other {
+            self.turns_over();
+        }
+        if still {
+            (self.at[UH], self.at[U2]) = (0.0, 0.0);
+        }
     }
 
     /// The phase in which one rim rests, if a rocking that has begun at theta = pi/2 ends in it so soon that it is
@@ -301,9 +312,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (alone && walk.lifts(found)).then_some(found)
         });
         if let Some(found) = found {
-            if other {
-                self.turns_over();
-            }
+            self.turns_to(other, true);
             self.at[W2] = 0.0;
             return after_rest(found);
         }
@@ -312,22 +321,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let one = walk.of.slide.slips(walk.at.angle(), [w1, 0.0, w3], walk.at.slip(), None).0;
             one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0
         });
-        if slides {
-            return self.rises_on(other);
-        }
-        let (at, state) = (self.at, self.of.state);
-        let slips = flow.law.other_slip(flat(&at))[1].abs().max(at[U2].abs());
-        let next = self.slips_off_two(flow, other, None);
-        if !matches!(next, Next::Ends(Ending::Painleve)) || slips > STOPS_AT_ONCE {
-            return next;
-        }
-        if other {
-            self.turns_over();
-        }
-        (self.at, self.of.state) = (at, state);
-        self.claims(slips);
-        self.rolls_along(&flow.law);
-        self.begins_stance(flow, Stance::Rolls)
+        if slides { self.rises_on(other, false) } else { self.slips_off_two(flow, other, None) }
     }
 
     /// What is found while the walk is seen from the other rim, if `other`.
@@ -365,13 +359,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// `against` is the direction of a slip that begins continuously.
     #[inline(never)]
     fn slips_off_two(&mut self, mut flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
-        if other {
-            self.turns_over();
-            // The laws are those as seen from this rim.
-            let Some(seen) = self.flat() else { return Next::Ends(Ending::Painleve) };
-            flow = seen;
-        }
-        (self.at[UH], self.at[U2]) = (0.0, 0.0);
+        self.turns_to(other, true);
         flow.stance = Stance::Slips;
         let mut free = flow;
         free.turn_to(Ways::of(self.at[W3], self.at[W1]));
@@ -483,7 +471,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let next = match halt {
             Halt::Time | Halt::Pause => return None,
             Halt::Rises | Halt::Changes => {
-                self.rocks_to_pivot().unwrap_or_else(|| self.rises_on(halt == Halt::Rises))
+                let here = halt == Halt::Rises;
+                let still = phase.flow.stance == Stance::Pivots { other: !here };
+                self.rocks_to_pivot().unwrap_or_else(|| self.rises_on(here, still))
             }
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
