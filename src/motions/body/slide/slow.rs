@@ -4,7 +4,7 @@ use crate::laws::body::Rim;
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
 use crate::laws::loss::Ways;
-use crate::laws::state::{drilling_of, rolling_of, spin_of};
+use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::walk::numbers::{HEAT, PHI, PSI, TIME, X, Y, loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
@@ -45,6 +45,7 @@ impl BodySlips {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
             let taped = law.map(|x| tape.number(x));
+            let (angle @ (s, c), [here, _]) = (taped.border.angle, taped.border.circles);
             let y = [w1, w3, slip[0], slip[1]];
             let [mu, _] = taped.strength;
             let [u, v] = taped.other_slip(y);
@@ -54,13 +55,13 @@ impl BodySlips {
             let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
             let angle = taped.border.angle;
             if poses(count) {
-                let spin = spin_of(angle, w1, w3);
-                let radius = taped.border.circles[0].radius;
-                more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
+                let precession = w1 / s;
+                let spin = w3 - c * precession;
+                more.extend([precession, spin, slip[0], slip[1] + here.radius * spin]);
             }
             if loses(count) {
                 lost = Some(more.len());
-                let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
+                let (drilling, rolling) = (drilling_of(angle, w1, w3), rolling_of(angle, w1, w3));
                 more.push(at.couple[1] * rolling - at.couple[0] * drilling);
             }
             let still = tape.number(0.0);
