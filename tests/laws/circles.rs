@@ -78,7 +78,7 @@ fn a_body_in_another_unit_of_length_has_the_same_states_and_moves_the_same_way()
 }
 
 /// A uniform frustum of these radii at its lower and upper end, and of this height.
-fn frustum([r, q]: [f64; 2], height: f64) -> Body {
+pub fn frustum([r, q]: [f64; 2], height: f64) -> Body {
     let mut sums = [0.0; 4];
     let (nodes, weights) = (
         [-0.932_469_514_203_152, -0.661_209_386_466_264_5, -0.238_619_186_083_196_9],

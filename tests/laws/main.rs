@@ -7,6 +7,7 @@ mod circles;
 mod zz;
 mod circles_reference;
 mod common;
+mod cups;
 mod custom;
 mod custom_stones;
 mod drift;

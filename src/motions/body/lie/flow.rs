@@ -67,8 +67,8 @@ pub(crate) struct LyingFlow<G = ()> {
     pub stance: Stance,
     /// The sign of w1 in a pivot.
     pub turn: f64,
-    /// The largest couples with which dry losses hold w1 and w3.
-    pub limits: [f64; 2],
+    /// The largest couples with which dry losses hold w_z and w_h under the whole weight at this rim, and at the other one.
+    limits: [[f64; 2]; 2],
     /// The coefficient of static friction.
     pub fixed: f64,
     /// The speed below which a slip counts as zero.
@@ -91,7 +91,7 @@ impl<G: Own> LyingFlow<G> {
             sloped: law.map(Dual::constant),
             stance: Stance::Slips,
             turn: 0.0,
-            limits: law.limits([0.5; 2]),
+            limits: [law.limits([1.0, 0.0]), law.limits([0.0, 1.0])],
             fixed,
             over,
             soft,
@@ -113,9 +113,27 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
+    /// Whether dry losses resist w_z and w_h.
+    fn resists(&self) -> [bool; 2] {
+        [0, 1].map(|i| self.limits[0][i].max(self.limits[1][i]) > 0.0)
+    }
+
+    /// The largest couples with which dry losses hold w_z and w_h under these forces.
+    fn limits_under<T: Real>(&self, force: &[[T; 3]; 2]) -> [T; 2] {
+        let ([[n, ..], [m, ..]], [here, there]) = (force, self.limits);
+        let one = n.splat(1.0);
+        [0, 1].map(|i| {
+            if here[i] == there[i] {
+                one.splat(here[i])
+            } else {
+                *n * one.splat(here[i]) + *m * one.splat(there[i])
+            }
+        })
+    }
+
     /// Sets the signs of these w1 and w3, and holds those that are at rest and that dry losses resist.
     pub fn holds_all<const N: usize>(&mut self, y: &[f64; N]) {
-        let [resists, resists_rolling] = self.limits.map(|limit| limit > 0.0);
+        let [resists, resists_rolling] = self.resists();
         let [drilling, rolling] = self.law.turning(y[W1], y[W3]);
         let mut ways = Ways::of(rolling, drilling);
         if drilling == 0.0 && resists && self.stance != Stance::Rolls {
@@ -158,8 +176,9 @@ impl<G: Own> LyingFlow<G> {
 
     /// The couple that holds w1 or w3, and its limit.
     fn needs<const N: usize>(&self, part: Resting, y: &[f64; N], way: [f64; 2]) -> [f64; 2] {
-        let [m1, m3] = self.lain_along(y, way).couple;
-        if part == Resting::Contour { [-m3, self.limits[1]] } else { [m1, self.limits[0]] }
+        let Lain { couple: [m1, m3], force, .. } = self.lain_along(y, way);
+        let [drilling, rolling] = self.limits_under(&force);
+        if part == Resting::Contour { [-m3, rolling] } else { [m1, drilling] }
     }
 
     fn lain_of<T: Real>(&self, law: &Lying<T>, y: Flat<T>) -> Lain<T> {
@@ -210,9 +229,10 @@ impl<G: Own> LyingFlow<G> {
         let (held, Ways { contour, drilling, .. }) = (law.held(), self.ways());
         let angle = law.border.angle;
         let turning = [drilling_of(angle, y[0], y[1]), -rolling_of(angle, y[0], y[1])];
+        let (limits, resist) = (self.limits_under(&at.force), self.resists());
         let hold = |i: usize| {
-            let (needs, way) = ([at.couple[i], one.splat(self.limits[i])], one.splat([drilling, contour][i]));
-            let resists = self.limits[i] > 0.0;
+            let (needs, way) = ([at.couple[i], limits[i]], one.splat([drilling, contour][i]));
+            let resists = resist[i];
             margin_of_way((held[i], needs), (resists, way), turning[i], one.splat(SLACK))
         };
         let fixed = one.splat(self.fixed);
@@ -339,10 +359,13 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         let [here, there] = self.speeds(y);
         let slips = self.stance == Stance::Slips && self.law.dry;
         let per_slip = if slips { per_speed.max(1e3 / here.min(there)) } else { per_speed };
-        let per_turn = if slips { per_speed.max(1e3 * self.law.border.span() / there) } else { per_speed };
+        // The other rim slips by as much as w_z times the distance of both.
+        let ((s, c), turns) = (self.law.border.angle, 1e3 * self.law.border.span() / there);
+        let per_turn = |share: f64| if slips { per_speed.max(turns * share.abs()) } else { per_speed };
         let per = |i: usize| match i {
             0 | 1 | 7 => per_tol,
-            2 => per_turn,
+            2 => per_turn(s),
+            4 => per_turn(c),
             5 | 6 => per_slip,
             _ => per_speed,
         };

@@ -62,14 +62,16 @@ const SLIPS_FASTER: f64 = 1e-11;
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
     fn flat(&self) -> Option<LyingFlow<G>> {
-        let friction = match self.ask.table {
-            Table::Rubs(friction) => friction,
-            Table::Rolling { mu } if self.at[W1] == 0.0 && self.at[UH] == 0.0 && self.at[U2] == 0.0 => {
-                Friction::coulomb(mu.min(1e100))
-            }
-            _ => return None,
+        let (friction, rolls) = match self.ask.table {
+            Table::Rubs(friction) => (friction, false),
+            Table::Rolling { mu } => (Friction::coulomb(mu.min(1e100)), true),
+            Table::Smooth => return None,
         };
         let law = Lying::on(&self.of.body, &friction, &self.ask.losses);
+        let moves = [law.turning(self.at[W1], self.at[W3])[0], self.at[UH], self.at[U2]];
+        if rolls && moves != [0.0; 3] {
+            return None;
+        }
         let fixed = match friction {
             Friction::Coulomb { fixed, .. } => fixed,
             Friction::Viscous { .. } => 0.0,
@@ -91,15 +93,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
         let flat @ [.., u_h, u_2] = [w1, w3, self.at[UH], self.at[U2]];
         let [_, other] = flow.law.other_slip(flat);
-        let turns = 0.5 * flow.law.border.span() * flow.law.turning(w1, w3)[0];
-        let size = STILL_SLIP * [turns, w3, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        // The time of slower slips is lost in the rounding of theta.
-        let over = if self.does_not_advance() { STOPS_AT_ONCE } else { size };
-        let mut still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= over);
-        let slow = [u_2, other].iter().all(|across| flow.law.dry && u_h.hypot(*across) <= STOPS_AT_ONCE);
-        if slow && still == [false; 2] && !self.slips_soundly(&mut flow) {
-            still = [true; 2];
-        }
+        let [drilling, rolling] = flow.law.turning(w1, w3);
+        let turns = 0.5 * flow.law.border.span() * drilling;
+        let size = STILL_SLIP * [turns, rolling, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
         for (sticks, across) in still.into_iter().zip([u_2, other]) {
             if sticks {
                 self.claims(u_h.hypot(across));
@@ -358,11 +355,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// A slip of the rim at rest, from which the state is seen from now on, while the other rim slips as well.
     /// `against` is the direction of a slip that begins continuously.
     #[inline(never)]
-    fn slips_off_two(&mut self, mut flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
+    fn slips_off_two(&mut self, flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
         self.turns_to(other, true);
+        // The circles of the other view are those of this one in the other order.
+        let Some(mut flow) = (if other { self.flat() } else { Some(flow) }) else {
+            return Next::Ends(Ending::Side);
+        };
         flow.stance = Stance::Slips;
         let mut free = flow;
-        free.turn_to(Ways::of(self.at[W3], self.at[W1]));
+        let [drilling, rolling] = flow.law.turning(self.at[W1], self.at[W3]);
+        free.turn_to(Ways::of(rolling, drilling));
         flow.holds_all(&self.at);
         let held = self.way_off(&flow, against);
         // A motion that dry losses cannot hold in this slip, or without which there is none, begins with it.
@@ -498,6 +500,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                     let law = &flow.law;
                     let mut turning = law.turning(self.at[W1], self.at[W3]);
                     turning[usize::from(halt == Halt::Contour)] = 0.0;
+                    if flow.stance == Stance::Rolls {
+                        turning[0] = 0.0;
+                    }
                     [self.at[W1], self.at[W3]] = law.turned_by(turning);
                     self.sets_state();
                     flow.sets_ways(&self.at);
