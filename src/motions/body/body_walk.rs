@@ -22,10 +22,11 @@ use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Couples;
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::Flow;
-use crate::motions::walk::numbers::{COS, HEAT, SIN, TIME, leans_over, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, leans_over, poses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
+use core::f64::consts::PI;
 
 /// The walk of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize, G = ()> = Walk<'a, BodyPhases<G>, N>;
@@ -112,6 +113,10 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
         of.uniform = !G::IS && !poses(N) && knows(body, ask);
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.made.path.view = body.view();
+        if poses(N) && walk.made.path.view.over {
+            // From the lower end, from which a pose is told, phi starts at 0.
+            walk.at[PHI] = PI;
+        }
         walk.next = Some(match aloft {
             Some(aloft) => walk.starts_in_air(aloft),
             None => walk.first_phase()?,
