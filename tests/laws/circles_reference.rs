@@ -259,8 +259,8 @@ impl Case {
                 "pivots" => Kind::Pivoting,
                 "round" => Kind::RollingOnItsSide,
                 "slips" | "passes" => Kind::Slipping,
-                "rises" | "rocks" | "rolls" if row.told.slip == [0.0; 2] => Kind::Rolling,
-                "rises" | "rocks" | "rolls" => Kind::Slipping,
+                "rises" | "rocks" | "rolls" | "joint" if row.told.slip == [0.0; 2] => Kind::Rolling,
+                "rises" | "rocks" | "rolls" | "joint" => Kind::Slipping,
                 _ => continue,
             };
             found.pop_if(|last| last.0.time == row.time);
@@ -280,10 +280,11 @@ impl Row {
     }
 }
 
-/// All cases, told from both ends of the body.
+/// All cases, told from both ends of the body; for two equal rims these are not two ends but two rims.
 fn each_case(mut check: impl FnMut(&Case, &Motion)) -> usize {
     let mut count = 0;
-    for case in table().into_iter().chain(table().into_iter().map(Case::turned)) {
+    let turned = table().into_iter().filter(|case| case.name != "cylinder falls and lies").map(Case::turned);
+    for case in table().into_iter().chain(turned) {
         check(&case, &case.rolled());
         count += 1;
     }
@@ -317,7 +318,7 @@ fn states_slips_heat_and_poses_are_those_of_the_references() {
             );
         }
     });
-    assert!(count >= 25, "{count}");
+    assert!(count >= 39, "{count}");
 }
 
 #[test]
@@ -360,5 +361,5 @@ fn phases_begin_and_motions_end_where_those_of_the_references_do() {
             assert_eq!(m.ending(), Ending::Done, "{}", case.name);
         }
     });
-    assert!(phases >= 20 && rests >= 4, "{phases}, {rests}");
+    assert!(phases >= 60 && rests >= 4, "{phases}, {rests}");
 }

@@ -620,6 +620,16 @@ pub(crate) fn tilt((s, c): (f64, f64), angle: (f64, f64)) -> f64 {
     s * angle.1 - c * angle.0
 }
 
+/// Inclinations change more slowly than this where a body just leaves a border.
+const LEAVES: f64 = 1e-9;
+
+/// How far beyond a border an inclination may be by the roundings of its sine and cosine, where it leaves the border at the
+/// rate `away` and has not landed there again. At a right angle the cosine has all its digits.
+pub(crate) fn rounding_at<T: Real>(border: f64, away: T) -> T {
+    let leaves = border != FRAC_PI_2 && away.splat(-LEAVES).is_lt(away);
+    away.splat(if leaves { 4.0 * f64::EPSILON } else { 0.0 })
+}
+
 /// Sine and cosine of an inclination at which something lands; those of a right angle are exact.
 pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
     if theta == FRAC_PI_2 { (1.0, 0.0) } else { theta.sin_cos() }

@@ -335,7 +335,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         found
     }
 
-    fn rests_here(&self) -> Standstill {
+    pub(super) fn rests_here(&self) -> Standstill {
         let state = State { w2: 0.0, ..self.of.state };
         standstill(&self.of.body, &state, &self.friction(), self.of.couples(&self.ask))
     }

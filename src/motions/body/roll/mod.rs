@@ -36,6 +36,8 @@ pub(crate) const BRIEF_ROLLING_STEPS: u64 = 64;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
+/// Distance, rate and acceleration with which it leaves a border that is no right angle slowly.
+const SLOW_RISE: f64 = 1e-4;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Computes a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
@@ -161,14 +163,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(())
     }
 
-    /// Whether the body returns to its other rim so soon that the first integrals would lose the digits of the height:
-    /// theta is known to 1e-16, and the hop is low.
+    /// Whether the body returns to its other rim so soon, or leaves it so slowly, that the first integrals would lose the digits
+    /// of the height: theta is known to 1e-16, and the hop is low.
     fn hops_low(&self) -> bool {
         let (c, rises) = (self.tilt(self.at.angle()), self.at[W2]);
         if self.ask.restitution.is_none() || c > LOW_HOP || rises > LOW_HOP || !self.has_two_rims() {
             return false;
         }
         let falls = -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
+        if self.of.body.has_row() && c.max(rises.abs()).max(falls.abs()) < SLOW_RISE {
+            return true;
+        }
         if rises > 0.0 { rises * rises < LOW_HOP * falls } else { rises * rises + falls * c > 0.0 }
     }
 

@@ -2,7 +2,7 @@
 
 use super::standstill::vanished;
 use super::{Own, Slide, contact_velocity};
-use crate::laws::body::{Shape, landing_angle};
+use crate::laws::body::{Shape, landing_angle, rounding_at};
 use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::loss::{Holds, Law, OwnCouple};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
@@ -90,12 +90,13 @@ impl<L: Own> Slide<L> {
             let (sine, cosine) = landing_angle(theta);
             s.splat(sine) * c - s.splat(cosine) * s
         };
-        let face = match self.range[0] {
-            low if low > 0.0 => -border(low),
+        let [low, high] = self.range;
+        let face = match low {
+            low if low > 0.0 => rounding_at(low, -w2) - border(low),
             _ if self.ball => one,
             _ => s - s.splat(self.flat),
         };
-        let side = if self.range[1] < PI { border(self.range[1]) } else { one };
+        let side = if high < PI { border(high) + rounding_at(high, w2) } else { one };
         let of_losses = only.is_none_or(|i| i > 3);
         let losses = law.losses.as_ref().filter(|_| loses(N) && of_losses);
         let holds = losses.is_some_and(|losses| losses.holds() != Holds::default());

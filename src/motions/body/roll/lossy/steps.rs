@@ -2,7 +2,7 @@
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
 use super::{LossyFlow, REST};
-use crate::laws::body::landing_angle;
+use crate::laws::body::{landing_angle, rounding_at};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::{Contact, grip};
 use crate::laws::loss::{COUNT, Law, OwnCouple, rolling_growth};
@@ -114,13 +114,13 @@ impl<G: Own> LossyFlow<G> {
         };
         let [low, high] = self.range;
         let face = if low > 0.0 {
-            -border(low, true)
+            rounding_at(low, -w2) - border(low, true)
         } else if self.ball {
             one
         } else {
             s - lands_at(law.rates.reduced().shape.i1, (s, c), [w[0], w2], acted.w[1], endless)
         };
-        let side = border(high, high < PI);
+        let side = border(high, high < PI) + rounding_at(high, w2);
         let [normal, along, across] = acted.force;
         let square = along * along + across * across;
         let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
