@@ -36,7 +36,8 @@ pub(crate) const BRIEF_ROLLING_STEPS: u64 = 64;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
-/// Distance, rate and acceleration with which it leaves a border that is no right angle slowly.
+/// A body this close to a border that is no right angle is on it, and leaves it slowly below this rate.
+const ON_BORDER: f64 = 1e-15;
 const SLOW_RISE: f64 = 1e-4;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
@@ -171,7 +172,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return false;
         }
         let falls = -Contact::Rolling.derivative(&self.of.body, &self.of.state).w2;
-        if self.of.body.has_row() && c.max(rises.abs()).max(falls.abs()) < SLOW_RISE {
+        if self.of.body.has_row() && c.abs() < ON_BORDER && rises.abs() < SLOW_RISE {
             return true;
         }
         if rises > 0.0 { rises * rises < LOW_HOP * falls } else { rises * rises + falls * c > 0.0 }

@@ -13,9 +13,9 @@ use crate::numbers::{Real, Series};
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
-    /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
-    /// law was recorded.
-    one: Option<Rim<f64>>,
+    /// The rim of a body that slips on one, and the signs of the motions that its dry losses resist, for which the law was
+    /// recorded.
+    one: Option<[f64; 3]>,
     ways: Option<Ways>,
     /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
@@ -36,9 +36,9 @@ impl BodySlips {
         }
     }
 
-    /// Whether these are the slips of this body on one rim under this law.
+    /// Whether these are the slips on this rim under this law.
     pub fn are_under(&self, law: &Slipping<f64>) -> bool {
-        self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
+        self.one == Some(sizes(law)) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
     fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
@@ -93,7 +93,7 @@ impl BodySlips {
             let [d1, d2, d3] = at.w;
             SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
         });
-        Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
+        Self { slips, one: Some(sizes(law)), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
 }
 
@@ -129,6 +129,12 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             angle: slow.angle,
         }))
     }
+}
+
+/// The sizes of the rim.
+fn sizes(law: &Slipping<f64>) -> [f64; 3] {
+    let Rim { ell, a, rho } = law.shape.rim;
+    [ell, a, rho]
 }
 
 /// The first `terms` coefficients of the sine and the cosine of an angle that grows from
