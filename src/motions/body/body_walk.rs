@@ -61,6 +61,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(crate) rolls_among: bool,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
+    /// The numbers after the last landings of a rocking at a border that is no right angle.
+    pub(super) rocked: Vec<Vec<f64>>,
     /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase<G>>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
@@ -202,6 +204,7 @@ impl<G: Own> BodyPhases<G> {
             #[cfg(feature = "many")]
             rolls_among: false,
             lossy: None,
+            rocked: Vec::new(),
             lying: None,
             takeoff: Takeoff::default(),
             struck: 0.0,

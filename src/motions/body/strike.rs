@@ -452,6 +452,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             {
                 return next;
             }
+            if rises < ROCKED
+                && let Some((end, error)) = self.shrinks_out()
+            {
+                self.claims(error);
+                self.at = end;
+                return self.settles_on_side();
+            }
             if !self.hops_shortly() {
                 return self.touches_down();
             }

@@ -28,6 +28,12 @@ const TURNS_SLIP: f64 = 3.0;
 /// The longest hop that two terms of its series give, over the time in which the body or its slip turns by a radian.
 const SHORT_HOP: f64 = 1e-4;
 
+/// Landings in three cycles of a rocking; the largest ratio of their velocities from cycle to cycle of which the rest is the
+/// sum; and the share by which that ratio may change.
+const LANDINGS: usize = 5;
+const MOST_RATIO: f64 = 0.99;
+const UNLIKE: f64 = 1e-3;
+
 /// The rates of a body that hops on a border.
 struct HopRates {
     w: [f64; 3],
@@ -167,5 +173,36 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.made.path.slipping += if slips { lasts } else { 0.0 };
         self.claims(turns * turns * turns);
         true
+    }
+    /// The numbers at the end of a rocking whose slips stop in its hops, so that all of them shrink by one ratio: the changes
+    /// from cycle to cycle are a geometric series. Also returns an error. None until three cycles have shown the ratio.
+    #[inline(never)]
+    pub(crate) fn shrinks_out(&mut self) -> Option<([f64; N], f64)> {
+        if !self.of.body.has_row() {
+            return None;
+        }
+        let all = &mut self.of.rocked;
+        all.push(self.at.to_vec());
+        if all.len() > LANDINGS {
+            all.remove(0);
+        }
+        let [first, _, before, other, now] = &all[..] else { return None };
+        // Landings on the other circle are seen from the other end.
+        let ratio = now[W2] / before[W2];
+        let steady = |ratio: f64, known: f64| (ratio / known - 1.0).abs();
+        let lasted = (now[TIME] - before[TIME]) / (before[TIME] - first[TIME]);
+        let unlike = steady(before[W2] / first[W2], ratio).max(steady(lasted, ratio));
+        let turned = other[COS].signum() != now[COS].signum();
+        if !(turned && ratio < MOST_RATIO && unlike < UNLIKE) {
+            return None;
+        }
+        let share = ratio / (1.0 - ratio);
+        let mut end: [f64; N] = core::array::from_fn(|i| now[i] + (now[i] - before[i]) * share);
+        (end[SIN], end[COS]) = self.of.body.border_angle();
+        end[W2] = 0.0;
+        let left = end[TIME] - now[TIME];
+        let error = left * (unlike / (1.0 - ratio) + left);
+        let seen = left < SOON_OVER || self.until().is_none_or(|t| t > end[TIME]);
+        seen.then_some((end, error))
     }
 }
