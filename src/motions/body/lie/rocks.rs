@@ -28,6 +28,8 @@ const TURNS_SLIP: f64 = 3.0;
 /// The longest hop that two terms of its series give, over the time in which the body or its slip turns by a radian.
 const SHORT_HOP: f64 = 1e-4;
 
+/// At a border that is no right angle a hop with a smaller w2 is as low as the roundings of theta.
+const LOST_HOP: f64 = 1e-8;
 /// Landings in three cycles of a rocking; the largest ratio of their velocities from cycle to cycle of which the rest is the
 /// sum; and the share by which that ratio may change.
 const LANDINGS: usize = 5;
@@ -86,8 +88,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
-        (share > 0.0 && left * fastest < SOON_OVER && turns < TURNED).then_some((end, left * turns))
+        // A hop that is lost in the roundings of theta has no later one.
+        let lost = self.of.body.has_row() && begin[W2] < LOST_HOP && left < TURNED;
+        let sums = left * fastest < SOON_OVER && turns < TURNED;
+        (share > 0.0 && (sums || lost)).then_some((end, left * if sums { turns } else { 1.0 }))
     }
+
     /// Whether the slip counts as zero.
     fn sticks_at_border(&self) -> bool {
         let [along, across] = self.at.slip();
