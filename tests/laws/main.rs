@@ -4,7 +4,6 @@
 
 mod big_integers;
 mod circles;
-mod zz;
 mod circles_reference;
 mod common;
 mod cups;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! v   = (L w2, V, -A w2),   V = A w3 - L w1      of the centre: the contact point rests
-//! F2  = -I3 w3'/A,   at a tip (A = rho = 0)  (w1/s) h w2 - L w1'
+//! F2  = -I3 w3'/A = V' + w1 w2 (L cot theta + A)
 //! Fh  = h w2' + g w2^2 - (w1/s) V
 //! N   = 1 + g w2' - g' w2^2
 //! ```
@@ -60,16 +60,8 @@ pub(crate) fn force_along<T: Real>(
 #[inline(always)]
 pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let [w1, w2, _] = w;
-    let (radius, turns) = (shape.rim.radius(angle), w1 / angle.0);
+    let along = force_along(shape, angle, w, dw, w1.splat(0.0));
     let [_, speed, _] = centre_velocity(shape, angle, w);
-    let across = shape.rim.height(angle) * dw[1] + shape.rim.lever(angle) * w2 * w2 - turns * speed;
-    let along = if radius.is_lt(radius.splat(f64::MIN_POSITIVE))
-        && shape.rim.rho.is_lt(radius.splat(f64::MIN_POSITIVE))
-    {
-        // A tip, which no friction spins.
-        turns * shape.rim.height(angle) * w2 - shape.rim.depth(angle) * dw[0]
-    } else {
-        -(shape.i3 * dw[2]) / radius
-    };
+    let across = shape.rim.height(angle) * dw[1] + shape.rim.lever(angle) * w2 * w2 - w1 / angle.0 * speed;
     [newton::normal(shape, angle, w2, dw[1]), along, across]
 }

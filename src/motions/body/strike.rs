@@ -22,7 +22,7 @@ use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::walk::Next;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3, lost};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -50,8 +50,6 @@ const SUMMED: f64 = 1e2;
 const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is computed hop by hop.
 const ROCKED: f64 = 1e-5;
-/// Roundings of theta at the landings of a rocking.
-const LOST_IN_THETA: f64 = 8.0;
 /// A smaller w2 after a landing is a rounding error.
 const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
@@ -426,56 +424,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             _ if self.at[W1] == 0.0 && self.at[W3] == 0.0 => Friction::coulomb(PERFECTLY_ROUGH),
             _ => return Next::Ends(Ending::Side),
         };
-        for hop in 0..MOST_IN_TURN {
-            (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
-            if self.at[W2] > 0.0 {
-                self.turns_over();
-            }
-            let falls = -self.at[W2];
-            if let Err(ending) = self.lands_without_bounce(&friction) {
-                return Next::Ends(ending);
-            }
-            let rises = self.at[W2];
-            if rises < ROCKED_OUT {
-                self.claims(rises * LASTS);
-                return self.settles_on_side();
-            }
-            if rises < ROCKED
-                && let Some((end, error)) = self.rocks_out()
-            {
-                self.claims(error);
-                self.at = end;
-                return self.settles_on_side();
-            }
-            if self.at[W2] < ROCKED
-                && let Some(next) = self.rocks_to_pivot()
-            {
-                return next;
-            }
-            if rises < ROCKED
-                && let Some((end, error)) = self.shrinks_out()
-            {
-                self.claims(error);
-                self.at = end;
-                return self.settles_on_side();
-            }
-            if !self.hops_shortly() {
-                return self.touches_down();
-            }
-            if hop == 0 {
-                // The rounding of theta was that of the hop before this one, and changes all that follow.
-                self.claims(LOST_IN_THETA * f64::EPSILON / (rises * (1.0 - rises / falls)));
-            }
+        (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
+        if self.at[W2] > 0.0 {
+            self.turns_over();
         }
-        self.gives_up(Limit::Impacts)
-    }
-
-    /// A landing on both rims without a bounce. The walk moves to the numbers after it.
-    fn lands_without_bounce(&mut self, friction: &Friction) -> Result<(), Ending> {
         let before = State { theta: self.of.body.theta_end(), ..self.of.state };
         let lift = self.of.takeoff.lift;
-        let landed = land_at(&self.of.body, &before, (self.at.slip(), lift), friction, &self.of.own)
-            .map_err(|_| Ending::Landing)?;
+        let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction, &self.of.own)
+        else {
+            let left = self.at[W2].abs();
+            if left > RATTLED {
+                return Next::Ends(Ending::Landing);
+            }
+            // What so slow a landing changes is an error.
+            self.claims(left * LASTS);
+            return self.settles_on_side();
+        };
         // The impact is told from the rim that lands.
         let (rims, carried) = (self.of.body.rims(), self.made.path.view.over);
         let from = self.aloft().on_other_rim(&rims);
@@ -486,7 +450,36 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let impulse = gained(&landing, [&from, &there]);
         self.claims(-landed.lost);
         self.records([&from, &there], !carried, Hit::BothRims, (impulse, landed.lost), true);
-        Ok(())
+        let rises = self.at[W2];
+        if rises < ROCKED_OUT {
+            self.claims(rises * LASTS);
+            return self.settles_on_side();
+        }
+        if rises < ROCKED
+            && let Some((end, error)) = self.rocks_out()
+        {
+            self.claims(error);
+            self.at = end;
+            return self.settles_on_side();
+        }
+        if self.at[W2] < ROCKED
+            && let Some(next) = self.rocks_to_pivot()
+        {
+            return next;
+        }
+        if rises < ROCKED
+            && let Some((end, error)) = self.shrinks_out()
+        {
+            self.claims(error);
+            let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT] + lost(y);
+            let taken = energy(&self.at) - energy(&end);
+            // The landings that are summed take what is missing.
+            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
+            self.claims(-taken);
+            self.at = end;
+            return self.settles_on_side();
+        }
+        self.touches_down()
     }
 
     /// Moves the walk to the numbers after a landing on both rims.

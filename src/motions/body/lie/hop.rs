@@ -93,15 +93,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Moves the walk to these numbers.
     fn hops_to(&mut self, y: [f64; N], chi: f64) {
         self.at = y;
-        self.of.state =
-            State { theta: self.of.body.theta_end() - chi, w1: y[W1], w2: y[W2], w3: y[W3] };
+        self.of.state = State { theta: self.of.body.theta_end() - chi, w1: y[W1], w2: y[W2], w3: y[W3] };
     }
 
     /// The numbers after this time of a hop, and chi.
     fn hopped(&self, begin: &[f64; N], t: f64, sticks: bool) -> ([f64; N], f64) {
-        let moved = |by: f64, rates: &[f64; N]| -> [f64; N] {
-            core::array::from_fn(|i| begin[i] + by * rates[i])
-        };
+        let moved =
+            |by: f64, rates: &[f64; N]| -> [f64; N] { core::array::from_fn(|i| begin[i] + by * rates[i]) };
         // The rate of chi is w2.
         let first = self.hop_rates(begin, 0.0, sticks);
         let a = moved(0.5 * t, &first);

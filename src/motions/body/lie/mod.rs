@@ -95,8 +95,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let [_, other] = flow.law.other_slip(flat);
         let [drilling, rolling] = flow.law.turning(w1, w3);
         let turns = 0.5 * flow.law.border.span() * drilling;
-        let size = STILL_SLIP * [turns, rolling, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
-        let still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= size);
+        let size =
+            STILL_SLIP * [turns, rolling, u_h, u_2].into_iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+        // The time of slower slips is lost in the rounding of theta.
+        let over = if self.does_not_advance() { STOPS_AT_ONCE } else { size };
+        let mut still = [u_2, other].map(|across| flow.law.dry && u_h.hypot(across) <= over);
+        let slow = [u_2, other].iter().all(|across| flow.law.dry && u_h.hypot(*across) <= STOPS_AT_ONCE);
+        if slow && still == [false; 2] && !self.slips_soundly(&mut flow) {
+            still = [true; 2];
+        }
         for (sticks, across) in still.into_iter().zip([u_2, other]) {
             if sticks {
                 self.claims(u_h.hypot(across));
@@ -224,12 +231,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.turns_to(!here, still);
         self.lays_down();
         self.of.state.w2 = 0.0;
-        // As told from the other rim a slip of zero is a rounding error.
-        let [u_h, u_2] = self.at.slip();
-        let fastest = [self.at[W1], self.at[W3]].into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
-        if self.of.slide.law.dry && u_h.hypot(u_2) <= STILL_SLIP * fastest {
-            self.stop_slip();
-        }
         let slip = self.at.slip();
         if slip == [0.0; 2] && self.of.slide.law.dry {
             return after_rest(Phases::rests(self));
@@ -318,7 +319,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let one = walk.of.slide.slips(walk.at.angle(), [w1, 0.0, w3], walk.at.slip(), None).0;
             one.room > 0.0 && one.force[0] > 0.0 && one.w[1] > 0.0
         });
-        if slides { self.rises_on(other, false) } else { self.slips_off_two(flow, other, None) }
+        if slides {
+            return self.rises_on(other, false);
+        }
+        let (at, state) = (self.at, self.of.state);
+        let slips = flow.law.other_slip(flat(&at))[1].abs().max(at[U2].abs());
+        let next = self.slips_off_two(flow, other, None);
+        if !matches!(next, Next::Ends(Ending::Painleve)) || slips > STOPS_AT_ONCE {
+            return next;
+        }
+        if other {
+            self.turns_over();
+        }
+        (self.at, self.of.state) = (at, state);
+        self.claims(slips);
+        self.rolls_along(&flow.law);
+        self.begins_stance(flow, Stance::Rolls)
     }
 
     /// What is found while the walk is seen from the other rim, if `other`.
@@ -335,7 +351,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         found
     }
 
-    pub(super) fn rests_here(&self) -> Standstill {
+    fn rests_here(&self) -> Standstill {
         let state = State { w2: 0.0, ..self.of.state };
         standstill(&self.of.body, &state, &self.friction(), self.of.couples(&self.ask))
     }

@@ -2,17 +2,13 @@
 //!
 //! ```text
 //! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
-//! a short hop at an inclination that is no right angle, with the rates at its middle:
-//!   lasts (2 w/gamma) (1 - bend), and ends with w (1 + bend),   bend = (2/3) (gamma at the middle/gamma - 1)
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
 //! ```
 //! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
 //! summed, and that time, times the angle by which a slow slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
-use crate::laws::contact::standstill::Standstill;
 use crate::laws::state::{State, spin_of};
-use crate::motions::Kind;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
 use crate::motions::walk::numbers::{
@@ -25,8 +21,6 @@ const SOON_OVER: f64 = 1e-6;
 /// it at a rate of up to this many times mu over its speed.
 const TURNED: f64 = 1e-2;
 const TURNS_SLIP: f64 = 3.0;
-/// The longest hop that two terms of its series give, over the time in which the body or its slip turns by a radian.
-const SHORT_HOP: f64 = 1e-4;
 
 /// At a border that is no right angle a hop with a smaller w2 is as low as the roundings of theta.
 const LOST_HOP: f64 = 1e-8;
@@ -35,18 +29,6 @@ const LOST_HOP: f64 = 1e-8;
 const LANDINGS: usize = 5;
 const MOST_RATIO: f64 = 0.99;
 const UNLIKE: f64 = 1e-3;
-
-/// The rates of a body that hops on a border.
-struct HopRates {
-    w: [f64; 3],
-    drift: [f64; 2],
-    warms: f64,
-    taken: f64,
-    /// The rates of phi, psi, x and y.
-    pose: [f64; 4],
-    /// The speed of a dry slip, by which friction turns it; else infinite.
-    speed: f64,
-}
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
@@ -64,12 +46,42 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
-            let (rates, rises) = (self.rates_at_border(), self.at[W2]);
-            slowest = slowest.min(rates.speed);
-            if rates.w[1] >= 0.0 {
+            let y = State { theta: self.of.body.theta_end(), w2: 0.0, ..self.of.state };
+            let (slip, rises) = (self.at.slip(), self.at[W2]);
+            let law = &self.of.slide.law;
+            let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
+            let w = [y.w1, 0.0, y.w3];
+            if law.dry && !sticks {
+                slowest = slowest.min(slip[0].hypot(slip[1]));
+            }
+            let (rate, drift, warms, taken) = if sticks {
+                let (rate, taken) = self.rolling_of(&y);
+                (rate, [0.0; 2], 0.0, taken)
+            } else {
+                let (at, taken) = self.of.slide.slips(self.of.body.border_angle(), w, slip, None);
+                (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
+            };
+            if rate[1] >= 0.0 {
                 return None;
             }
-            self.moves_by(&rates, 2.0 * rises / -rates.w[1]);
+            let lasts = 2.0 * rises / -rate[1];
+            for (i, rate) in
+                [(W1, rate[0]), (W3, rate[2]), (UH, drift[0]), (U2, drift[1]), (TIME, 1.0), (HEAT, warms)]
+            {
+                self.at[i] += lasts * rate;
+            }
+            if loses(N) {
+                self.at[N - 1] += lasts * taken;
+            }
+            if poses(N) {
+                let angle = self.of.body.border_angle();
+                let spin = spin_of(angle, y.w1, y.w3);
+                let over = [slip[0], slip[1] + self.of.slide.law.shape.rim.radius(angle) * spin];
+                let rates = pose_rates(self.at[PHI], [y.w1 / angle.0, spin], over);
+                for (number, rate) in self.at[PHI..].iter_mut().zip(rates) {
+                    *number += lasts * rate;
+                }
+            }
             self.at[W2] = -rises;
             let before =
                 State { theta: self.of.body.theta_end(), w1: self.at[W1], w2: -rises, w3: self.at[W3] };
@@ -94,92 +106,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (share > 0.0 && (sums || lost)).then_some((end, left * if sums { turns } else { 1.0 }))
     }
 
-    /// Whether the slip counts as zero.
-    fn sticks_at_border(&self) -> bool {
-        let [along, across] = self.at.slip();
-        self.of.slide.law.dry && along.hypot(across) <= self.of.slide.over()
-    }
-
-    /// The rates at the border at which another circle lands, without those that a hop takes back.
-    fn rates_at_border(&self) -> HopRates {
-        let [w1, w3, theta] = [self.at[W1], self.at[W3], self.of.body.theta_end()];
-        let (slip @ [along, across], law) = (self.at.slip(), &self.of.slide.law);
-        let (angle, speed) = (self.of.body.border_angle(), along.hypot(across));
-        let mut pose = [0.0; 4];
-        if poses(N) {
-            let spin = spin_of(angle, w1, w3);
-            let over = [along, across + law.shape.rim.radius(angle) * spin];
-            pose = pose_rates(self.at[PHI], [w1 / angle.0, spin], over);
-        }
-        if self.sticks_at_border() {
-            let (w, taken) = self.rolling_of(&State { theta, w1, w2: 0.0, w3 });
-            return HopRates { w, drift: [0.0; 2], warms: 0.0, taken, pose, speed: f64::INFINITY };
-        }
-        let (at, taken) = self.of.slide.slips(angle, [w1, 0.0, w3], slip, None);
-        let warms = -(at.force[1] * across + at.force[2] * along);
-        let speed = if law.dry { speed } else { f64::INFINITY };
-        HopRates { w: at.w, drift: at.u, warms, taken, pose, speed }
-    }
-
-    /// Moves the walk on by this time at these rates, but for w2.
-    fn moves_by(&mut self, rates: &HopRates, lasts: f64) {
-        let HopRates { w, drift, warms, taken, pose, .. } = *rates;
-        for (i, rate) in [(W1, w[0]), (W3, w[2]), (UH, drift[0]), (U2, drift[1]), (TIME, 1.0), (HEAT, warms)]
-        {
-            self.at[i] += lasts * rate;
-        }
-        if loses(N) {
-            self.at[N - 1] += lasts * taken;
-        }
-        if poses(N) {
-            self.at[PHI..].iter_mut().zip(pose).for_each(|(number, rate)| *number += lasts * rate);
-        }
-    }
-
-    /// Computes a short hop that begins at the border at which another circle lands, up to its landing there. Returns
-    /// whether there was one.
-    ///
-    /// An inclination is known to a rounding, in which such a hop is lost; at a right angle its cosine shows the hop.
-    #[inline(never)]
-    pub(crate) fn hops_shortly(&mut self) -> bool {
-        if !self.of.body.has_row() {
-            return false;
-        }
-        let (begin, rises) = (self.at, self.at[W2]);
-        let first = self.rates_at_border();
-        let lasts = 2.0 * rises / -first.w[1];
-        let fastest = [W1, W3, UH, U2].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
-        let turns = lasts * (fastest + self.of.slide.law.strength * TURNS_SLIP / first.speed);
-        let ends = self.until().is_some_and(|t| t <= begin[TIME] + lasts);
-        let slips = !self.sticks_at_border();
-        let holds = if slips {
-            self.of.slide.at_start(&State { w2: 0.0, ..self.of.state }, begin.slip()).is_none()
-        } else {
-            self.rests_here() == Standstill::Sticks
-        };
-        if ends || !holds || !(0.0..SHORT_HOP).contains(&turns) {
-            return false;
-        }
-        if !slips {
-            self.stop_slip();
-        }
-        self.begins_phase(if slips { Kind::Slipping } else { self.kind() });
-        self.moves_by(&first, 0.5 * lasts);
-        let middle = self.rates_at_border();
-        // The body falls back faster or more slowly than it has risen.
-        let bends = 2.0 / 3.0 * (middle.w[1] / first.w[1] - 1.0);
-        self.at = begin;
-        if !slips {
-            self.stop_slip();
-        }
-        let lasts = lasts * (1.0 - bends);
-        self.moves_by(&middle, lasts);
-        self.at[W2] = -(rises * (1.0 + bends));
-        self.of.state = State { w1: self.at[W1], w2: self.at[W2], w3: self.at[W3], ..self.of.state };
-        self.made.path.slipping += if slips { lasts } else { 0.0 };
-        self.claims(turns * turns * turns);
-        true
-    }
     /// The numbers at the end of a rocking whose slips stop in its hops, so that all of them shrink by one ratio: the changes
     /// from cycle to cycle are a geometric series. Also returns an error. None until three cycles have shown the ratio.
     #[inline(never)]
@@ -199,7 +125,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let lasted = (now[TIME] - before[TIME]) / (before[TIME] - first[TIME]);
         let unlike = steady(before[W2] / first[W2], ratio).max(steady(lasted, ratio));
         let turned = other[COS].signum() != now[COS].signum();
-        if !(turned && ratio < MOST_RATIO && unlike < UNLIKE) {
+        let slips = [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
+        if !(turned && slips && ratio < MOST_RATIO && unlike < UNLIKE) {
             return None;
         }
         let share = ratio / (1.0 - ratio);

@@ -4,7 +4,7 @@ use crate::laws::body::Rim;
 use crate::laws::contact::lying::Lying;
 use crate::laws::contact::slip::Slipping;
 use crate::laws::loss::Ways;
-use crate::laws::state::{drilling_of, rolling_of};
+use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use crate::motions::walk::numbers::{HEAT, PHI, PSI, TIME, X, Y, loses, poses};
 use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
@@ -13,9 +13,9 @@ use crate::numbers::{Real, Series};
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
     slips: SlowSlips<5>,
-    /// The rim of a body that slips on one, and the signs of the motions that its dry losses resist, for which the law was
-    /// recorded.
-    one: Option<[f64; 3]>,
+    /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
+    /// law was recorded.
+    one: Option<Rim<f64>>,
     ways: Option<Ways>,
     /// Index of the rate of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
@@ -36,16 +36,15 @@ impl BodySlips {
         }
     }
 
-    /// Whether these are the slips on this rim under this law.
+    /// Whether these are the slips of this body on one rim under this law.
     pub fn are_under(&self, law: &Slipping<f64>) -> bool {
-        self.one == Some(sizes(law)) && self.ways == law.losses.and_then(|losses| losses.ways)
+        self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
     fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
             let taped = law.map(|x| tape.number(x));
-            let (angle @ (s, c), [here, _]) = (taped.border.angle, taped.border.circles);
             let y = [w1, w3, slip[0], slip[1]];
             let [mu, _] = taped.strength;
             let [u, v] = taped.other_slip(y);
@@ -55,13 +54,13 @@ impl BodySlips {
             let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
             let angle = taped.border.angle;
             if poses(count) {
-                let precession = w1 / s;
-                let spin = w3 - c * precession;
-                more.extend([precession, spin, slip[0], slip[1] + here.radius * spin]);
+                let spin = spin_of(angle, w1, w3);
+                let radius = taped.border.circles[0].radius;
+                more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
             }
             if loses(count) {
                 lost = Some(more.len());
-                let (drilling, rolling) = (drilling_of(angle, w1, w3), rolling_of(angle, w1, w3));
+                let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
                 more.push(at.couple[1] * rolling - at.couple[0] * drilling);
             }
             let still = tape.number(0.0);
@@ -93,7 +92,7 @@ impl BodySlips {
             let [d1, d2, d3] = at.w;
             SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
         });
-        Self { slips, one: Some(sizes(law)), ways: law.losses.and_then(|losses| losses.ways), lost }
+        Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
 }
 
@@ -129,12 +128,6 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             angle: slow.angle,
         }))
     }
-}
-
-/// The sizes of the rim.
-fn sizes(law: &Slipping<f64>) -> [f64; 3] {
-    let Rim { ell, a, rho } = law.shape.rim;
-    [ell, a, rho]
 }
 
 /// The first `terms` coefficients of the sine and the cosine of an angle that grows from
