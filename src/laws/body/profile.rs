@@ -65,8 +65,10 @@ impl Circle {
 pub(crate) struct Landings {
     pub rims: [Rim<f64>; MOST_CIRCLES],
     /// The first and the last of the circles that smooth joints connect; those of the circle that carries come first.
-    groups: [[usize; 2]; MOST_CIRCLES],
+    groups: [[u8; 2]; MOST_CIRCLES],
+    /// The numbers of the groups and of the circles.
     pub count: usize,
+    pub circles: usize,
     /// Cosines of the upper borders.
     tops: [f64; MOST_CIRCLES],
 }
@@ -78,24 +80,24 @@ impl Landings {
         groups[1] = [1; 2];
         let (mut rims, count) = ([here; MOST_CIRCLES], 1 + usize::from(there.is_some()));
         rims[1] = there.unwrap_or(here);
-        Self { rims, groups, count, tops: [-1.0; MOST_CIRCLES] }
+        Self { rims, groups, count, circles: count, tops: [-1.0; MOST_CIRCLES] }
     }
 
     /// The circle of a group that is the lowest one of these at an inclination with this cosine.
     pub fn lowest(&self, group: usize, cosine: f64) -> usize {
-        let [first, last] = self.groups[group];
+        let [first, last] = self.groups[group].map(usize::from);
         (first..last).find(|k| cosine >= self.tops[*k]).unwrap_or(last)
     }
 
     /// The circles of a group.
     pub fn group(&self, group: usize) -> &[Rim<f64>] {
-        let [first, last] = self.groups[group];
+        let [first, last] = self.groups[group].map(usize::from);
         &self.rims[first..=last]
     }
 
     /// The least angle from an inclination to a joint of the group of the circle that carries.
     pub fn from_joint(&self, angle: (f64, f64)) -> f64 {
-        let [first, last] = self.groups[0];
+        let [first, last] = self.groups[0].map(usize::from);
         let joint = |k: usize| (self.tops[k].acos() - angle.0.atan2(angle.1)).abs();
         (first..last).map(joint).fold(f64::INFINITY, f64::min)
     }
@@ -244,7 +246,7 @@ impl Row {
     /// The circles that may land.
     pub fn landings(&self) -> Landings {
         let row = if self.over { self.turned() } else { *self };
-        let mut all = Landings::of(self.here().rim(), None);
+        let mut all = Landings { circles: self.count, ..Landings::of(self.here().rim(), None) };
         let smooth = |k: usize| self.both(k)[1] == 0.0;
         let mut first = 0;
         for k in 0..self.count {
@@ -257,9 +259,9 @@ impl Row {
             if k + 1 == self.count || !smooth(k) {
                 let group = all.count;
                 if (first..=k).contains(&self.at) {
-                    all.groups[0] = [first, k];
+                    all.groups[0] = [first as u8, k as u8];
                 } else {
-                    all.groups[group] = [first, k];
+                    all.groups[group] = [first as u8, k as u8];
                     all.count += 1;
                 }
                 first = k + 1;

@@ -406,7 +406,7 @@ impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         // The height of a rim changes by at most this much with a number of q.
-        let reach = 2.0 * self.of.free.landings.rims.iter().map(Rim::reach).fold(0.0, f64::max);
+        let reach = 2.0 * self.of.free.reach;
         let per = |i: usize| if i < 4 { reach } else { 1.0 / y[i].abs().max(1.0) } / self.of.tol;
         made.error(per, N as f64)
     }

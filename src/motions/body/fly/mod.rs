@@ -127,8 +127,9 @@ const FAR: f64 = 0.9;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flight {
     shape: Shape<f64>,
-    /// All circles that may land.
+    /// All circles that may land, and the largest distance of their points from the centre.
     landings: Landings,
+    reach: f64,
     /// The start as given, and as seen from the side to which the axis leaves a pole.
     given: Aloft,
     from: Aloft,
@@ -162,6 +163,7 @@ impl Flight {
         let shape = body.shape();
         let from = &given.leaving_pole(&shape);
         let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (shape, from.angle, from.w);
+        let landings = body.landings();
         // The mirror image of a motion is computed by the same numbers.
         let image = if w3 < 0.0 || w3 == 0.0 && w1 < 0.0 { -1.0 } else { 1.0 };
         let (w1, w3) = (image * w1, image * w3);
@@ -182,7 +184,8 @@ impl Flight {
         ];
         let mut flight = Self {
             shape,
-            landings: body.landings(),
+            landings,
+            reach: landings.rims[..landings.circles].iter().map(Rim::reach).fold(0.0, f64::max),
             given: *given,
             from: *from,
             velocity,
@@ -309,7 +312,7 @@ impl Flight {
 
     /// The error of the height of a rim at a time, due to rounding.
     pub fn doubt_of_height(&self, t: f64) -> f64 {
-        let reach = self.landings.rims.iter().map(Rim::reach).fold(0.0, f64::max);
+        let reach = self.reach;
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
