@@ -164,7 +164,7 @@ fn jump_between(f: impl Fn(f64) -> [f64; 3], little: f64) -> f64 {
 fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
     let refuse =
         |value: f64, expected: &'static str| Err(Error::OutOfRange { name: "couple", value, expected });
-    let end = body.theta_end().min(PI);
+    let end = if body.has_row() { PI } else { body.theta_end() };
     let mut before = None;
     for i in 0..1200 {
         // Inclinations, directions and speeds that cover their ranges without a pattern.

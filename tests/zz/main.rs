@@ -110,6 +110,28 @@ fn zz() {
                     println!("err {}", m.error);
                 }
                 slowest.push((took, i, name, m.path.as_ref().unwrap().phases.len(), m.path.as_ref().unwrap().impacts.len(), m.evaluations));
+                {
+                    let path = m.path.as_ref().unwrap();
+                    let circles = body.circles();
+                    let energy = |i: usize| {
+                        let (y, k) = (&m.states[i], path.rims[i] as usize);
+                        let c = circles.get(k).copied().unwrap_or(circles[0]);
+                        let (s, co) = y.theta.sin_cos();
+                        let (a, l) = (c.radius + c.fillet * s, c.depth + c.fillet * co);
+                        let (z, g) = (c.depth * co + c.radius * s + c.fillet, c.depth * s - c.radius * co);
+                        let [u, v] = path.slip[i];
+                        let [h, lift] = path.aloft[i];
+                        let (vh, v2, vz) = (u + z * y.w2, v - l * y.w1 + a * y.w3, lift + g * y.w2);
+                        0.5 * (vh * vh + v2 * v2 + vz * vz + body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3) + z + h
+                    };
+                    for i in 1..m.states.len() {
+                        let struck: f64 = path.impacts.iter().filter(|hit| hit.time <= m.times[i]).map(|hit| hit.lost).sum();
+                        let off = energy(i) + path.dissipated[i] + struck - energy(0);
+                        let fast = [m.states[i].w1, m.states[i].w2, m.states[i].w3, 1.0].iter().fold(0f64, |a, b| a.max(b.abs()));
+                        if off.abs() > 1e-12 + 4.0 * fast * m.error { println!("ENERGY {i} {off:.3e} claim {:.3e} kind {:?} rim {} of {:?}", m.error, path.kinds[i], path.rims[i], y); *found.entry(format!("energy {name}")).or_default() += 1; }
+                        if energy(i) > 1e6 { println!("huge"); }
+                    }
+                }
                 let ok = matches!(m.ending(), Ending::Done | Ending::Face | Ending::Stops);
                 let loose = if m.error > 1e-3 || m.error.is_nan() { " LOOSE" } else { "" };
                 if ok { format!("ok {:?}{loose}", m.ending()) } else { format!("{name} e={e} {:?} {:?} at {:?}", m.ending(), m.limit, m.event.map(|e| e.time == 0.0)) }

@@ -30,6 +30,8 @@ pub(crate) trait Own:
     fn couple_at(&self, _: &State, _normal: f64) -> [f64; 3] {
         [0.0; 3]
     }
+    /// Notes whether the body is seen from its upper end from now on, while a law is told of it from its lower end.
+    fn sees(&self, _over: bool) {}
     /// Whether a law has failed, and is not called again.
     fn has_failed(&self) -> bool {
         false

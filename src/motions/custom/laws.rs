@@ -29,7 +29,9 @@ const FIRST_NORMAL: f64 = 0.75;
 /// The laws of a motion.
 #[derive(Clone, Copy)]
 pub(crate) struct OwnLaws<'a> {
+    /// The body as told from its lower end, and whether it is seen from the upper one.
     pub body: &'a Body,
+    pub over: &'a Cell<bool>,
     pub custom: Custom<'a>,
     /// The last wrong value of a law since the last step that was taken.
     pub fault: &'a Cell<Option<Error>>,
@@ -49,9 +51,11 @@ impl<'a> OwnLaws<'a> {
         self.custom.friction.map(|law| OwnFriction { law, fault: self.fault })
     }
 
-    /// The state as seen from the lower rim of a body with two rims, and -1 if that is the other one, else 1.
+    /// The state as told from the lower end of a body with several rims, and -1 if it is seen from the other one, else 1.
     fn seen_from_lower_rim(&self, y: &State) -> (State, f64) {
-        if y.theta <= FRAC_PI_2 || self.body.ell() <= 0.0 || self.body.theta_end() != FRAC_PI_2 {
+        let two = self.body.ell() > 0.0 && self.body.theta_end() == FRAC_PI_2;
+        let over = if self.body.has_row() { self.over.get() } else { two && y.theta > FRAC_PI_2 };
+        if !over {
             return (*y, 1.0);
         }
         (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
@@ -193,6 +197,9 @@ impl Own for OwnLaws<'_> {
         self.custom.couple.map_or([0.0; 3], |law| self.couple_or_nan(law, y, normal))
     }
 
+    fn sees(&self, over: bool) {
+        self.over.set(over);
+    }
     fn has_failed(&self) -> bool {
         self.custom.has_failed()
     }
@@ -225,7 +232,8 @@ impl Own for OwnLaws<'_> {
         let of = |constant: f64, speed: f64| FollowsSpeed::<f64>::strength(self, constant, || speed, law.dry);
         let [low, up] = law.strength;
         let strength = [of(low, u_h.hypot(u_2)), of(up, other_h.hypot(other_2))];
-        let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
+        let (s, c) = law.border.angle;
+        let state = State { theta: s.atan2(c), w1, w2: 0.0, w3 };
         let own = self.has_couple().then(|| self.couple_at(&state, 1.0));
         Lying { strength, own, ..*law }
     }
@@ -247,7 +255,8 @@ mod tests {
         let (body, fault, last) =
             (Body::ball(0.1, 0.4, 0.42).unwrap(), Cell::new(None), Cell::new(([0.0; 5], None)));
         let custom = Custom::default().with_couple(&couple);
-        of(&OwnLaws { body: &body, custom, fault: &fault, last: &last })
+        let over = Cell::new(false);
+        of(&OwnLaws { body: &body, over: &over, custom, fault: &fault, last: &last })
     }
 
     #[test]

@@ -146,10 +146,7 @@ pub(crate) fn followed(
     custom: Custom<'_>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed, Error> {
-    if body.has_row() && custom.couple.is_some() {
-        let expected = "none for a body of several circles";
-        return Err(Error::OutOfRange { name: "couple", value: f64::NAN, expected });
-    }
+    let told = body;
     let (seen, start) = start.seen_on(body);
     let (body, start) = (&seen, &start);
     let tol = check(body, start, ask, &custom)?;
@@ -160,7 +157,8 @@ pub(crate) fn followed(
     let mut go_on = || !custom.has_failed() && go_on();
     let last = Cell::new(([f64::NAN; 5], None));
     let mut run = |run_tol: f64, times: &[f64]| {
-        let own = OwnLaws { body, custom, fault: &fault, last: &last };
+        let over = Cell::new(body.view().over);
+        let own = OwnLaws { body: told, over: &over, custom, fault: &fault, last: &last };
         let walk = BodyWalk::<CUSTOM_NUMBERS, _>::of_laws(body, ask, (run_tol, tol), times, start, own)?;
         let made = Box::new(walk).run(&mut go_on)?;
         match fault.take().filter(|_| !custom.has_failed()) {

@@ -123,6 +123,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let view = View { over: !self.made.path.view.over, ..body.view() };
         self.of.stands_on(body, &self.ask);
         self.made.path.view = view;
+        self.of.own.sees(view.over);
         self.sets(&Aloft { pose, angle, ..over });
     }
 

@@ -348,6 +348,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let found = find(self);
         (self.at, self.of.state, self.of.takeoff) = (at, state, takeoff);
         (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
+        self.of.own.sees(view.over);
         found
     }
 

@@ -39,6 +39,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let found = self.cycle(&begin);
         (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
         (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
+        self.of.own.sees(view.over);
         found
     }
 
