@@ -130,6 +130,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/claims.py --of saddles --count 200
 	$(BIN)/python benches/claims.py --of stones --count 10000
 	$(BIN)/python benches/slowest.py --count 20000
+	$(BIN)/python benches/profiles.py --count 10000
 	$(BIN)/python benches/aloft.py --count 20000
 	$(BIN)/python benches/claims.py --of hops --count 5000
 	$(BIN)/python benches/random_scenes.py --count 500
