@@ -77,7 +77,7 @@ fn kinds(m: &Motion) -> Vec<Kind> {
 }
 
 /// Two balls of these radii, the larger one first, that touch each other.
-fn balls(radii: [f64; 2]) -> Body {
+pub fn balls(radii: [f64; 2]) -> Body {
     let [big, small] = radii.map(|r: f64| r * r * r);
     let (far, mass) = (radii[0] + radii[1], big + small);
     let depths = [far * small / mass, -far * big / mass];
