@@ -77,7 +77,7 @@ fn kinds(m: &Motion) -> Vec<Kind> {
 }
 
 /// Two balls of these radii, the larger one first, that touch each other.
-fn balls(radii: [f64; 2]) -> Body {
+pub fn balls(radii: [f64; 2]) -> Body {
     let [big, small] = radii.map(|r: f64| r * r * r);
     let (far, mass) = (radii[0] + radii[1], big + small);
     let depths = [far * small / mass, -far * big / mass];
@@ -294,7 +294,14 @@ fn a_body_that_lies_makes_the_same_motion_told_from_either_end() {
         let told = there.start([drilling, -rolling], other);
         let times = [0.5, 1.0, 2.0, 4.0];
         let [m, n] = [cup.moves(start, &ask(mu), &times), there.moves(told, &ask(mu), &times)];
-        assert_eq!((kinds(&m), m.ending()), (kinds(&n), n.ending()), "{:?} {:?} {start:?} {mu} {:?}", cup.body, m.path.as_ref().unwrap().phases, m.event);
+        assert_eq!(
+            (kinds(&m), m.ending()),
+            (kinds(&n), n.ending()),
+            "{:?} {:?} {start:?} {mu} {:?}",
+            cup.body,
+            m.path.as_ref().unwrap().phases,
+            m.event
+        );
         kinds(&m).iter().for_each(|kind| seen[*kind as usize] += 1);
         let most = 1e-11_f64.max(4.0 * (m.error + n.error));
         for (a, b) in m.states.iter().zip(&n.states) {
@@ -342,4 +349,39 @@ fn a_cup_that_is_all_but_a_cylinder_moves_as_the_cylinder_does() {
             }
         }
     }
+}
+
+#[test]
+fn a_body_whose_centre_is_not_between_its_contacts_leaves_the_table_with_both_where_it_turns_fast() {
+    let mut next = wander(16);
+    let (mut flies, mut stays) = (0, 0);
+    for _ in 0..drawn(300) {
+        let cup = OnTwo::of(frustum([0.3 + 0.5 * next(), 1.0], 0.2 + 0.2 * next()));
+        let ([here, there], mut number) = (cup.levers(), || 2.0 * next() - 1.0);
+        if here * there < 0.0 {
+            continue;
+        }
+        let start = cup.start([4.0 * number(), 4.0 * number()], [number(), number()]);
+        let State { w1, w3, .. } = start.state;
+        let (i1, i3) = (cup.body.i1(), cup.body.i3());
+        let rate = (i3 * w1 * w3 - i1 * cup.c / cup.s * w1 * w1) / i1;
+        let free = [here, there].map(|lever| -1.0 - lever * rate);
+        if free.iter().any(|rise| rise.abs() < 0.1) {
+            continue;
+        }
+        let m = cup.moves(start, &ask(0.3), &[0.01]);
+        let path = m.path.as_ref().unwrap();
+        if free.iter().all(|rise| *rise > 0.0) {
+            assert_eq!(kinds(&m), [Kind::Flying], "{:?} {start:?}", cup.body);
+            let [height, _] = path.aloft[0];
+            // Each circle rises as its free acceleration says.
+            let known = 0.5 * 1e-4 * free[usize::from(path.rims[0])];
+            assert!((height - known).abs() < 0.05 * known, "{height} {known}");
+            flies += 1;
+        } else {
+            assert_ne!(kinds(&m)[0], Kind::Flying);
+            stays += 1;
+        }
+    }
+    assert!(flies > 10 && stays > 10, "{flies} {stays}");
 }

@@ -37,6 +37,7 @@ mod parts;
 mod patch;
 mod poses;
 mod public;
+mod random_cups;
 mod references;
 mod resting;
 mod rounded_motions;

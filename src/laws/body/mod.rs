@@ -583,16 +583,17 @@ pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
 }
 
 /// Whether a body at this inclination is beyond the `range` in which its circle carries, or is at a border of it and does
-/// not tilt away from there; `tilts` is w2, or w2' where w2 vanishes.
+/// not tilt away from there, where it tilts with w2, or with w2' if w2 vanishes.
 ///
 /// Where a circle rises because its normal force has vanished, w2' vanishes but for a rounding error, too. At a border that is
 /// no right angle theta does not show the difference.
-pub(crate) fn leaves([low, high]: [f64; 2], theta: f64, tilts: f64) -> bool {
+pub(crate) fn leaves([low, high]: [f64; 2], theta: f64, [w2, rate]: [f64; 2]) -> bool {
     const STANDS: f64 = 1e-14;
-    let beyond = |by: f64, border: f64, away: f64| {
-        by < 0.0 || by == 0.0 && away <= if border == FRAC_PI_2 { 0.0 } else { -STANDS }
+    let beyond = |by: f64, border: f64, way: f64| {
+        let stays = if border == FRAC_PI_2 { way * rate > 0.0 } else { way * rate > -STANDS };
+        by < 0.0 || by == 0.0 && !(way * w2 > 0.0 || w2 == 0.0 && stays)
     };
-    high < PI && beyond(high - theta, high, tilts) || low > 0.0 && beyond(theta - low, low, -tilts)
+    high < PI && beyond(high - theta, high, 1.0) || low > 0.0 && beyond(theta - low, low, -1.0)
 }
 
 /// The border of the `range` that is nearest to an inclination.

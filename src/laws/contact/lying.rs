@@ -108,6 +108,12 @@ impl<T: Real> Lying<T> {
         }
     }
 
+    /// Whether both circles rise without a force of the table, as they may where the centre is not between them.
+    pub fn takes_off(&self, w1: T, w3: T) -> bool {
+        let (one, rate) = (w1.splat(1.0), self.lift(w1, w3) / self.shape.i1);
+        self.border.circles.iter().all(|at| one.is_lt(w1.splat(0.0) - at.lever * rate))
+    }
+
     /// The slip of the other circle.
     pub fn other_slip(&self, [w1, w3, u_h, u_2]: Flat<T>) -> [T; 2] {
         [u_h, u_2 - self.border.span() * drilling_of(self.border.angle, w1, w3)]

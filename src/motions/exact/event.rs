@@ -138,8 +138,7 @@ impl Limits {
     /// The ending of a motion that is over at once, for known derivative of the state and sine and cosine of theta.
     pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
         let [lift, slip] = self.grip(y, dy, angle);
-        let tilts = if y.w2 == 0.0 { dy.w2 } else { way * y.w2 };
-        if leaves(self.body.carries(), y.theta, tilts) {
+        if leaves(self.body.carries(), y.theta, [way * y.w2, dy.w2]) {
             Some(Ending::Side)
         } else if lift <= 0.0 {
             Some(Ending::LiftOff)

@@ -4,6 +4,7 @@
 //! both slip     to u = 0 of a rim: it sticks, or slips on in another direction;  both together: rolls straight
 //! one sticks    to w1 = 0: rolls straight;   to |F| = mu_s N: both slip
 //! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
+//! a body that turns fast, whose centre is not between the two, leaves the table with both
 //! rolls straight at constant speed, or until dry losses stop it
 //! ```
 //! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
@@ -93,6 +94,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(mut flow) = self.flat() else { return Next::Ends(Ending::Side) };
         let flat @ [.., u_h, u_2] = [w1, w3, self.at[UH], self.at[U2]];
         let [_, other] = flow.law.other_slip(flat);
+        if flow.law_at(flat).takes_off(w1, w3) {
+            return Next::Ends(Ending::LiftOff);
+        }
         let [drilling, rolling] = flow.law.turning(w1, w3);
         let turns = 0.5 * flow.law.border.span() * drilling;
         let size =

@@ -120,6 +120,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             all.remove(0);
         }
         let [first, _, before, other, now] = &all[..] else { return None };
+        if all.iter().all(|y| y[W2] < LOST_HOP) {
+            let mut end = self.at;
+            end[W2] = 0.0;
+            self.of.rocked.clear();
+            return Some((end, LOST_HOP));
+        }
         // Landings on the other circle are seen from the other end.
         let ratio = now[W2] / before[W2];
         let steady = |ratio: f64, known: f64| (ratio / known - 1.0).abs();

@@ -146,10 +146,9 @@ impl<L: Own> Slide<L> {
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
         let at = self.acts((s, c), [y.w1, y.w2, y.w3], u);
-        let tilts = if y.w2 == 0.0 { at.w[1] } else { y.w2 };
         if at.room <= 0.0 {
             Some(Halt::Jam)
-        } else if leaves(self.range, y.theta, tilts) {
+        } else if leaves(self.range, y.theta, [y.w2, at.w[1]]) {
             Some(Halt::Side)
         } else if at.free <= 0.0 {
             Some(Halt::LiftOff)

@@ -386,9 +386,8 @@ impl<G: Own> LossyFlow<G> {
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let acted = self.responds(angle, w);
-        let tilts = if y.w2 == 0.0 { acted.w[1] } else { y.w2 };
         let [normal, along, across] = acted.force;
-        if leaves(self.range, y.theta, tilts) {
+        if leaves(self.range, y.theta, [y.w2, acted.w[1]]) {
             Some(Halt::Side)
         } else if normal <= 0.0 {
             Some(Halt::LiftOff)
