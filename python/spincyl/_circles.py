@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from spincyl._input.numbers import (
     whole,
 )
 
+_Six: TypeAlias = tuple[Reals, Reals, Reals, Reals, Reals, Reals]
 #: The numbers of a body, in the order of the core.
 FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _MOMENTS = ("i1", "i3")
@@ -69,7 +70,7 @@ class Circles:
         Each row has the radius of the circle, its height above the centre of mass (negative below it), and
         its fillet, in R. A tip is a circle of radius 0, a ball one of radius 0 with a fillet.
         """
-        return np.array(self._told()[0])
+        return self._told()[0]
 
     @property
     def borders(self) -> Floats:
@@ -111,22 +112,22 @@ class Circles:
         row = told[whole("k", k, 0, len(told) - 1)]
         if row[1] == 0:
             raise ValueError(f"k = {k}: these circles touch at a smooth joint, where the body does not lie")
-        return Apex(*row[2:])
+        return Apex(*row[2:5])
 
     def rests(self) -> tuple[int, ...]:
         """The circles k that can be at rest on the table together with circle k + 1."""
-        return tuple(self._told()[2])
+        return tuple(np.flatnonzero(self._told()[1][:, 5]).tolist())
 
-    def _told(self) -> tuple[list[list[float]], Floats, list[int]]:
-        """Circles, borders and rests of a single body."""
+    def _told(self) -> tuple[Floats, Floats]:
+        """The circles and the borders of a single body, as rows of the core."""
         numbers = self._raw
         if np.ndim(self.rims) > 2 or any(np.ndim(x) for x in numbers):
             raise ValueError("body: expected a single body, not a family; `rims` has the circles of a family")
-        rows, borders, rests = _core.body_circles([float(x) for x in numbers], self._rows)
-        return rows, np.array(borders).reshape(-1, 5), rests
+        rows, borders = _core.body_circles([float(x) for x in numbers], self._rows)
+        return np.array(rows), np.array(borders).reshape(-1, 6)
 
     @property
-    def _raw(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+    def _raw(self) -> _Six:
         """The six numbers of the core; those of the lowest circle, with its radius, if there are several."""
         bore = self.bore if self.rims is None else -self.rims[..., 0, 0]
         return self.ell, self.i1, self.i3, bore, self.fillet, self.theta_end
@@ -137,7 +138,7 @@ class Circles:
         return [] if self.rims is None else self.rims.tolist()
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+    def _numbers(self) -> _Six:
         """The six numbers, or ValueError for a body of several circles."""
         if self.rims is not None:
             several = f"not {self.rims.shape[-2]} circles (body.circles)"
@@ -202,8 +203,8 @@ def set_rims(body: Any) -> None:
     if shape:
         six, rims, borders = _family(given, [floats(x) for x in moments], shape)
     else:
-        (six, rows), ends, in_line = _core.check_profile(given.tolist(), *map(float, moments))
-        rims, borders = (np.array(rows), np.array([theta for theta, _ in ends])) if rows else (None, None)
+        (six, rows), in_line = _core.check_profile(given.tolist(), *map(float, moments))
+        rims, borders = (np.array(rows), borders_of(six, rows)) if rows else (None, None)
         if in_line:
             warn(
                 "circles: a circle in line with two others is left out; its share of the load is undetermined"
@@ -220,9 +221,12 @@ def set_rims(body: Any) -> None:
     object.__setattr__(body, "_single", not shape)
 
 
-def _family(
-    given: Floats, moments: list[Floats], shape: tuple[int, ...]
-) -> tuple[list[Floats], Floats, Floats]:
+def borders_of(six: list[float], rows: list[list[float]]) -> Floats:
+    """The inclinations at which the circles of a body land one after the other."""
+    return np.array([row[0] for row in _core.body_circles(six, rows)[1]])
+
+
+def _family(given: Floats, moments: list[Floats], shape: tuple[int, ...]) -> Any:
     """The numbers, the circles and the borders of bodies; NaN for impossible ones."""
     most = given.shape[-2]
     found, rims = np.full((*shape, len(FIELDS)), np.nan), np.full((*shape, most, 3), np.nan)
@@ -230,9 +234,10 @@ def _family(
     i1, i3 = (np.broadcast_to(x, shape) for x in moments)
     for at in np.ndindex(shape):
         with suppress(ValueError):
-            (six, rows), ends, _ = _core.check_profile(given[at].tolist(), float(i1[at]), float(i3[at]))
+            (six, rows), _ = _core.check_profile(given[at].tolist(), float(i1[at]), float(i3[at]))
+            ends = borders_of(six, rows)
             rows = rows or _core.body_circles(six, [])[0]
-            found[at], rims[at][: len(rows)], borders[at][: len(ends)] = six, rows, [x for x, _ in ends]
+            found[at], rims[at][: len(rows)], borders[at][: len(ends)] = six, rows, ends
     found[..., FIELDS.index("bore")] = np.nan
     return list(np.moveaxis(found, -1, 0)), rims, borders
 

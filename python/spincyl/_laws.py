@@ -99,7 +99,7 @@ class Laws(Circles):
     @property
     def excess(self) -> Result:
         """Inertia excess I1/I3 - 1: positive for a long cylinder, 0 at the critical aspect, else negative."""
-        return _core.excess(*self._numbers)
+        return _core.excess(*self._raw)
 
     @elementwise
     def angular_rate(self, rate: Reals) -> Result:
