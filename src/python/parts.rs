@@ -33,11 +33,7 @@ fn numbers_of(body: &Body) -> NumbersOfBody {
 
 /// The body of these circles, and whether a circle was left out that lies in line with two others; or ValueError.
 #[pyfunction]
-pub fn check_profile(
-    rows: Vec<[f64; 3]>,
-    i1: f64,
-    i3: f64,
-) -> PyResult<(NumbersOfBody, bool)> {
+pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(NumbersOfBody, bool)> {
     let circles = circles_of_rows(&rows);
     let body = Body::profile(&circles, i1, i3)?;
     Ok((numbers_of(&body), body.passes_over(&circles)))

@@ -57,6 +57,48 @@ fn uniform_bodies_of_two_circles_have_the_numbers_that_are_known_of_them() {
 }
 
 #[test]
+fn the_narrow_end_rises_where_the_table_no_longer_presses_it() {
+    // Circle of the centre about the apex, rate, and friction, from another program; and what both contacts carry then.
+    let told = [
+        [5.719123, 0.3701987166, 0.7838],
+        [1.341641, 0.7721947902, 0.8],
+        [0.167705, 2.5170470668, 1.0625],
+        [4.666352, 0.2563876920, 0.3067],
+        [8.338522, 0.2347141401, 0.4594],
+    ];
+    for ((body, _), [radius, rate, friction]) in known().into_iter().zip(told) {
+        let apex = body.apex(0).unwrap();
+        assert!((apex.radius - radius).abs() < 6e-7 && (apex.rate - rate).abs() < 6e-11, "{apex:?}");
+        assert!((apex.friction - friction).abs() < 6e-5 && body.rests() == [0], "{apex:?}");
+        let [[theta, span]] = body.borders()[..] else { panic!("{body:?}") };
+        let (s, c) = theta.sin_cos();
+        let far = apex.contacts[1] - apex.contacts[0];
+        assert!((far.abs() - span).abs() < 1e-12 * span, "the contacts are on one line with the apex");
+        // Moments about the contact of the wide end: weight, centrifugal force, and the change of the spin.
+        let wide = if c > 0.0 { 1 } else { 0 };
+        let height = body.circles()[wide].height(theta);
+        let (w, turns) = (apex.rate * s / c, apex.rate);
+        let spin = turns * w * (body.i1() * c * c + body.i3() * s * s);
+        let arm = apex.contacts[wide] - apex.radius;
+        let push = height * apex.radius * turns * turns;
+        assert!((arm - push - spin.abs()).abs() < 1e-9, "{arm}, {push}, {spin}");
+        assert_eq!(body.apex(1), None);
+    }
+    let straight = Body::solid(2.5).unwrap().apex(0).unwrap();
+    assert!(straight.radius == f64::INFINITY && straight.rate == f64::INFINITY && straight.friction.is_nan());
+    // A smooth joint, and a shoulder that never rests on the table.
+    let bowl = Body::profile(
+        &[
+            Circle { radius: 0.0, depth: -0.375, fillet: 1.0 },
+            Circle { radius: 1.0, depth: -0.375, fillet: 0.0 },
+        ],
+        0.26,
+        0.4,
+    );
+    assert_eq!((bowl.as_ref().unwrap().apex(0), bowl.unwrap().rests()), (None, vec![]));
+}
+
+#[test]
 fn a_wall_of_no_thickness_is_the_limit_of_a_thick_one_and_equal_ends_make_a_tube() {
     let mut next = wander(3);
     for _ in 0..50 {
