@@ -211,9 +211,7 @@ def test_a_circle_in_line_with_two_others_is_left_out_with_a_warning():
     [
         lambda cup: sc.drift(cup, 1.2, sc.loss.ViscousContour(1e-3)),
         lambda cup: sc.pressed(cup, 9.0, 0.8, finger=0.6, table=0.0),
-        lambda cup: cup.folds(),
         lambda cup: cup.theta_balance,
-        lambda cup: cup.inclinations(1.0),
         lambda cup: cup.standing_spin(),
     ],
 )
@@ -260,6 +258,28 @@ def test_a_steady_state_of_any_circle_has_no_acceleration_and_stays():
                 seen += 1
                 assert m.theta[0] == pytest.approx(theta, abs=1e-10) and m.w[0, 2] == pytest.approx(state.w3)
     assert seen > 20
+
+
+def test_all_inclinations_of_a_rate_are_found_on_all_circles():
+    rng = np.random.default_rng(4)
+    for body in bodies():
+        theta = np.linspace(1e-3, np.pi - 1e-3, 40_001)
+        rate = body.rate(theta)
+        for want in np.exp(rng.uniform(-1, 1, 6)) * np.nanmedian(rate):
+            off, found = rate - want, body.inclinations(want)
+            # a rate that jumps at a border, or grows without bound, has no root there
+            cross = (off[:-1] * off[1:] < 0) & (np.abs(np.diff(off)) < 0.1 * want)
+            brute = 0.5 * (theta[1:] + theta[:-1])[cross]
+            found = found[~np.isnan(found)]
+            assert found == pytest.approx(brute, abs=1e-4), (body, want)
+            assert body.count(want) == found.size
+            assert body.rate(found) == pytest.approx(want, rel=1e-9)
+            assert body.states(want).theta[: found.size] == pytest.approx(found)
+        folds = body.folds()
+        folds = folds[~np.isnan(folds)]
+        slope = np.diff(rate)
+        turns = (slope[:-1] * slope[1:] < 0) & (np.abs(np.diff(slope)) < 1e-5 * rate[1:-1])
+        assert folds == pytest.approx(theta[1:-1][turns], abs=1e-3)
 
 
 def test_a_steady_state_does_not_depend_on_the_unit_of_length():

@@ -15,6 +15,7 @@ from spincyl._input.numbers import (
     common_shape,
     floats,
     number,
+    numbered,
     read_only_copy,
     reals,
     warn,
@@ -25,6 +26,7 @@ _Six: TypeAlias = tuple[Reals, Reals, Reals, Reals, Reals, Reals]
 #: The numbers of a body, in the order of the core.
 FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _MOMENTS = ("i1", "i3")
+_MOST_ROOTS = 5  # of a law on one circle
 #: The columns of radius, height and fillet of each circle in a sweep.
 CIRCLE_COLUMNS = [[f"{name}{k}" for name in ("radius", "height", "fillet")] for k in range(8)]
 
@@ -170,6 +172,26 @@ class Circles:
         turned = (x if i == 0 else sign * x for i, x in enumerate(w))
         numbers = -sign * height, self.i1, self.i3, -radius, fillet, end
         return tuple(np.asarray(x)[()] for x in (seen, *turned, *numbers))
+
+    def _several(self, law: Any, *inputs: Reals) -> Any:
+        """The inclinations that a law finds on each circle within its borders, ascending; NaN for others."""
+        if self.rims is None:
+            return law(*numbered(self._most, *inputs, *self._raw))
+        found: list[Floats] = []
+        for k in range(self.rims.shape[-2]):
+            low = self._borders[..., k - 1 : k] if k else 0.0
+            high = self._borders[..., k : k + 1] if k + 1 < self.rims.shape[-2] else np.nan
+            for end in (0.0, np.pi):  # the circle as seen from either end of the body
+                seen = law(*numbered(_MOST_ROOTS, *inputs, *self._at(end, rim=k)[1:]))
+                near = seen <= np.pi / 2 if end == 0 else seen < np.pi / 2
+                told = np.abs(end - seen)
+                inside = near & (told > low) & ~(told > high)
+                found.append(np.where(inside, told, np.nan))
+        return np.sort(np.concatenate(np.broadcast_arrays(*found), -1), -1)
+
+    @property
+    def _most(self) -> int:
+        raise NotImplementedError
 
     def _sign(self, theta: Reals) -> Any:
         """The sign that `_at` gives to vectors along e_h, e2 and e3, and to w2 and w3."""
