@@ -14,6 +14,7 @@ import numpy as np
 import spincyl as sc
 
 BODY = sc.Body.solid(2.5)
+CUP = sc.Body.frustum(0.7, 1.0, 2.0)
 FAMILY = sc.Body.solid(np.array([0.9, 1.5]))
 TUBE = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3, mass=20e-3)
 STATE = BODY.steady(1.3).kicked(0.01)
@@ -167,6 +168,14 @@ def nouns():
         "Body.solid": (sc.Body.solid, {"ell": 2.0, "fillet": 0.0}),
         "Body.tube": (sc.Body.tube, {"ell": 2.0, "bore": 0.5, "fillet": 0.0}),
         "Body.balls": (sc.Body.balls, {"separation": 1.0}),
+        "Body.balls of two radii": (sc.Body.balls, {"separation": 1.0, "radii": (1.0, 0.8)}),
+        "Body.frustum": (sc.Body.frustum, {"bottom": 0.7, "top": 1.0, "height": 2.0, "wall": 0.1}),
+        "Body.cone": (sc.Body.cone, {"height": 2.0}),
+        "Body.lathe": (sc.Body.lathe, {"points": [(0.7, 0.0), (1.0, 2.0)]}),
+        "Body.profile": (
+            sc.Body.profile, {"circles": [(0.7, 0.0), (1.0, 2.0)], "i1": 0.5, "i3": 0.4, "centre": 1.1},
+        ),
+        "Body.apex": (CUP.apex, {"k": 0}),
         "Body.ball": (sc.Body.ball, {"offset": -0.2, "i1": 0.39, "i3": 0.4}),
         "Body.from_metres": (
             sc.Body.from_metres, {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "fillet": 0.0},

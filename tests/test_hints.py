@@ -64,7 +64,7 @@ def test_every_public_function_is_named_by_the_error_about_an_unknown_argument()
 def test_a_name_that_is_not_there_says_what_is(name, told):
     with pytest.raises(AttributeError, match=f"module 'spincyl' has no attribute '{name}': .*{told}"):
         getattr(sc, name)
-    assert not hasattr(sc, "_nothing") and not hasattr(BODY, "cone") and not hasattr(sc.Body, "cone")
+    assert not hasattr(sc, "_nothing") and not hasattr(BODY, "cube") and not hasattr(sc.Body, "cube")
 
 
 def test_a_module_shows_its_public_names_and_none_that_it_imports():

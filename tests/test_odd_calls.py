@@ -20,7 +20,7 @@ FEW = (
 MADE = {
     "": {
         "Deviation", "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Impact", "Motion", "Phase", "Play", "Region", "RestsOn", "Rocking",
-        "Scene", "StepWarning", "Swing", "View",
+        "Apex", "Scene", "StepWarning", "Swing", "View",
         "custom", "data", "loss", "parts", "plot", "sweep",
     },
     "custom.": set(),
@@ -133,6 +133,7 @@ def results():
         "a motion with phases": sc.roll(odd.BODY, odd.STATE, 0.5, contact=sc.Coulomb(0.3)),
         "a motion in seconds": sc.roll(odd.TUBE, odd.TUBE.steady(1.4), 0.05),
         "Drift": sc.drift(odd.DISK, [0.2, 0.3], sc.loss.ViscousContour(1e-3)),
+        "Apex": sc.Body.cone(2.0).apex(),
         "Swing": sc.swing(ball, sc.State(1.0, 0.0, 0.0, 0.0)),
         "State": odd.FAMILY.steady(1.3),
         "a state with NaN": odd.BODY.steady(np.array([1.3, 0.5])),

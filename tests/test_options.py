@@ -74,7 +74,7 @@ BESIDES = {
     "roll": {"body", "state", "t"},
     "stone": {"body", "state", "t"},
     "sweep": {"bodies", "states", "t", "threads", "progress"},
-    "core": set(),
+    "core": {"circles"},  # of the body
     "rust": {"times"},
     "command": {"--t", "--points"},
     "page": {"body", "theta", "state", "kick", "t", "slow", "friction", "title"},

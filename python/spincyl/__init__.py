@@ -22,6 +22,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from spincyl._body import Body
+from spincyl._circles import Apex
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ending import Ending, ErrorWarning, Event, RestsOn
 from spincyl._input.hints import proposal as _instead
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 __all__ = [
+    "Apex",
     "Body",
     "Coulomb",
     "Deviation",

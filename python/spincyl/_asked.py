@@ -43,7 +43,10 @@ class Asked(NamedTuple):
 
 
 def options_for_core(
-    asked: Asked, slip: Sequence[float] | None = None, aloft: Sequence[float] | None = None
+    asked: Asked,
+    slip: Sequence[float] | None = None,
+    aloft: Sequence[float] | None = None,
+    circles: Sequence[Sequence[float]] = (),
 ) -> dict[str, Any]:
     """The options of one motion or of many as keyword arguments of the core.
 
@@ -65,6 +68,8 @@ def options_for_core(
         options["slip"] = slip
     if aloft is not None:
         options["aloft"] = aloft
+    if circles:
+        options["circles"] = circles
     if asked.losses is not None:
         laws, own = asked.losses._built_in, asked.losses._function
         if laws is not None:

@@ -277,13 +277,14 @@ class Body(Laws, Outlines, Sized, Hinting):
         -------
         array
             Angles in radians, ascending, in (0, pi/2), or for rounded rims up to `theta_end`. The last axis
-            (xarray: dimension "root") has 3 angles, for rounded rims 5, padded with NaN. The body lying on
-            its side, steady at rate 1, is not included. All angles are NaN if the rate is negative or NaN, or
-            if rate^2 times the larger of I1/I3 and ell exceeds 1e300. A pandas Series gives an array. Error:
+            (xarray: dimension "root") has 3 angles, for rounded rims 5, for bodies of several circles 10 for
+            each circle, padded with NaN. The body lying on its side, steady at rate 1, is not included. All
+            angles are NaN if the rate is negative or NaN, or if rate^2 times the larger of I1/I3 and ell
+            exceeds 1e300. A pandas Series gives an array. Error:
             ``|rate(theta) - rate| <= 8 (1 + kappa_c) 2^-53 rate``, which is 8 ulp at a fold, where kappa_c
             vanishes. Where kappa_c exceeds 2^45, theta is within 3 ulp of the exact root.
         """
-        return _core.inclination(*numbered(self._most, self._reduced(of, rate, hertz), *self._numbers))
+        return self._several(_core.inclination, self._reduced(of, rate, hertz))
 
     @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
@@ -292,14 +293,20 @@ class Body(Laws, Outlines, Sized, Hinting):
         They are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect,
         where the rate determines the state better than theta does.
         """
-        inputs = numbered(self._most, self._reduced(of, rate, hertz), *self._numbers)
+        given = self._reduced(of, rate, hertz)
+        if self.rims is not None:
+            return self.steady(self._several(_core.inclination, given))
+        inputs = numbered(self._most, given, *self._numbers)
         theta, w1, w3 = (law(*inputs) for law in (_core.inclination, _core.states_w1, _core.states_w3))
         return State(theta, w1, theta * 0.0, w3)
 
     @elementwise
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
         """Number of `inclinations` at a given rate: 0 to 5; NaN where the rate is out of range."""
-        return _core.count(self._reduced(of, rate, hertz), *self._numbers)
+        given = self._reduced(of, rate, hertz)
+        if self.rims is not None:
+            return (~np.isnan(self._several(_core.inclination, given))).sum(-1) + 0.0
+        return _core.count(given, *self._numbers)
 
     @elementwise
     def steady(self, theta: Reals) -> State:

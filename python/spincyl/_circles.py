@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +15,18 @@ from spincyl._input.numbers import (
     common_shape,
     floats,
     number,
+    numbered,
     read_only_copy,
     reals,
     warn,
     whole,
 )
 
+_Six: TypeAlias = tuple[Reals, Reals, Reals, Reals, Reals, Reals]
 #: The numbers of a body, in the order of the core.
 FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _MOMENTS = ("i1", "i3")
+_MOST_ROOTS = 5  # of a law on one circle
 #: The columns of radius, height and fillet of each circle in a sweep.
 CIRCLE_COLUMNS = [[f"{name}{k}" for name in ("radius", "height", "fillet")] for k in range(8)]
 
@@ -69,7 +72,7 @@ class Circles:
         Each row has the radius of the circle, its height above the centre of mass (negative below it), and
         its fillet, in R. A tip is a circle of radius 0, a ball one of radius 0 with a fillet.
         """
-        return np.array(self._told()[0])
+        return self._told()[0]
 
     @property
     def borders(self) -> Floats:
@@ -111,22 +114,22 @@ class Circles:
         row = told[whole("k", k, 0, len(told) - 1)]
         if row[1] == 0:
             raise ValueError(f"k = {k}: these circles touch at a smooth joint, where the body does not lie")
-        return Apex(*row[2:])
+        return Apex(*row[2:5])
 
     def rests(self) -> tuple[int, ...]:
         """The circles k that can be at rest on the table together with circle k + 1."""
-        return tuple(self._told()[2])
+        return tuple(np.flatnonzero(self._told()[1][:, 5]).tolist())
 
-    def _told(self) -> tuple[list[list[float]], Floats, list[int]]:
-        """Circles, borders and rests of a single body."""
+    def _told(self) -> tuple[Floats, Floats]:
+        """The circles and the borders of a single body, as rows of the core."""
         numbers = self._raw
         if np.ndim(self.rims) > 2 or any(np.ndim(x) for x in numbers):
             raise ValueError("body: expected a single body, not a family; `rims` has the circles of a family")
-        rows, borders, rests = _core.body_circles([float(x) for x in numbers], self._rows)
-        return rows, np.array(borders).reshape(-1, 5), rests
+        rows, borders = _core.body_circles([float(x) for x in numbers], self._rows)
+        return np.array(rows), np.array(borders).reshape(-1, 6)
 
     @property
-    def _raw(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+    def _raw(self) -> _Six:
         """The six numbers of the core; those of the lowest circle, with its radius, if there are several."""
         bore = self.bore if self.rims is None else -self.rims[..., 0, 0]
         return self.ell, self.i1, self.i3, bore, self.fillet, self.theta_end
@@ -137,7 +140,7 @@ class Circles:
         return [] if self.rims is None else self.rims.tolist()
 
     @property
-    def _numbers(self) -> tuple[Reals, Reals, Reals, Reals, Reals, Reals]:
+    def _numbers(self) -> _Six:
         """The six numbers, or ValueError for a body of several circles."""
         if self.rims is not None:
             several = f"not {self.rims.shape[-2]} circles (body.circles)"
@@ -169,6 +172,26 @@ class Circles:
         turned = (x if i == 0 else sign * x for i, x in enumerate(w))
         numbers = -sign * height, self.i1, self.i3, -radius, fillet, end
         return tuple(np.asarray(x)[()] for x in (seen, *turned, *numbers))
+
+    def _several(self, law: Any, *inputs: Reals) -> Any:
+        """The inclinations that a law finds on each circle within its borders, ascending; NaN for others."""
+        if self.rims is None:
+            return law(*numbered(self._most, *inputs, *self._raw))
+        found: list[Floats] = []
+        for k in range(self.rims.shape[-2]):
+            low = self._borders[..., k - 1 : k] if k else 0.0
+            high = self._borders[..., k : k + 1] if k + 1 < self.rims.shape[-2] else np.nan
+            for end in (0.0, np.pi):  # the circle as seen from either end of the body
+                seen = law(*numbered(_MOST_ROOTS, *inputs, *self._at(end, rim=k)[1:]))
+                near = seen <= np.pi / 2 if end == 0 else seen < np.pi / 2
+                told = np.abs(end - seen)
+                inside = near & (told > low) & ~(told > high)
+                found.append(np.where(inside, told, np.nan))
+        return np.sort(np.concatenate(np.broadcast_arrays(*found), -1), -1)
+
+    @property
+    def _most(self) -> int:
+        raise NotImplementedError
 
     def _sign(self, theta: Reals) -> Any:
         """The sign that `_at` gives to vectors along e_h, e2 and e3, and to w2 and w3."""
@@ -202,8 +225,8 @@ def set_rims(body: Any) -> None:
     if shape:
         six, rims, borders = _family(given, [floats(x) for x in moments], shape)
     else:
-        (six, rows), ends, in_line = _core.check_profile(given.tolist(), *map(float, moments))
-        rims, borders = (np.array(rows), np.array([theta for theta, _ in ends])) if rows else (None, None)
+        (six, rows), in_line = _core.check_profile(given.tolist(), *map(float, moments))
+        rims, borders = (np.array(rows), borders_of(six, rows)) if rows else (None, None)
         if in_line:
             warn(
                 "circles: a circle in line with two others is left out; its share of the load is undetermined"
@@ -220,9 +243,12 @@ def set_rims(body: Any) -> None:
     object.__setattr__(body, "_single", not shape)
 
 
-def _family(
-    given: Floats, moments: list[Floats], shape: tuple[int, ...]
-) -> tuple[list[Floats], Floats, Floats]:
+def borders_of(six: list[float], rows: list[list[float]]) -> Floats:
+    """The inclinations at which the circles of a body land one after the other."""
+    return np.array([row[0] for row in _core.body_circles(six, rows)[1]])
+
+
+def _family(given: Floats, moments: list[Floats], shape: tuple[int, ...]) -> Any:
     """The numbers, the circles and the borders of bodies; NaN for impossible ones."""
     most = given.shape[-2]
     found, rims = np.full((*shape, len(FIELDS)), np.nan), np.full((*shape, most, 3), np.nan)
@@ -230,9 +256,10 @@ def _family(
     i1, i3 = (np.broadcast_to(x, shape) for x in moments)
     for at in np.ndindex(shape):
         with suppress(ValueError):
-            (six, rows), ends, _ = _core.check_profile(given[at].tolist(), float(i1[at]), float(i3[at]))
+            (six, rows), _ = _core.check_profile(given[at].tolist(), float(i1[at]), float(i3[at]))
+            ends = borders_of(six, rows)
             rows = rows or _core.body_circles(six, [])[0]
-            found[at], rims[at][: len(rows)], borders[at][: len(ends)] = six, rows, [x for x, _ in ends]
+            found[at], rims[at][: len(rows)], borders[at][: len(ends)] = six, rows, ends
     found[..., FIELDS.index("bore")] = np.nan
     return list(np.moveaxis(found, -1, 0)), rims, borders
 

@@ -15,7 +15,6 @@ from spincyl._input.numbers import (
     Result,
     elementwise,
     keywords,
-    numbered,
     radians,
     reals,
 )
@@ -76,10 +75,6 @@ class Laws(Circles):
     """Base of `Body`: its methods that evaluate one law each."""
 
     @property
-    def _most(self) -> int:
-        raise NotImplementedError
-
-    @property
     def _leans(self) -> str:
         """The range of theta, as written in messages of the core."""
         raise NotImplementedError
@@ -99,7 +94,7 @@ class Laws(Circles):
     @property
     def excess(self) -> Result:
         """Inertia excess I1/I3 - 1: positive for a long cylinder, 0 at the critical aspect, else negative."""
-        return _core.excess(*self._numbers)
+        return _core.excess(*self._raw)
 
     @elementwise
     def angular_rate(self, rate: Reals) -> Result:
@@ -191,7 +186,7 @@ class Laws(Circles):
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""
         law = _core.boundary_rolling if is_rolling(contact) else _core.boundary_smooth
-        return law(*numbered(self._most, *self._numbers))
+        return self._several(law)
 
     def folds(self) -> Result:
         """Inclinations at which the steady rate is an extremum, so that two states of equal rate merge.
@@ -200,11 +195,11 @@ class Laws(Circles):
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
         16 * 2^-53 times the condition number. The same holds for `ridge` and `boundaries`.
         """
-        return _core.fold(*numbered(self._most, *self._numbers))
+        return self._several(_core.fold)
 
     def ridge(self) -> Result:
         """Inclinations at which the energy of the steady state is an extremum; details as for `folds`."""
-        return _core.ridge(*numbered(self._most, *self._numbers))
+        return self._several(_core.ridge)
 
     # Quantities of a state.
 

@@ -152,7 +152,12 @@ class Motion(Outputs):
         The sum of `energy`, `dissipated`, `lost_in_impacts` and `work_lost` is constant.
         """
         free = self.contact == "smooth" and self._phases is not None
-        energy: Floats = self.body._energy(self.states, Coulomb(0.0) if free else self.contact, self.rim)
+        contact = Coulomb(0.0) if free else self.contact
+        energy: Floats = (
+            self.body.energy(self.states, contact)
+            if getattr(self.body, "rims", None) is None
+            else self.body._energy(self.states, contact, self.rim)
+        )
         return self._told("energy", energy)
 
     @property
@@ -399,10 +404,8 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
     """Compute a motion without warnings; `numbers` are those of body and state, if known."""
     of, start = numbers or numbers_of_one(body, state, several=True)
     slip = None if state.slip is None else single_slip(state)
-    options = options_for_core(asked, slip, single_aloft(state))
-    if body.rims is not None:
-        options["circles"] = body._rows
-    found = _core.roll(of, start, asked.times, options)
+    aloft = single_aloft(state)
+    found = _core.roll(of, start, asked.times, options_for_core(asked, slip, aloft, body._rows))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

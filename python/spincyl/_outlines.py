@@ -27,6 +27,13 @@ class Outlines:
     _unit: ClassVar[float] = np.nan  # R in the unit of the lengths from which the body was made
     in_metres: Callable[..., Self]
 
+    def __init_subclass__(cls) -> None:
+        # an error about arguments names the class that users know
+        for name, made in vars(Outlines).items():
+            if isinstance(made, classmethod):
+                for call in (made.__func__, getattr(made.__func__, "__wrapped__", made.__func__)):
+                    call.__qualname__ = f"{cls.__name__}.{name}"
+
     if TYPE_CHECKING:
 
         def __init__(self, *numbers: Reals, **more: Any) -> None: ...

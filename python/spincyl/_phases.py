@@ -200,8 +200,8 @@ def slipping_time(phases: Sequence[Phase], end: float) -> float:
 
 
 def has_two_rims(body: "Body") -> bool:
-    """Whether the body has a rim at either end."""
-    return bool(_core.two_rims(*body._numbers) == 1)
+    """Whether the body has two equal rims."""
+    return body.rims is None and bool(_core.two_rims(*body._numbers) == 1)
 
 
 def lowest_point_height(body: "Body", theta: Floats, rim: Floats, told: Any) -> Floats:

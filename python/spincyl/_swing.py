@@ -1,6 +1,6 @@
 """The nutation of a motion: its turning points and its period."""
 
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -67,7 +67,8 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     """Compute the nutation of a motion: period, turning points, and rotation and drift per period.
 
     Events are ignored. In the real motion the other rim may land before the period is over (if theta_max
-    exceeds pi/2), or the body may lift off; `roll` finds such events.
+    exceeds pi/2), or the body may lift off; `roll` finds such events. A body of several circles swings on the
+    one that carries it, also beyond its `borders`.
 
     Parameters
     ----------
@@ -89,12 +90,18 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     ValueError
         If the body or the state is out of range, or if rounding errors leave no correct digit.
     """
-    of, start = numbers_of_one(body, state)
+    of, start = numbers_of_one(body, state, several=True)
     numbers_without_slip(
         state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"
     )
+    if body.rims is not None:
+        seen: Any = body._at(*start)
+        start, of = seen[:4], seen[4:]
     eight: list[float] = _core.swing(of, start, code_of(contact))
     found = Swing._make([*eight, None])
+    if body.rims is not None and body._sign(state.theta) < 0:
+        low, high, spins = np.pi - found.theta_max, np.pi - found.theta_min, -found.spin_per_period
+        found = found._replace(theta_min=low, theta_max=high, spin_per_period=spins)
     if body.scale is None:
         return found
     metre, second, *_ = body.scale._units

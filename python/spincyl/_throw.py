@@ -77,11 +77,11 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     if scale is not None:
         metres, seconds, *_ = scale._units
         velocity, backspin = velocity * (seconds / metres), backspin * seconds
+    if body._single and body.theta_end < np.nextafter(np.pi / 2, 0):
+        why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
+        raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
-        if body.theta_end < np.nextafter(np.pi / 2, 0):
-            why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
-            raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
         state, slip = _core.thrown(float(velocity), float(backspin), six_numbers(body))
         return State(*state, slip=(slip[0], slip[1]))
     w3, across = _core.thrown_w3(*given), _core.thrown_slip(*given)

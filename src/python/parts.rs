@@ -31,32 +31,25 @@ fn numbers_of(body: &Body) -> NumbersOfBody {
     ([body.ell(), body.i1(), body.i3(), bore, body.fillet(), body.theta_end()], rows)
 }
 
-/// The body of these circles, its borders as rows of the inclination and the distance of both points of contact, and
-/// whether a circle was left out that lies in line with two others; or ValueError.
+/// The body of these circles, and whether a circle was left out that lies in line with two others; or ValueError.
 #[pyfunction]
-pub fn check_profile(
-    rows: Vec<[f64; 3]>,
-    i1: f64,
-    i3: f64,
-) -> PyResult<(NumbersOfBody, Vec<[f64; 2]>, bool)> {
+pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(NumbersOfBody, bool)> {
     let circles = circles_of_rows(&rows);
     let body = Body::profile(&circles, i1, i3)?;
-    Ok((numbers_of(&body), body.borders(), body.passes_over(&circles)))
+    Ok((numbers_of(&body), body.passes_over(&circles)))
 }
 
 /// The circles of a body, and for each two neighbours the inclination at which both touch the table, the distance of both
-/// points of contact, the three numbers of `Apex`, and whether the body rests on both.
+/// points of contact, three numbers of `Apex`, and whether the body rests on both.
 #[pyfunction]
-pub fn body_circles(
-    body: [f64; 6],
-    rows: Vec<[f64; 3]>,
-) -> PyResult<(Vec<[f64; 3]>, Vec<[f64; 5]>, Vec<usize>)> {
+pub fn body_circles(body: [f64; 6], rows: Vec<[f64; 3]>) -> PyResult<(Vec<[f64; 3]>, Vec<[f64; 6]>)> {
     let body = Body::of_rows(body, &rows)?;
     let borders = body.borders().into_iter().enumerate().map(|(k, [theta, span])| {
-        let apex = body.apex(k).map_or([f64::NAN; 3], |apex| [apex.radius, apex.rate, apex.friction]);
-        [theta, span, apex[0], apex[1], apex[2]]
+        let [radius, rate, friction] =
+            body.apex(k).map_or([f64::NAN; 3], |apex| [apex.radius, apex.rate, apex.friction]);
+        [theta, span, radius, rate, friction, f64::from(u8::from(body.rests().contains(&k)))]
     });
-    Ok((body.rows().collect(), borders.collect(), body.rests()))
+    Ok((body.rows().collect(), borders.collect()))
 }
 
 /// A uniform frustum, or ValueError.

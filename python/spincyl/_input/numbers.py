@@ -338,9 +338,7 @@ def with_common_shape(*values: Any) -> Reals:
     """An array of the common shape of the values; for a body or a state, the shape of its fields."""
     fields: list[Any] = []
     for value in values:
-        own = getattr(
-            value, "_raw" if hasattr(value, "_raw") else "_numbers", getattr(value, "_coefficients", None)
-        )
+        own = next((getattr(value, x) for x in ("_raw", "_numbers", "_coefficients") if hasattr(value, x)), 0)
         fields += own if isinstance(own, tuple | list) else (value,)
     if any(hasattr(x, "dims") for x in fields):
         return 0.0

@@ -42,25 +42,32 @@ def body(found: Body) -> str:
     kind = "a family of bodies"
     if is_scalar(excess):
         kind = "as long as I₁ = I₃" if excess == 0 else "cylinder: I₁ > I₃" if excess > 0 else "disk: I₁ < I₃"
-    if is_scalar(found.fillet, found.ell, found.theta_end) and found.fillet == 1:
+    if is_scalar(found.fillet, found.ell, found.theta_end) and found.fillet == 1 and found.rims is None:
         kind = f"{_BALLS[shape(found)]}; {kind}"
     sharp = not is_lazy(found.fillet) and not np.any(found.fillet)
     rows = [("shape", kind)]
-    if sharp:
+    if found.rims is not None:
+        rows.append(("circles on which it can stand", str(found.rims.shape[-2])))
+    elif sharp:
         rows.append(("aspect ratio ℓ", _number(found.ell)))
     else:
         rows += [
             ("centre above the rim circle ℓ", _number(found.ell, "R")),
             ("fillet", _number(found.fillet, "R")),
         ]
-    if not is_scalar(found.bore) or found.bore > 0:
+    if found.rims is None and (not is_scalar(found.bore) or found.bore > 0):
         rows.append(("bore, inner over outer radius", _number(found.bore)))
     rows += [
         ("moment of inertia I₁", _number(found.i1, "M R²")),
         ("moment of inertia I₃", _number(found.i3, "M R²")),
-        ("balanced at θ₀", _angle(found.theta_balance)),
-        ("fast limit θ∞", _angle(found.theta_limit)),
     ]
+    if found.rims is None:
+        rows += [
+            ("balanced at θ₀", _angle(found.theta_balance)),
+            ("fast limit θ∞", _angle(found.theta_limit)),
+        ]
+    else:
+        rows.append(("the next circle lands at", _angle(found.theta_end)))
     if found.scale is not None:
         rows += [
             ("radius R", _number(1e3 * found.scale.radius, "mm")),
@@ -68,7 +75,7 @@ def body(found: Body) -> str:
             ("critical rate", _number(found.critical_hertz, "Hz")),
         ]
     picture = ""
-    if is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
+    if found.rims is None and is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
         ball = found.fillet == 1  # a ball balances at no inclination
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return framed(repr(found), rows, picture)

@@ -117,6 +117,14 @@ def _geometry(
     elif shape["type"] == "capsule":
         of = f'size="{_words([fillet, heights[1]])}"'
         geoms = [f'name="rim" type="capsule" {of} {touch}']
+    elif shape["type"] == "circles":
+        geoms = [f'name="circle {k}" {_circle(x, metre)} {touch}' for k, x in enumerate(shape["circles"])]
+        told = (
+            ", with the fillet as part of its radius"
+            if any(x["swollen_by"] for x in shape["circles"])
+            else ""
+        )
+        more.append(f"Each circle is a cylinder of {2 * _THIN * metre:.3g} m, or a ball{told}.")
     elif rim == 0:
         of = f'type="sphere" size="{fillet!r}"'
         pairs = zip(("rim", "other"), heights, strict=False)
@@ -139,6 +147,16 @@ def _geometry(
         places = " ".join(f"{x:.6g}" for x in looks.ravel())
         mesh = f'  <asset><mesh name="looks" inertia="shell" vertex="{places}"/></asset>\n'
     return table, "\n".join(f"      <geom {geom}/>" for geom in geoms), mesh, pair, more
+
+
+def _circle(of: dict[str, float], metre: float) -> str:
+    """The geom of a circle of a body of several."""
+    radius, half, z = of["radius"] + of["swollen_by"], _THIN * metre, of["height"]
+    if of["radius"] == 0 and radius > 0:
+        return f'type="sphere" size="{radius!r}" pos="0 0 {z!r}"'
+    # its outer edge is the circle
+    inside = z - math.copysign(half, z)
+    return f'type="cylinder" size="{_words([max(radius, half), half])}" pos="0 0 {inside!r}"'
 
 
 def _damped(restitution: float) -> float:

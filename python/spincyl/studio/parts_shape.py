@@ -19,7 +19,9 @@ _STRIPE, _LIFT = 0.08, 0.004
 
 
 def profiles_of_parts(body: Body) -> list[Profile]:
-    """The surfaces of the parts, without a point, which has none."""
+    """The surfaces of the parts, without a point, which has none; or the hull of the circles of a body."""
+    if not body._parts:
+        return [Profile("hull", IVORY, _hull_of_circles(body))]
     drawn = [(name, _surfaces(form, numbers)) for name, form, numbers in body._parts]
     seen = [(name, surfaces) for name, surfaces in drawn if surfaces]
     return [
@@ -27,6 +29,16 @@ def profiles_of_parts(body: Body) -> list[Profile]:
         for i, (name, surfaces) in enumerate(seen)
         for corners, normals in surfaces
     ]
+
+
+def _hull_of_circles(body: Body) -> "_Corners":
+    """Radii and heights along the convex hull of a body of several circles, from its lower end up."""
+    ends = [0.0, *body.borders.tolist(), np.pi]
+    found: _Corners = []
+    for (radius, height, fillet), low, high in zip(body.circles.tolist(), ends, ends[1:], strict=False):
+        angle = np.linspace(low, high, _QUARTER if fillet > 0 else 1)
+        found += zip((radius + fillet * np.sin(angle)), (height - fillet * np.cos(angle)), strict=True)
+    return [(0.0, found[0][1]), *((float(r), float(z)) for r, z in found), (0.0, found[-1][1])]
 
 
 _Corners = list[tuple[float, float]]

@@ -369,7 +369,7 @@ def _checked_array(
 def _hull_points(body: Any) -> Floats:
     """Points (n, 3) on a body that MuJoCo has no shape for; MuJoCo draws their convex hull."""
     rounded = isinstance(body, Body) and 0 < body.fillet < 1
-    if not (isinstance(body, Body) and (body._parts or rounded)):
+    if not (isinstance(body, Body) and (body._parts or body.rims is not None or rounded)):
         return np.empty((0, 3))
     every = ((skin.corners, _PIECES if skin.normals else 1) for skin in profiles(body))
     corners = np.array([x for found, step in every for x in (*found[::step], found[-1])])

@@ -137,6 +137,8 @@ def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
 @singledispatch
 def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
     """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
+    if body.rims is not None:
+        return _several_circles(body, metre)
     middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
     both = has_two_rims(body)
     heights = [-wall, wall] if both else [middle if kind(body) == "ball" else -float(body.ell) * metre]
@@ -150,6 +152,22 @@ def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "all within swollen_by of the convex hull of the circles, which are about axis 3, at these"
         " heights over the centre of mass; at the inclination lands_at something else touches the table",
+    }
+
+
+def _several_circles(body: Body, metre: float) -> dict[str, Any]:
+    """The circles of a body that has neither one nor two equal rims, each swollen by its own fillet."""
+    rows = (body.circles * metre).tolist()
+    return {
+        "type": "circles",
+        "radius": metre,
+        "inner_radius": None,
+        "circles": [{"height": z, "radius": rim, "swollen_by": fillet} for rim, z, fillet in rows],
+        "swollen_by": None,
+        "half_length": None,
+        "lands_at": landing(body),
+        "is": "the convex hull of the circles, each with all within its swollen_by, about axis 3 at these"
+        " heights over the centre of mass; at the inclination lands_at the second one touches the table",
     }
 
 

@@ -88,7 +88,7 @@ def reach(body: Any) -> float:
 @singledispatch
 def size(body: Any) -> float:
     """Radius of the sphere about the centre of a body that a camera has to show."""
-    return reach(body) if body._parts else math.hypot(1.0, float(body.ell))
+    return reach(body) if body._parts or body.rims is not None else math.hypot(1.0, float(body.ell))
 
 
 for _function in (reach, size):
@@ -138,7 +138,7 @@ def profiles(body: Any) -> list[Profile]:
 
     A body of unknown bore is drawn solid, a tube with a wall of at least 0.02 R.
     """
-    if body._parts:
+    if body._parts or body.rims is not None:
         return parts_shape.profiles_of_parts(body)
     ell, bore = float(body.ell), _drawn_bore(body)
     if body.fillet > 0:
@@ -217,7 +217,7 @@ def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
 
 @singledispatch
 def _marks(body: Any, upper: Letter) -> list[Part]:
-    if body._parts:
+    if body._parts or body.rims is not None:
         return parts_shape.marks_of_parts(body, upper)
     lower: Letter = "X" if upper == "O" else "O"
     return [_mark(body, upper, 1), _mark(body, lower, -1)]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from spincyl import _core
+from spincyl._circles import CIRCLE_COLUMNS
 from spincyl._ending import LARGE_ERROR, ErrorWarning
 from spincyl._input.numbers import Floats, Reals, optional_library, warn
 from spincyl._loss import LAWS
@@ -14,6 +15,7 @@ from spincyl.sweep._common import many_blocks
 
 _BODY = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _START = ("theta", "w1", "w2", "w3")
+_OF_CIRCLES = {name for names in CIRCLE_COLUMNS for name in names}
 
 
 class Status(IntEnum):
@@ -76,7 +78,8 @@ def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarra
     """Warn if motions are invalid although their inputs are numbers, with the reason of the first one."""
     missing: Any = False
     for name, x in columns.items():
-        missing = missing | (np.isnan(x) & (name != "theta_end"))  # that is NaN where the body says it
+        known = name == "theta_end" or name in _OF_CIRCLES  # NaN where the body says it, or has fewer circles
+        missing = missing | (np.isnan(x) & (not known))
     rows = np.flatnonzero((status == Status.INVALID) & ~missing)
     if not rows.size:
         return
@@ -89,7 +92,8 @@ def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarra
         "aloft": ("height", "lift"),
         "losses": tuple(LAWS),
     }
-    given = {option: [row[name] for name in of] for option, of in own.items() if of[0] in row}
+    given: dict[str, Any] = {name: [row[x] for x in of] for name, of in own.items() if of[0] in row}
+    given |= {"circles": [[row[name] for name in of] for of in CIRCLE_COLUMNS if of[0] in row]}
     try:
         _core.roll(body, start, np.zeros(1), asked | given)
     except ValueError as error:

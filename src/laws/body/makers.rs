@@ -39,7 +39,7 @@ impl Body {
                 Form::Solid { radii, bores: radii.map(|r| r - wall), ends, fillet: 0.0 }
             }
         };
-        uniform(&[(form, 1.0)], form.edges())
+        of_forms(&[(form, 1.0)], form.edges())
     }
 
     /// Uniform cone that stands on its tip, of this height over the radius R of its base.
@@ -69,7 +69,7 @@ impl Body {
         };
         let rises = points.windows(2).filter(|pair| pair[0][1] != pair[1][1]);
         let edges = points.iter().map(|[r, z]| Edge::of(*r, *z, 0.0)).collect();
-        uniform(&rises.map(piece).collect::<Vec<_>>(), edges).map_err(|error| match error {
+        of_forms(&rises.map(piece).collect::<Vec<_>>(), edges).map_err(|error| match error {
             Error::OutOfRange { name: "parts" | "height", value, .. } => {
                 let expected = "an outline that rises from its lower end around a volume, near the height 0";
                 Error::OutOfRange { name: "points", value, expected }
@@ -99,12 +99,12 @@ impl Body {
             ends: [centre - radius, centre + radius],
         };
         let forms = [ball(lower, 0.0), ball(upper, separation * (lower + upper))];
-        uniform(&forms.map(|form| (form, 1.0)), forms.iter().flat_map(Form::edges).collect())
+        of_forms(&forms.map(|form| (form, 1.0)), forms.iter().flat_map(Form::edges).collect())
     }
 }
 
 /// The body of forms that are added, or taken away with the sign -1.
-fn uniform(forms: &[(Form, f64)], edges: Vec<Edge>) -> Result<Body, Error> {
+fn of_forms(forms: &[(Form, f64)], edges: Vec<Edge>) -> Result<Body, Error> {
     let masses: Vec<_> = forms.iter().map(|(form, sign)| form.mass().times(*sign)).collect();
     Ok(of_masses(&masses, edges, widest)?.body)
 }

@@ -6,7 +6,7 @@
 //!           k = a (r W - rho),   p = 4 rho W d,   q = 4 ell (rho - W)
 //! ell = 0:  d rho W s^2 + a (r W - rho) s - a^2 = 0,   s = sin theta, or in 1 - s, which has more digits near the side
 //! d = 0:    theta0, and sin theta = a/(W - rho)
-//! ball:     cos theta = ell (W - 1)/(d W)
+//! ball:     cos theta = ell (W - rho)/(d rho W)
 //! ```
 //! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), without its denominators. A sharp
 //! rim has up to three roots in (0, 1), a rounded rim up to five in (0, infinity). The coefficients are
@@ -81,13 +81,14 @@ fn rounded_inclinations(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let k = a * (w + d * w - rho);
     let square = a * a;
     // `far` says whether theta can exceed pi/2; only then the state at pi/2 is counted.
-    let far = body.range() > FRAC_PI_2;
+    let (far, unit) = (body.range() > FRAC_PI_2, a + rho);
     let found = if body.is_ball() {
         if d.hi == 0.0 {
             // Every inclination has this rate, or none has.
-            return if speed == 1.0 || body.ell() == 0.0 { None } else { Some([f64::NAN; MOST]) };
+            let every = (w - rho).hi == 0.0 || body.ell() == 0.0;
+            return if every { None } else { Some([f64::NAN; MOST]) };
         }
-        let cosine = ell * (w - 1.0.into()) / (d * w);
+        let cosine = ell * (w - rho) / bend;
         if !far && cosine.hi <= 0.0 {
             return Some([f64::NAN; MOST]);
         }
@@ -95,7 +96,7 @@ fn rounded_inclinations(body: &Body, speed: f64) -> Option<[f64; MOST]> {
         vec![sine.hi.atan2(cosine.hi)]
     } else if d.hi == 0.0 && body.ell() > 0.0 {
         // The equation has the factor n: it holds at theta0 for every rate, and at sin theta = a/(W - rho).
-        let over = w - 1.0.into();
+        let over = w - unit;
         let mut found = vec![body.theta_balance()];
         if over.hi >= 0.0 {
             let cosine = (over * (over + a.times(2.0))).sqrt().hi;
@@ -132,16 +133,18 @@ fn rounded_inclinations(body: &Body, speed: f64) -> Option<[f64; MOST]> {
             (reach - k).times(2.0),
             square,
         ];
-        // At t = 1 the sum is 8 ell (1 - W); where it is 0, the slope is -8 d; where d is 0, the curvature is positive.
+        // At t = 1 the sum is 8 ell (a + rho - W); where it is 0, the slope is -8 d (a + rho)^2; where d is 0, the curvature
+        // has the sign of ell.
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        let at_one = sign(1.0 - speed);
+        let way_up = body.ell().signum();
+        let at_one = way_up * sign((unit - w).hi);
         let side = |way: f64| {
             if at_one != 0.0 {
                 at_one
             } else if d.hi != 0.0 {
                 way * d.hi.signum()
             } else {
-                1.0
+                way_up
             }
         };
         let low = roots::in_unit_interval_with_end(&sextic, side(1.0));
@@ -176,11 +179,11 @@ fn quartic(body: &Body, speed: f64) -> ([Sum<f64>; 5], f64) {
         number(ell).plus(rw.times(-1.0)).times(2.0),
         number(1.0),
     ];
-    let below_one = if ell > 0.0 && speed != 1.0 {
-        1.0 - speed
-    } else if ell > 0.0 {
+    let below_one = if ell != 0.0 && speed != 1.0 {
+        ell.signum() * (1.0 - speed)
+    } else if ell != 0.0 {
         // For W = 1, r W = 1 + d; for d = 0 the curvature 4 ell decides.
-        if d.hi == 0.0 { 1.0 } else { d.hi }
+        if d.hi == 0.0 { ell } else { d.hi }
     } else {
         // For r W = 1 the quartic is (t + 1) (t - 1)^3.
         let slope = number(1.0).plus(rw.times(-1.0)).hi;

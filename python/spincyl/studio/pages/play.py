@@ -4,6 +4,7 @@ import html
 import json
 from collections.abc import Iterable
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 from gzip import decompress
 from importlib.resources import files
@@ -104,8 +105,10 @@ class Play:
     def body(self) -> Body:
         """The body; can be set. The page then starts with its steady state at the same inclination."""
         self._of_revolution()
-        found = body_of(self._told)
-        return self._body if found == self._body else found  # the same one knows its parts
+        found, own = body_of(self._told), self._body
+        # the same one knows its parts, and its circles, of which a page has the lowest one
+        same = own if own.rims is None else replace(own, rims=None)
+        return own if found == same else found
 
     @body.setter
     def body(self, body: Body) -> None:

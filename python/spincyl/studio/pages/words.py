@@ -30,6 +30,8 @@ def words_of_body(body: Body) -> dict[str, Any]:
         raise ValueError("body: expected a single body, not a family")
     ell, i1, i3, fillet, most, bore = map(float, numbers)
     size = _words_of_scale(body.scale)
+    if body.rims is not None and body.rims[0, 0] + fillet != 1:
+        raise ValueError("body: expected a lowest circle of outer radius R, on which alone a page moves it")
     if not np.isnan(bore):
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
     told = {"ell": ell, "i1": i1, "i3": i3, "fillet": fillet} | size | _words_of_parts(body)
@@ -38,7 +40,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
 
 def _words_of_parts(body: Body) -> dict[str, Any]:
     """Words for the surfaces of a body made from parts: shade, stripes, and corners with normals."""
-    if not body._parts:
+    if not body._parts and body.rims is None:
         return {}
     surfaces = parts_shape.profiles_of_parts(body)
     wide = list(map(id, parts_shape.striped(surfaces)))
