@@ -285,7 +285,7 @@ def assembled(parts: Iterable[Part], *, gravity: float = Scale.gravity) -> Body:
     # heights are relative to the lowest point, so that they keep their digits
     placed = [part.raised(low - min(lows[:-1])) for part, low in zip(given, lows, strict=False)]
     found = _core.assembled([(part.form, list(part.numbers), part.amount, part.dense) for part in placed])
-    numbers, mass, radius, centre = found
+    numbers, (mass, radius, centre) = found
     for i, part in enumerate(placed[1:], 1):
         solid = part.form != _RING or part.numbers[0] > 0
         if part.at is None and solid and not any(below._carries(part) for below in placed[:i]):

@@ -23,7 +23,8 @@ fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
 
 /// The six numbers of a body, and its circles as rows of radius, height above the centre of mass, and fillet, if it has
 /// several. The six numbers are then those of its lowest circle, whose bore is minus the radius.
-pub type NumbersOfBody = ([f64; 6], Vec<[f64; 3]>);
+pub type NumbersOfBody = ([f64; 6], Rows<3>);
+type Rows<const N: usize> = Vec<[f64; N]>;
 
 fn numbers_of(body: &Body) -> NumbersOfBody {
     let (bore, rows) =
@@ -42,7 +43,7 @@ pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(Numbers
 /// The circles of a body, and for each two neighbours the inclination at which both touch the table, the distance of both
 /// points of contact, three numbers of `Apex`, and whether the body rests on both.
 #[pyfunction]
-pub fn body_circles(body: [f64; 6], rows: Vec<[f64; 3]>) -> PyResult<(Vec<[f64; 3]>, Vec<[f64; 6]>)> {
+pub fn body_circles(body: [f64; 6], rows: Rows<3>) -> PyResult<(Rows<3>, Rows<6>)> {
     let body = Body::of_rows(body, &rows)?;
     let borders = body.borders().into_iter().enumerate().map(|(k, [theta, span])| {
         let [radius, rate, friction] =
@@ -73,7 +74,7 @@ pub fn unequal_balls(radii: [f64; 2], separation: f64) -> PyResult<NumbersOfBody
 /// The body of these parts, its mass, its R, and the height of its centre of mass, or ValueError.
 #[pyfunction]
 #[pyo3(name = "assembled")]
-pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, f64, f64, f64)> {
+pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, [f64; 3])> {
     let part = |(kind, numbers, amount, dense): &Given| {
         let amount = if *dense { Amount::Density(*amount) } else { Amount::Mass(*amount) };
         let form = form(*kind, numbers).ok_or_else(|| PyValueError::new_err("parts: an unknown form"))?;
@@ -81,5 +82,5 @@ pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, f64, f64, f64)> {
     };
     let parts: Vec<BodyPart> = given.iter().map(part).collect::<PyResult<_>>()?;
     let Assembled { body, mass, radius, centre } = assembled(&parts)?;
-    Ok((numbers_of(&body), mass, radius, centre))
+    Ok((numbers_of(&body), [mass, radius, centre]))
 }
