@@ -109,7 +109,7 @@ impl Scene {
 }
 
 /// More than a motion of this length needs.
-const MOST_EVALUATIONS: u64 = 300_000;
+const MOST_EVALUATIONS: u64 = 1_000_000;
 
 fn faults(seeds: impl Iterator<Item = u64>) -> BTreeMap<u64, String> {
     seeds.filter_map(|seed| scene(seed).fault().map(|fault| (seed, fault))).collect()
