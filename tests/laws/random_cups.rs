@@ -108,8 +108,8 @@ impl Scene {
     }
 }
 
-/// More than a motion of this length needs, also one that slips in every nod of a falling face.
-const MOST_EVALUATIONS: u64 = 600_000;
+/// More than a motion of this length needs.
+const MOST_EVALUATIONS: u64 = 1_000_000;
 
 fn faults(seeds: impl Iterator<Item = u64>) -> BTreeMap<u64, String> {
     seeds.filter_map(|seed| scene(seed).fault().map(|fault| (seed, fault))).collect()
