@@ -135,3 +135,26 @@ fn a_cup_that_is_rolled_moves_round_the_apex_of_its_cone_and_keeps_its_energy() 
     assert!((back - first).norm() < 1e-11);
     assert_eq!(m.path.as_ref().unwrap().phases.len(), 1);
 }
+
+#[test]
+fn a_cap_that_swings_over_its_pole_comes_to_its_edge_on_the_other_side() {
+    // A cap of a unit ball, cut at the height 0.35 below its centre, that rocks without friction in a vertical plane.
+    let (depth, edge) = (-0.6, 0.35f64);
+    let circle = |radius, depth, fillet| Circle { radius, depth, fillet };
+    let circles = [circle(0.0, depth, 1.0), circle((1.0 - edge * edge).sqrt(), depth + edge, 0.0)];
+    let body = Body::profile(&circles, 0.25, 0.4).unwrap();
+    let joint = edge.acos();
+    assert!((body.theta_end() - joint).abs() < 1e-15);
+    let start = Start::from(State { theta: joint + 0.2, w1: 0.0, w2: 0.0, w3: 0.0 });
+    let times: Vec<f64> = (0..200).map(|k| 0.05 * f64::from(k)).collect();
+    for mu in [0.0, 0.05] {
+        let ask = Ask::on(Friction::coulomb(mu)).with_restitution(0.0);
+        let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
+        let rims = &m.path.as_ref().unwrap().rims;
+        let over = m.states.iter().filter(|y| y.theta > joint).count();
+        assert_eq!(m.ending(), Ending::Done);
+        assert!(over > 10 && m.states.iter().zip(rims).all(|(y, rim)| (y.theta > joint) == (*rim == 1)));
+        let turns = m.states.iter().map(|y| y.theta).fold(0.0, f64::max);
+        assert!(turns <= joint + 0.2 + 1e-12);
+    }
+}

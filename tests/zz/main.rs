@@ -1,4 +1,7 @@
-#[path = "../laws/common/mod.rs"] #[allow(dead_code)] mod common; use common::wander;
+#[path = "../laws/common/mod.rs"]
+#[allow(dead_code)]
+mod common;
+use common::wander;
 use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::motion::{Ask, Ending, Start, roll_with};
@@ -16,7 +19,8 @@ fn lathe(points: &[[f64; 2]], circles: &[(f64, f64, f64)]) -> Option<Body> {
                 let (radius, z) = (r + (q - r) * at, z0 + (z1 - z0) * at);
                 let weight = weight * (z1 - z0) / 8.0;
                 let square = radius * radius;
-                let parts = [square, square * z, 0.5 * square * square, 0.25 * square * square + square * z * z];
+                let parts =
+                    [square, square * z, 0.5 * square * square, 0.25 * square * square + square * z * z];
                 sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
             }
         }
@@ -42,7 +46,13 @@ fn body(next: &mut impl FnMut() -> f64) -> Option<(&'static str, Body)> {
         }
         2 => {
             let (h, k, r) = (u(0.8, 2.5), u(0.3, 1.5), u(0.15, 0.8));
-            ("bottle", lathe(&[[1.0, 0.0], [1.0, h], [r, h + k]], &[(1.0, 0.0, 0.0), (1.0, h, 0.0), (r, h + k, 0.0)])?)
+            (
+                "bottle",
+                lathe(
+                    &[[1.0, 0.0], [1.0, h], [r, h + k]],
+                    &[(1.0, 0.0, 0.0), (1.0, h, 0.0), (r, h + k, 0.0)],
+                )?,
+            )
         }
         3 => {
             let (r, far) = (u(0.4, 1.0), u(0.0, 0.6));
@@ -69,8 +79,12 @@ fn body(next: &mut impl FnMut() -> f64) -> Option<(&'static str, Body)> {
         5 => {
             let (r, h) = (u(0.1, 0.6), u(0.3, 1.2));
             let (q, k) = (u(0.1, 0.6), u(0.3, 1.2));
-            let points = [[r, 0.0], [r, h], [1.0, h + 1e-9], [1.0, h + 0.2], [q, h + 0.2 + 1e-9], [q, h + 0.2 + k]];
-            ("wheel", lathe(&points, &[(r, 0.0, 0.0), (1.0, h, 0.0), (1.0, h + 0.2, 0.0), (q, h + 0.2 + k, 0.0)])?)
+            let points =
+                [[r, 0.0], [r, h], [1.0, h + 1e-9], [1.0, h + 0.2], [q, h + 0.2 + 1e-9], [q, h + 0.2 + k]];
+            (
+                "wheel",
+                lathe(&points, &[(r, 0.0, 0.0), (1.0, h, 0.0), (1.0, h + 0.2, 0.0), (q, h + 0.2 + k, 0.0)])?,
+            )
         }
         _ => {
             let (r, h, f) = (u(0.4, 0.95), u(0.5, 2.0), u(0.02, 0.2));
@@ -88,7 +102,10 @@ fn zz() {
     let mut found = std::collections::BTreeMap::<String, usize>::new();
     let mut slowest = vec![];
     for i in 0..count {
-        let Some((name, body)) = body(&mut next) else { *found.entry("no body".into()).or_default() += 1; continue };
+        let Some((name, body)) = body(&mut next) else {
+            *found.entry("no body".into()).or_default() += 1;
+            continue;
+        };
         let mut u = |low: f64, high: f64| low + (high - low) * next();
         let mu = 0.05 + 0.95 * u(0.0, 1.0);
         let e = [0.0, 0.3, 0.9][u(0.0, 3.0) as usize];
@@ -96,7 +113,9 @@ fn zz() {
         let kind = u(0.0, 5.0) as usize;
         let w = if kind == 0 { [0.0; 3] } else { [u(-1.5, 1.5), u(-1.5, 1.5), u(-3.0, 3.0)] };
         let slip = if kind < 3 { [0.0; 2] } else { [u(-1.0, 1.0), u(-1.0, 1.0)] };
-        if only.is_some_and(|k| k != i) { continue; }
+        if only.is_some_and(|k| k != i) {
+            continue;
+        }
         let y = State { theta, w1: w[0], w2: w[1], w3: w[2] };
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e);
         let now = std::time::Instant::now();
@@ -106,10 +125,19 @@ fn zz() {
             Ok(Some(m)) => {
                 if only.is_some() {
                     println!("{:?}", m.event);
-                    for p in &m.path.as_ref().unwrap().phases { println!("{p:?}"); }
+                    for p in &m.path.as_ref().unwrap().phases {
+                        println!("{p:?}");
+                    }
                     println!("err {}", m.error);
                 }
-                slowest.push((took, i, name, m.path.as_ref().unwrap().phases.len(), m.path.as_ref().unwrap().impacts.len(), m.evaluations));
+                slowest.push((
+                    took,
+                    i,
+                    name,
+                    m.path.as_ref().unwrap().phases.len(),
+                    m.path.as_ref().unwrap().impacts.len(),
+                    m.evaluations,
+                ));
                 {
                     let path = m.path.as_ref().unwrap();
                     let circles = body.circles();
@@ -122,27 +150,63 @@ fn zz() {
                         let [u, v] = path.slip[i];
                         let [h, lift] = path.aloft[i];
                         let (vh, v2, vz) = (u + z * y.w2, v - l * y.w1 + a * y.w3, lift + g * y.w2);
-                        0.5 * (vh * vh + v2 * v2 + vz * vz + body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3) + z + h
+                        0.5 * (vh * vh
+                            + v2 * v2
+                            + vz * vz
+                            + body.i1() * (y.w1 * y.w1 + y.w2 * y.w2)
+                            + body.i3() * y.w3 * y.w3)
+                            + z
+                            + h
                     };
                     for i in 1..m.states.len() {
-                        let struck: f64 = path.impacts.iter().filter(|hit| hit.time <= m.times[i]).map(|hit| hit.lost).sum();
+                        let struck: f64 = path
+                            .impacts
+                            .iter()
+                            .filter(|hit| hit.time <= m.times[i])
+                            .map(|hit| hit.lost)
+                            .sum();
                         let off = energy(i) + path.dissipated[i] + struck - energy(0);
-                        let fast = [m.states[i].w1, m.states[i].w2, m.states[i].w3, 1.0].iter().fold(0f64, |a, b| a.max(b.abs()));
-                        if off.abs() > 1e-12 + 4.0 * fast * m.error { println!("ENERGY {i} {off:.3e} claim {:.3e} kind {:?} rim {} of {:?}", m.error, path.kinds[i], path.rims[i], y); *found.entry(format!("energy {name}")).or_default() += 1; }
-                        if energy(i) > 1e6 { println!("huge"); }
+                        let fast = [m.states[i].w1, m.states[i].w2, m.states[i].w3, 1.0]
+                            .iter()
+                            .fold(0f64, |a, b| a.max(b.abs()));
+                        if off.abs() > 1e-12 + 4.0 * fast * m.error {
+                            println!(
+                                "ENERGY {i} {off:.3e} claim {:.3e} kind {:?} rim {} of {:?}",
+                                m.error, path.kinds[i], path.rims[i], y
+                            );
+                            *found.entry(format!("energy {name}")).or_default() += 1;
+                        }
+                        if energy(i) > 1e6 {
+                            println!("huge");
+                        }
                     }
                 }
                 let ok = matches!(m.ending(), Ending::Done | Ending::Face | Ending::Stops);
                 let loose = if m.error > 1e-3 || m.error.is_nan() { " LOOSE" } else { "" };
-                if ok { format!("ok {:?}{loose}", m.ending()) } else { format!("{name} e={e} {:?} {:?} at {:?}", m.ending(), m.limit, m.event.map(|e| e.time == 0.0)) }
+                if ok {
+                    format!("ok {:?}{loose}", m.ending())
+                } else {
+                    format!(
+                        "{name} e={e} {:?} {:?} at {:?}",
+                        m.ending(),
+                        m.limit,
+                        m.event.map(|e| e.time == 0.0)
+                    )
+                }
             }
             Ok(None) => "none".into(),
             Err(err) => format!("{name} {}", &format!("{err}")[..60.min(format!("{err}").len())]),
         };
-        if !what.starts_with("ok") { println!("{i} {name} mu {mu:.3} e {e} theta {theta:.4} w {w:.4?} slip {slip:.4?} {what} {took:.3}"); }
+        if !what.starts_with("ok") {
+            println!(
+                "{i} {name} mu {mu:.3} e {e} theta {theta:.4} w {w:.4?} slip {slip:.4?} {what} {took:.3}"
+            );
+        }
         *found.entry(what).or_default() += 1;
     }
     slowest.sort_by(|a, b| b.0.total_cmp(&a.0));
     println!("{found:#?}");
-    for s in slowest.iter().take(8) { println!("{s:?}"); }
+    for s in slowest.iter().take(8) {
+        println!("{s:?}");
+    }
 }

@@ -3,8 +3,8 @@
 
 use super::Method;
 use crate::error::{Error, room};
-pub use crate::laws::contact::impact::Hit;
 use crate::laws::body::View;
+pub use crate::laws::contact::impact::Hit;
 use crate::laws::state::State;
 use crate::methods::flow::Exhausted;
 use crate::motions::Moving;
@@ -240,7 +240,9 @@ impl<S: Moving> Motion<S> {
         self.event.iter_mut().for_each(|event| event.rim = rim);
         if view.over {
             let states = self.states.iter_mut();
-            states.chain(self.event.iter_mut().map(|event| &mut event.state)).for_each(|y| *y = y.told(view.tells(y.theta())));
+            states
+                .chain(self.event.iter_mut().map(|event| &mut event.state))
+                .for_each(|y| *y = y.told(view.tells(y.theta())));
             self.poses.iter_mut().flatten().for_each(|pose| *pose = S::pose_told(pose));
             self.forces.iter_mut().flatten().for_each(|force| *force = S::force_told(force));
         }
@@ -382,7 +384,13 @@ impl<S> Path<S> {
     /// The rim from which the body is told, for a body that lies on two.
     pub(crate) fn rim(&self, lies: bool) -> u8 {
         match self.view.circles {
-            Some([here, next]) => if lies { here.min(next) } else { here },
+            Some([here, next]) => {
+                if lies {
+                    here.min(next)
+                } else {
+                    here
+                }
+            }
             None => u8::from(self.view.over && !lies),
         }
     }

@@ -33,7 +33,8 @@ impl<S: Moving> OutputRow<S> {
     /// A row that is seen from the upper end of the body, as told from its lower end.
     fn told(self, view: &View) -> Self {
         let force = self.force.map(|(force, doubt)| (S::force_told(&force), doubt));
-        let (pose, state) = (self.pose.map(|pose| S::pose_told(&pose)), self.state.told(view.tells(self.state.theta())));
+        let (pose, state) =
+            (self.pose.map(|pose| S::pose_told(&pose)), self.state.told(view.tells(self.state.theta())));
         Self { state, slip: self.slip.map(|u| 0.0 - u), pose, force, ..self }
     }
 }

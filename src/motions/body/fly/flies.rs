@@ -269,7 +269,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (at, free) = (self.flown(&*course, t, before), *course.free());
         let high = free.doubt_of_height(t);
         let landed = landings.lowest(group, at.angle.1);
-        let (rims, upper) = ([self.of.body.shape().rim, landings.rims[landed]], landed != self.of.body.here_is());
+        let (rims, upper) =
+            ([self.of.body.shape().rim, landings.rims[landed]], landed != self.of.body.here_is());
         let lift = if upper { at.on_other_rim(&rims).lift } else { at.lift };
         let mut late = (high / lift.abs()).min(high.sqrt());
         if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
@@ -304,7 +305,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.claims(course.free().doubt(t, &at));
         let free = course.free();
-        let lowest = (0..free.landings.count).map(|k| free.higher_by(k, at.angle)).fold(f64::INFINITY, f64::min);
+        let lowest =
+            (0..free.landings.count).map(|k| free.higher_by(k, at.angle)).fold(f64::INFINITY, f64::min);
         self.claims(-(at.height + lowest));
         if at.height < 0.0 && -at.height <= course.free().doubt_of_height(t) {
             at.height = 0.0;

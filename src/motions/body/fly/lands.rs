@@ -149,7 +149,8 @@ impl Flight {
         let reach = most(&|rim| rim.ell.hypot(rim.a) + rim.rho);
         // The centre is low enough for a landing before `rises` and after `comes`. At `end` it is so low that a rim is
         // below the table, whatever the inclination: the centre of one rim may itself be below the table.
-        let lowest = if self.landings.count > 1 { 0.0 } else { -most(&|rim| rim.ell.abs() - rim.rho).max(0.0) };
+        let lowest =
+            if self.landings.count > 1 { 0.0 } else { -most(&|rim| rim.ell.abs() - rim.rho).max(0.0) };
         let passes = |height: f64| {
             let square = up * up + 2.0 * (self.height - height);
             (square >= 0.0).then(|| (up - square.sqrt(), up + square.sqrt()))
@@ -195,7 +196,8 @@ impl Flight {
             1.0 / (1.0 + self.rate)
         };
         // The series is that of one circle, which counts up to its joint.
-        let joined = if k == 0 { self.landings.from_joint(self.from.angle).max(JOINED) } else { f64::INFINITY };
+        let joined =
+            if k == 0 { self.landings.from_joint(self.from.angle).max(JOINED) } else { f64::INFINITY };
         near.min(joined / self.rate)
     }
 
@@ -272,7 +274,8 @@ impl Flight {
         let rim = &self.rim_at(k, self.from.angle.1);
         let mut all = core::array::from_fn(|k| -rim.slope((sines[k], cosines[k])));
         // The first coefficient is the normal velocity, which is known without a difference.
-        all[1] = near * if k == 0 { self.from.lift } else { self.from.on_other_rim(&[self.shape.rim, *rim]).lift };
+        all[1] =
+            near * if k == 0 { self.from.lift } else { self.from.on_other_rim(&[self.shape.rim, *rim]).lift };
         all[2] -= 0.5 * near * near;
         all
     }

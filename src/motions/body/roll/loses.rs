@@ -2,8 +2,8 @@
 
 use super::BRIEF_ROLLING_STEPS;
 use super::lossy::LossyFlow;
-use crate::laws::body::border_at;
 use crate::error::Error;
+use crate::laws::body::border_at;
 use crate::laws::contact::Table;
 use crate::laws::loss::Holds;
 use crate::laws::state::State;

@@ -86,9 +86,10 @@ impl<L: Own> Slide<L> {
             (w1, w3) = (s * w1, c * w1);
         }
         let (angle, w, u, one) = ((s, c), [w1, w2, w3], [u_h, u_2], s.splat(1.0));
+        // A ball may have passed its pole, beyond which s is negative.
         let border = |theta: f64| {
             let (sine, cosine) = landing_angle(theta);
-            s.splat(sine) * c - s.splat(cosine) * s
+            s.splat(sine) * c - s.splat(cosine) * s.abs()
         };
         let [low, high] = self.range;
         let face = match low {

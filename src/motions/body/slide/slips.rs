@@ -2,8 +2,8 @@
 
 use super::Slide;
 use super::creeps::is_still;
-use crate::laws::body::border_at;
 use crate::error::Error;
+use crate::laws::body::border_at;
 use crate::laws::loss::Holds;
 use crate::laws::loss::Law;
 use crate::methods::flow::{Flow, FlowPlace, Steps};

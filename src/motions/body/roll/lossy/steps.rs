@@ -108,9 +108,10 @@ impl<G: Own> LossyFlow<G> {
         let acted = law.at((s, c), precession, w, self.held(s));
         let endless = self.moves && self.law.losses.turn_endlessly();
         let number = |x: f64| s.splat(x);
+        // A ball may have passed its pole, beyond which s is negative.
         let border = |theta: f64, there: bool| {
             let (sine, cosine) = landing_angle(theta);
-            from_side([sine, cosine, f64::from(u8::from(there))].map(number), (s, c))
+            from_side([sine, cosine, f64::from(u8::from(there))].map(number), (s.abs(), c))
         };
         let [low, high] = self.range;
         let face = if low > 0.0 {
