@@ -134,6 +134,9 @@ def test_a_size_in_metres_is_that_of_the_widest_circle():
     assert cup.scale.radius == 0.035 and cup.circles[0, 0] == pytest.approx(25 / 35, rel=1e-15)
     assert sc.Body.lathe([(0.02, 0), (0.03, 0.1)]).in_metres().scale.radius == 0.03
     assert sc.Body.balls(radii=(3, 4), diameter="12mm").scale.radius == 0.006
+    assert sc.Body.balls(radii=("3mm", "4mm")).in_metres().scale.radius == 0.004
+    with pytest.raises((TypeError, ValueError), match=r"^circles"):
+        sc.Body.profile([("7mm", 0), ("10mm", 2)], 0.5, 0.4)
     parts = sc.assembled(
         [sc.parts.wall(lower_diameter="50mm", upper_diameter="70mm", length="90mm", mass="7g")]
     )
@@ -179,7 +182,9 @@ def test_a_family_of_cups_has_the_numbers_of_each():
         ("circles = 1", lambda: sc.Body.profile([(0, 0, 1), (0, 0.1, 0.5)], 0.5, 0.4)),
         ("circles = ", lambda: sc.Body.profile([(1, 1), (1, 0)], 0.5, 0.4)),
         ("circles", lambda: sc.Body.profile([(1, 1, 0, 0)], 0.5, 0.4)),
-        ("rims", lambda: sc.Body.profile([], 0.5, 0.4)),
+        ("circles", lambda: sc.Body.profile([], 0.5, 0.4)),
+        ("centre = nan", lambda: sc.Body.profile([(0.7, 0), (1, 2)], 0.5, 0.4, np.nan)),
+        ("radii = NaN", lambda: sc.Body.balls(radii=(np.nan, np.nan))),
         ("radius = -1", lambda: sc.Body.profile([(-1, 0), (1, 1)], 0.5, 0.4)),
         ("fillet = -1", lambda: sc.Body.profile([(1, 0, -1), (1, 1)], 0.5, 0.4)),
         ("i3 = 1.1, i1 = 0.5", lambda: sc.Body.profile([(0.7, 0), (1, 2)], 0.5, 1.1, 1.0)),

@@ -18,6 +18,7 @@ from spincyl._input.numbers import (
     numbered,
     read_only_copy,
     reals,
+    si,
     warn,
     whole,
 )
@@ -198,16 +199,15 @@ class Circles:
         return 1.0 if self.rims is None else np.where(floats(theta) > np.pi / 2, -1.0, 1.0)
 
 
-def rows_of(circles: Iterable[Sequence[float]], centre: float) -> list[list[float]]:
-    """Rows of radius, height above the centre of mass, and fillet, from the argument of `Body.profile`."""
+def rows_of(name: str, given: Iterable[Sequence[float]], *widths: int, metre: str = "") -> list[list[float]]:
+    """Rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
     try:
-        given = [list(row) for row in circles]
+        rows = [list(row) for row in given]
     except TypeError:
-        raise TypeError("circles: expected rows (radius, height) or (radius, height, fillet)") from None
-    if any(len(row) not in (2, 3) for row in given):
-        raise ValueError("circles: expected rows (radius, height) or (radius, height, fillet)")
-    rows = [[number(f"circles[{i}]", x) for x in (*row, 0.0)[:3]] for i, row in enumerate(given)]
-    return [[radius, height - centre, fillet] for radius, height, fillet in rows]
+        raise TypeError(f"{name}: expected rows of numbers, not {type(given).__name__}") from None
+    if not rows or any(len(row) not in widths for row in rows):
+        raise ValueError(f"{name}: expected rows of {' or '.join(map(str, widths))} numbers")
+    return [[number(name, si(name, x, metre) if metre else x) for x in row] for row in rows]
 
 
 def set_rims(body: Any) -> None:

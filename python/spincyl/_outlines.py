@@ -16,7 +16,6 @@ from spincyl._input.numbers import (
     metres,
     number,
     reals,
-    si,
 )
 from spincyl._scale import Scale
 
@@ -75,7 +74,9 @@ class Outlines:
         >>> cup.borders.round(4)
         array([1.4219])
         """
-        rims = rows_of(circles, number("centre", centre))
+        middle = in_range("centre", centre, -1e100, 1e100, "R")
+        rows = rows_of("circles", circles, 2, 3)
+        rims = [[radius, height - middle, *(fillet or [0.0])] for radius, height, *fillet in rows]
         return cls(np.nan, number("i1", i1), number("i3", i3), rims=rims)
 
     @classmethod
@@ -124,10 +125,8 @@ class Outlines:
         >>> cup.circles.shape
         (2, 3)
         """
-        rows = [[number("points", si("points", x, "metre")) for x in row] for row in points]
-        if any(len(row) != 2 for row in rows):
-            raise ValueError("points: expected rows (radius, height)")
-        return cls._made(_core.lathe(rows), max((radius for radius, _ in rows), default=np.nan))
+        rows = rows_of("points", points, 2, metre="metre")
+        return cls._made(_core.lathe(rows), max(radius for radius, _ in rows))
 
     @classmethod
     def balls(
@@ -156,9 +155,9 @@ class Outlines:
         Jackson, Mertens, Pearson, Am. J. Phys. 83, 959 (2015). The upper one of equal balls lands at
         theta = pi/2.
         """
-        if radii is not None and len(set(radii)) > 1:
-            pair = [number("radii", x) for x in radii]
-            body = cls._made(_core.unequal_balls(pair, number("separation", separation)))
+        pair = [1.0, 1.0] if radii is None else rows_of("radii", [radii], 2, metre="metre")[0]
+        if pair[0] != pair[1]:
+            body = cls._made(_core.unequal_balls(pair, number("separation", separation)), max(pair))
             return body._across(diameter, mass)
         i1, theta_end = _core.check_balls(separation := number("separation", separation))
         return cls(separation, i1, 0.4, fillet=1.0, theta_end=theta_end)._across(diameter, mass)
