@@ -96,7 +96,7 @@ impl Landings {
     }
 
     /// The least angle from an inclination to a joint of the group of the circle that carries.
-    pub fn from_joint(&self, angle: (f64, f64)) -> f64 {
+    pub fn away_from_joint(&self, angle: (f64, f64)) -> f64 {
         let [first, last] = self.groups[0].map(usize::from);
         let joint = |k: usize| (self.tops[k].acos() - angle.0.atan2(angle.1)).abs();
         (first..last).map(joint).fold(f64::INFINITY, f64::min)

@@ -197,7 +197,7 @@ impl Flight {
         };
         // The series is that of one circle, which counts up to its joint.
         let joined =
-            if k == 0 { self.landings.from_joint(self.from.angle).max(JOINED) } else { f64::INFINITY };
+            if k == 0 { self.landings.away_from_joint(self.from.angle).max(JOINED) } else { f64::INFINITY };
         near.min(joined / self.rate)
     }
 
@@ -290,10 +290,10 @@ impl Flies for Flight {
         _: &mut dyn FnMut() -> bool,
     ) -> Result<FirstLanding, Exhausted> {
         let mut first = None;
-        for i in 0..self.landings.count {
+        for (i, leaves) in leaves.into_iter().enumerate().take(self.landings.count) {
             // Of two rims that land at the same time the first one counts; an impact looks at both.
             let until = first.map_or(until, |(t, _)| t);
-            if let Some(t) = self.lands_on(i, leaves[i], until)?
+            if let Some(t) = self.lands_on(i, leaves, until)?
                 && first.is_none_or(|(before, _)| t < before)
             {
                 first = Some((t, i));
