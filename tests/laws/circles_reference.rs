@@ -55,7 +55,7 @@ fn touching(circle: &Circle, theta: f64) -> [f64; 4] {
 
 impl Told {
     /// The same body told from another circle, which is at the same height.
-    fn from_circle(self, k: usize, circles: &[Circle]) -> Self {
+    fn told_from_circle(self, k: usize, circles: &[Circle]) -> Self {
         if k == self.circle {
             return self;
         }
@@ -75,7 +75,7 @@ impl Told {
     }
 
     /// The same body told from its other end.
-    fn from_other_end(self, count: usize) -> Self {
+    fn told_from_other_end(self, count: usize) -> Self {
         let back = |slip: [f64; 2]| slip.map(|u| 0.0 - u);
         let State { theta, w1, w2, w3 } = self.state;
         let [phi, psi, x, y] = self.pose;
@@ -91,7 +91,7 @@ impl Told {
     /// How far this is from a row of the table, over the size of each number if that is above 1. The same for the pose, in
     /// which a whole turn of phi does not count.
     fn off(&self, row: &Self, circles: &[Circle]) -> [f64; 2] {
-        let row = if self.other.is_some() { row.from_circle(self.circle, circles) } else { *row };
+        let row = if self.other.is_some() { row.told_from_circle(self.circle, circles) } else { *row };
         assert_eq!((self.circle, self.other.map(|x| x.0)), (row.circle, row.other.map(|x| x.0)));
         let numbers = |told: &Self| {
             let State { theta, w1, w2, w3 } = told.state;
@@ -174,10 +174,10 @@ impl Case {
     fn turned(self) -> Self {
         let count = self.circles.len();
         let turn = |circle: Circle| Circle { depth: 0.0 - circle.depth, ..circle };
-        let row = |row: Row| Row { told: row.told.from_other_end(count), ..row };
+        let row = |row: Row| Row { told: row.told.told_from_other_end(count), ..row };
         Self {
             circles: self.circles.into_iter().rev().map(turn).collect(),
-            start: Told { pose: [0.0; 4], ..self.start.from_other_end(count) },
+            start: Told { pose: [0.0; 4], ..self.start.told_from_other_end(count) },
             // Its motion starts with phi = 0, too, and the place of the circle is turned by pi with it.
             rows: self.rows.into_iter().map(row).map(Row::from_phi_of_zero).collect(),
             apex: self.apex.map(|rolling| 0.0 - rolling),
@@ -211,7 +211,7 @@ impl Case {
                 let (s, c) = body.theta_end().sin_cos();
                 (start.state.w1, start.state.w3) = (c * rolling, -s * rolling);
             }
-            start = start.from_circle(self.lower(), &self.circles);
+            start = start.told_from_circle(self.lower(), &self.circles);
         }
         let start = Start::from(start.state).with_slip(start.slip);
         roll_with(&body, start, &self.times(), &self.ask, || true).unwrap().unwrap()
@@ -220,7 +220,7 @@ impl Case {
     /// How far from the place of the circle that is told at the start the first one touches.
     fn first_at(&self) -> f64 {
         if self.start.other.is_some() {
-            self.start.from_circle(self.lower(), &self.circles).pose[2]
+            self.start.told_from_circle(self.lower(), &self.circles).pose[2]
         } else {
             0.0
         }
@@ -274,7 +274,7 @@ impl Case {
 
 impl Row {
     /// This row of a motion that starts with phi = 0 where it starts with phi = pi.
-    fn from_phi_of_zero(self) -> Self {
+    fn with_phi_from_zero(self) -> Self {
         let [phi, psi, x, y] = self.told.pose;
         Self { told: Told { pose: [phi - PI, psi, 0.0 - x, 0.0 - y], ..self.told }, ..self }
     }
@@ -342,7 +342,7 @@ fn phases_begin_and_motions_end_where_those_of_the_references_do() {
             let lower = case.lower();
             let told = Told {
                 circle: if lies { lower } else { phase.rim.into() },
-                other: lies.then(|| row.told.from_circle(lower, &case.circles).other.unwrap()),
+                other: lies.then(|| row.told.told_from_circle(lower, &case.circles).other.unwrap()),
                 state: phase.state,
                 slip: phase.slip,
                 pose: row.told.pose,

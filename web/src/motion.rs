@@ -39,7 +39,7 @@ pub(crate) struct Row {
 pub(crate) enum Kept {
     Exact {
         swing: Box<Swing>,
-        body: Body,
+        body: Box<Body>,
         contact: Contact,
         until: f64,
     },
@@ -129,7 +129,7 @@ impl Desk {
         let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
         self.out.extend([0.0, code, time, swing.period(), low, high, phi, psi, error, pose_error]);
         self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until, 0.0, 0.0]);
-        self.motion = Some(Kept::Exact { swing: Box::new(swing), body, contact, until });
+        self.motion = Some(Kept::Exact { swing: Box::new(swing), body: Box::new(body), contact, until });
         Ok(())
     }
 

@@ -22,7 +22,7 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Limit, Phase};
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 
 /// Sine of theta below which a falling face counts as landed if slipping and sticking alternate without an advance of
 /// time.

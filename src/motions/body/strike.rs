@@ -24,7 +24,7 @@ use crate::laws::state::State;
 use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3, lost};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 
 /// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
 /// limits.

@@ -16,7 +16,7 @@
 
 use super::lands::{AngleSeries, Leaves, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
-use crate::laws::body::{Body, MOST_CIRCLES, Rim, Shape};
+use crate::laws::body::{Body, MOST_CIRCLES, Shape};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};

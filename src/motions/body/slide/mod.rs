@@ -29,7 +29,6 @@ use crate::laws::state::State;
 use crate::motions::dry::creep::Creeping;
 use crate::motions::walk::numbers::{BodyNumbers, COS, Halt, SIN, W1, W2, W3};
 use crate::numbers::Dual;
-use core::f64::consts::PI;
 pub(super) use creeps::is_still;
 pub(crate) use flow::longest;
 

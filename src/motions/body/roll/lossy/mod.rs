@@ -30,7 +30,6 @@ use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
 use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
 use crate::numbers::{Dual, Real};
-use core::f64::consts::PI;
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
 pub(crate) use steps::at_rest;
