@@ -179,7 +179,7 @@ impl Case {
             circles: self.circles.into_iter().rev().map(turn).collect(),
             start: Told { pose: [0.0; 4], ..self.start.told_from_other_end(count) },
             // Its motion starts with phi = 0, too, and the place of the circle is turned by pi with it.
-            rows: self.rows.into_iter().map(row).map(Row::from_phi_of_zero).collect(),
+            rows: self.rows.into_iter().map(row).map(Row::with_phi_from_zero).collect(),
             apex: self.apex.map(|rolling| 0.0 - rolling),
             ..self
         }
