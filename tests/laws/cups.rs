@@ -385,3 +385,30 @@ fn a_body_whose_centre_is_not_between_its_contacts_leaves_the_table_with_both_wh
     }
     assert!(flies > 10 && stays > 10, "{flies} {stays}");
 }
+
+#[test]
+fn dry_friction_along_the_contour_keeps_a_body_that_slides_across_from_rolling_by_the_loads_of_both_circles()
+{
+    let mut next = wander(17);
+    let mut held = 0;
+    for _ in 0..drawn(60) {
+        let (cup, mu, speed) = (any(&mut next), 0.1 + 0.2 * next(), 0.5 + next());
+        let ([here, there], [low, up]) = (cup.levers(), cup.touching.map(|at| at[0]));
+        if here < 0.0 || there > 0.0 {
+            continue;
+        }
+        // Friction turns the body by its height, and each contour holds it by its radius and its load.
+        let holds = (here * up - there * low) / (cup.span() * cup.s);
+        let moved = |share: f64| {
+            let losses = Losses::of(Law::DryContour, share * mu * cup.height / holds);
+            cup.moves(cup.thrown([0.0; 2], [0.0, speed]), &ask(mu).with_losses(losses), &[0.5 * speed / mu])
+        };
+        let m = moved(1.001);
+        assert!(m.states[0].w1.abs().max(m.states[0].w3.abs()) < 1e-15, "{:?} {:?}", m.states[0], cup.body);
+        let path = m.path.as_ref().unwrap();
+        assert!((path.slip[0][1] - 0.5 * speed).abs() < 1e-13 && path.slip[0][0].abs() < 1e-15);
+        assert!(cup.turning(&moved(0.999).states[0])[1].abs() > 1e-5, "{:?}", cup.body);
+        held += 1;
+    }
+    assert!(held > 5, "{held}");
+}
