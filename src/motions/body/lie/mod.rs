@@ -225,8 +225,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             return Next::Ends(Ending::Stops);
         }
+        let kind = flow.kind();
         self.of.lying = Some(Box::new(LyingPhase { flow }));
-        Next::Own(stance.kind())
+        Next::Own(kind)
     }
 
     /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
@@ -601,6 +602,11 @@ fn row_of<G: Own, const N: usize>(
 ) -> OutputRow<State> {
     let mut slips = [y.slip(), flow.law.other_slip([y[W1], y[W3], y[UH], y[U2]])];
     let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[W3], *y);
+    if flow.stance == Stance::Rolls {
+        // The force that keeps the body on its circle round the apex is known, but not its shares: those of the loads.
+        let pull = flow.law.pulls_to_apex(flat(y));
+        forces.iter_mut().for_each(|[normal, _, along]| *along += *normal * pull);
+    }
     if let Some(over) = over {
         let back = |x: f64| 0.0 - x;
         slips = [slips[1].map(back), slips[0].map(back)];
@@ -621,6 +627,6 @@ fn row_of<G: Own, const N: usize>(
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),
         other_rim: Some([u, v, normal, across, along]),
-        ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.stance.kind())
+        ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.kind())
     }
 }
