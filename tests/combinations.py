@@ -33,7 +33,7 @@ def bodies():
     """A body of every kind, and the inclination at which it starts."""
     parts = sc.parts
     cup = parts.cone(lower_diameter=2.0, upper_diameter=1.4, length=1.5, mass=1.0)
-    wheel = parts.cylinder(outer_diameter=2.0, length=0.4, mass=1.0)
+    wheel = parts.cylinder(outer_diameter=2.0, length=1.6, mass=1.0)
     axle = parts.cylinder(outer_diameter=0.8, length=0.3, mass=0.1)
     return {
         "equal rims": sc.Body.solid(1.5),
