@@ -198,7 +198,7 @@ def test_the_outcome_of_a_flick_that_goes_on_is_what_the_motion_says():
         ({"restitution": 0.5, "t": [0.0, -1.0]}, "^t = -1.0: expected times after t0"),
         (
             {"restitution": 0.5, "state": sc.State(2.5, 0, 0, 0, height=0.5)},
-            "^height = -0.5: expected both rims",
+            "^height = -0.5: expected all rims",
         ),
         (
             {"restitution": 0.5, "state": sc.State(1.0, 0, 0, 0, height=-0.5)},
