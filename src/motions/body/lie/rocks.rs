@@ -98,7 +98,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
         (end[SIN], end[COS]) = self.of.body.border_angle();
         end[W2] = 0.0;
-        let fastest = [2, 4, 5, 6].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
+        let fastest = [W1, W3, UH, U2].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
         // A hop that is lost in the roundings of theta has no later one.
