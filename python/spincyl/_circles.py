@@ -283,6 +283,14 @@ def extent_of(rims: Floats) -> tuple[float, float]:
     return float((height + fillet).max() - (height - fillet).min()), float(2 * (radius + fillet).max())
 
 
+def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
+    """Radius and fillet of the circle on which a single body stands, for each number of a circle."""
+    if body.rims is None:
+        return 1.0 - floats(body.fillet), body.fillet
+    radius, _, fillet = np.moveaxis(body.rims[rim], -1, 0)
+    return radius, fillet
+
+
 def lowest_point_of(body: Circles, theta: Floats, rim: Any) -> Any:
     """The height of the lowest point of a body above that of one of its several circles; 0 or less."""
 

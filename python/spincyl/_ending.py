@@ -1,8 +1,9 @@
 """Endings of a motion."""
 
 from enum import IntEnum
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
+from spincyl._phases import Rim
 from spincyl._state import State
 
 
@@ -16,8 +17,8 @@ class Ending(IntEnum):
     FACE
         The face landed on the table, at theta = 0 or pi.
     SIDE
-        The other rim landed at theta = pi/2, or another part at `theta_end`. A thin disk (ell = 0) has no
-        other rim.
+        The other rim landed at theta = pi/2, another circle at one of `Body.borders`, or another part at
+        `theta_end`. A thin disk (ell = 0) has no other rim.
     LIFT_OFF
         The normal force vanished.
     SLIP
@@ -54,12 +55,12 @@ class RestsOn(IntEnum):
     NONE
         The body is not at rest, or the motion was not computed to its rest.
     FACE
-        Its first face, at the rim from which the initial state is seen; `Motion.axis_up` is then 1. A bounce
-        of the face and a spin on it are not computed.
+        Its first face, at the rim from which the initial state is seen, or at the lower end of a body of several
+        circles; `Motion.axis_up` is then 1. A bounce of the face and a spin on it are not computed.
     OTHER_FACE
         The face at its other end; `Motion.axis_up` is then -1.
     SIDE
-        Its side: both rims, or a rim and another part of the body.
+        Its side: both rims, any two circles, or a rim and another part of the body.
     EDGE
         A rim, at rest: the body is balanced, or held by dry losses. A ball rests at any inclination.
     """
@@ -130,10 +131,11 @@ class Event(NamedTuple):
     state : State or EllipsoidState
         State at that time, in natural units.
     rim : str
-        Rim from which the state is seen: "first" is that of the initial state, "other" the other one.
+        Rim from which the state is seen: "first" is that of the initial state, "other" the other one. For a
+        body of several circles see `Phase.rim`.
     """
 
     ending: Ending
     time: float
     state: State
-    rim: Literal["first", "other"] = "first"
+    rim: Rim = "first"

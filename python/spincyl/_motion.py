@@ -170,8 +170,10 @@ class Motion(Outputs):
     def rim(self) -> NDArray[np.uint8]:
         """(n,) code of the rim from which the body is seen at each time: 0 its first rim, 1 the other one.
 
-        For a body of several circles it is the number of the circle that carries the body, or that would
-        carry it in the air, in `Body.circles`; theta is then always told from the lower end of the body.
+        For a body of several circles it is the number of the circle in `Body.circles` that carries the body,
+        or that would carry it in the air; on two circles the lower number. Theta is then always the
+        inclination of the body's lower end, so that only the contact point, `slip`, `normal` and `friction`
+        refer to this circle.
 
         The first rim is that of the initial state. Theta, w, phi, psi, the contact point, `slip`, `normal`
         and `friction` refer to this rim; `centre` and `orientation` do not depend on it. Always 0 without
@@ -184,9 +186,10 @@ class Motion(Outputs):
     def axis_up(self) -> Floats:
         """(n,) cosine of the angle from the vertical to the body's axis, which points out of its first rim.
 
-        1 if the body lies on its first face (heads), -1 if it lies on the other one (tails), 0 on its side.
+        1 if the body lies on its first face (heads), -1 if it lies on the other one (tails), 0 on its side. The
+        first face of a body of several circles is that at its lower end, so that this is cos theta.
         """
-        up: Floats = _core.axis_up(self.theta, self.rim)
+        up: Floats = _core.axis_up(self.theta, self.rim if self.body.rims is None else 0)
         return up
 
     @property

@@ -143,7 +143,8 @@ class Outputs:
         FRICTION,
         """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
 
-        0 rolling, 1 slipping, 2 flying; on both rims 3 lying and slipping, 4 pivoting, 5 rolling on its side.
+        0 rolling, 1 slipping, 2 flying; on both rims or two circles 3 lying and slipping, 4 pivoting, 5 rolling
+        on its side, 6 rolling round its apex.
         """,
     )
     drilling = Number(

@@ -1,7 +1,7 @@
 """Phases (slipping, rolling, flying, lying) and impacts of a motion with friction or restitution."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
@@ -14,9 +14,17 @@ from spincyl._state import State, numbers_without_slip, refuse_state_in_air, sta
 if TYPE_CHECKING:
     from spincyl._body import Body
 
-Kind: TypeAlias = Literal["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"]
+Kind: TypeAlias = Literal[
+    "rolling",
+    "slipping",
+    "flying",
+    "lying",
+    "pivoting",
+    "rolling on its side",
+    "rolling round its apex",
+]
 #: Kind of phase for each code in `Motion.phase`.
-KINDS: tuple[Kind, ...] = ("rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side")
+KINDS: tuple[Kind, ...] = get_args(Kind)
 Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
 #: Behaviour of the contact point in an impact, for each code of the core.
 HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
@@ -35,13 +43,16 @@ class Phase(NamedTuple):
     time : float
         Time at which the phase begins, in sqrt(R/g), for a measured body in seconds.
     kind : str
-        "rolling", "slipping" or "flying". For a body on both rims: "lying" (both rims slip), "pivoting" or
-        "rolling on its side".
+        "rolling", "slipping" or "flying". For a body on both rims, or on two circles: "lying" (both slip),
+        "pivoting" (one slips), "rolling on its side", or "rolling round its apex" (the point where its axis
+        meets the table, if the circles have unequal radii).
     state : State
         State at that time, with its slip, in natural units; in the air also with its `height` and `lift`.
         A motion that starts from it continues this one.
     rim : str
-        Rim from which the state is seen: "first" is that of the initial state, "other" the other one.
+        Rim from which the state is seen: "first" is that of the initial state, "other" the other one. For a
+        body of several circles the circle that carries it: "first" is the lowest one of `Body.circles`,
+        "other" the next one, then "third" and so on.
     """
 
     time: float
@@ -65,6 +76,7 @@ class Impact(NamedTuple):
         Time in sqrt(R/g) or s.
     rim : str
         Rim that lands: "first" is the rim to which theta of the initial state refers, "other" the other rim.
+        For a body of several circles see `Phase.rim`.
     kind : str
         What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
         "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
@@ -75,7 +87,8 @@ class Impact(NamedTuple):
     lost : float
         Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
     before : State
-        State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands.
+        State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands; for a
+        body of several circles always to its lower end.
     after : State
         State after the impact.
     stays : bool

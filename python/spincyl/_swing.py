@@ -90,12 +90,17 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
     ValueError
         If the body or the state is out of range, or if rounding errors leave no correct digit.
     """
+    return swing_on(body, state, contact)
+
+
+def swing_on(body: Body, state: State, contact: Contact, rim: int | None = None) -> Swing:
+    """The nutation of a motion on the circle `rim` of a body that has several, or else the one that carries."""
     of, start = numbers_of_one(body, state, several=True)
     numbers_without_slip(
         state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"
     )
     if body.rims is not None:
-        seen: Any = body._at(*start)
+        seen: Any = body._at(*start, rim=rim)
         start, of = seen[:4], seen[4:]
     eight: list[float] = _core.swing(of, start, code_of(contact))
     found = Swing._make([*eight, None])

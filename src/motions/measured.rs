@@ -237,7 +237,7 @@ impl MeasuredMotion {
         let [phi, theta, psi] = euler_angles(orientation);
         let [world, own] = [phi, psi].map(|by| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), by));
         let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
-        let Point3 { coords: began } = Pose::start().centre(self.of.body(), &state);
+        let Point3 { coords: began } = Pose::start().centre(&self.of.body().told_at(theta), &state);
         let [ahead, aside] = [began.x, began.y].map(|x| self.of.scale.metres(x));
         let placed =
             move |p: Point3<f64>| world * (p - Vector3::new(ahead, aside, 0.0)) + Vector3::new(x, y, 0.0);

@@ -91,8 +91,8 @@ impl StateArrays for State {
             rows.add("psi", 2, &|i, to| to.extend([poses[i].psi.turns, poses[i].psi.rest]))?;
             let point = |i: usize| poses[i].contact_point;
             rows.add("contact_point", 2, &|i, to| to.extend([point(i).x, point(i).y]))?;
-            let centre = |i: usize| <[f64; 3]>::from(poses[i].centre(body, &m.states[i]).coords);
-            rows.add("centre", 3, &|i, to| to.extend(centre(i)))?;
+            let centre = |i: usize| m.sample(i).centre(body).map(|at| <[f64; 3]>::from(at.coords));
+            rows.add("centre", 3, &|i, to| to.extend(centre(i).unwrap_or([f64::NAN; 3])))?;
             let turned = |i: usize| m.sample(i).orientation().map(|q| <[f64; 4]>::from(q.coords));
             rows.add("orientation", 4, &|i, to| to.extend(turned(i).unwrap_or([f64::NAN; 4])))?;
         }
@@ -419,15 +419,19 @@ fn dictionary<'py, S: StateArrays>(
     {
         out.set_item(intern!(py, "_known_until"), path.known_until)?;
     }
+    let rims = match m.circle {
+        Some(circle) => vec![circle; m.times.len()],
+        None => m.path.as_ref().map_or(Ok(Vec::new()), |path| copied(&path.rims))?,
+    };
+    if !rims.is_empty() {
+        extra.set_item("rim", PyArray1::<u8>::from_vec(py, rims))?;
+    }
     if let Some(path) = &m.path
         && rubs
     {
         let mut codes = room(path.kinds.len())?;
         codes.extend(path.kinds.iter().map(|kind| *kind as u8));
         extra.set_item(intern!(py, "phase"), PyArray1::<u8>::from_vec(py, codes))?;
-        if !path.rims.is_empty() {
-            extra.set_item("rim", PyArray1::<u8>::from_vec(py, copied(&path.rims)?))?;
-        }
         let row = 7 + path.phases.first().map_or(0, |phase| phase.state.numbers().as_ref().len());
         let mut phases = room(path.phases.len() * row)?;
         for phase in &path.phases {

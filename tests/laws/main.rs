@@ -3,6 +3,7 @@
 //! All files are one program, since the compiler would take as long for each of several.
 
 mod big_integers;
+mod carried;
 mod circles;
 mod circles_reference;
 mod common;

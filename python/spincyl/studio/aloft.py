@@ -13,9 +13,9 @@ import numpy as np
 
 from spincyl._contact import Contact
 from spincyl._input.numbers import Floats
-from spincyl._phases import Phase
+from spincyl._phases import KINDS, RIMS, Phase
 from spincyl._state import State
-from spincyl._swing import swing
+from spincyl._swing import swing_on
 from spincyl.studio.shape import rotations
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _BRIEF = 1e-3
 #: A body tumbles in a vertical plane if its other rates are below this share; impacts leave rounding errors.
 _PLANAR = 1e-12
 #: Kinds of phases on one rim, and on both.
-_ON_RIM, _ON_BOTH = ("rolling", "slipping"), ("lying", "pivoting", "rolling on its side")
+_ON_RIM, _ON_BOTH = ("rolling", "slipping"), KINDS[3:]
 #: Codes of phases in which a point of contact slips.
 SLIPS = (1, 3, 4)
 FLIES = 2
@@ -178,7 +178,7 @@ def _often(body: "Body", phase: Phase) -> float:
         return 0.0  # the axis only turns about the vertical
     contact: Contact = "rolling" if phase.kind == "rolling" else "smooth"
     with suppress(ValueError):  # where the first integrals lose their digits
-        return 1 / swing(body, state, contact).period
+        return 1 / swing_on(body, state, contact, RIMS.index(phase.rim)).period
     return 0.0
 
 

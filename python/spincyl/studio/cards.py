@@ -47,15 +47,15 @@ def body(found: Body) -> str:
     sharp = not is_lazy(found.fillet) and not np.any(found.fillet)
     rows = [("shape", kind)]
     if found.rims is not None:
-        rows.append(("circles on which it can stand", str(found.rims.shape[-2])))
-    elif sharp:
+        return _several(found, rows)
+    if sharp:
         rows.append(("aspect ratio ℓ", _number(found.ell)))
     else:
         rows += [
             ("centre above the rim circle ℓ", _number(found.ell, "R")),
             ("fillet", _number(found.fillet, "R")),
         ]
-    if found.rims is None and (not is_scalar(found.bore) or found.bore > 0):
+    if not is_scalar(found.bore) or found.bore > 0:
         rows.append(("bore, inner over outer radius", _number(found.bore)))
     rows += [
         ("moment of inertia I₁", _number(found.i1, "M R²")),
@@ -79,6 +79,31 @@ def body(found: Body) -> str:
         ball = found.fillet == 1  # a ball balances at no inclination
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return framed(repr(found), rows, picture)
+
+
+def _several(found: Body, rows: list[tuple[str, str]]) -> str:
+    """The card of a body of several circles, lying on the first two on which it can rest."""
+    rows += [
+        ("moment of inertia I₁", _number(found.i1, "M R²")),
+        ("moment of inertia I₃", _number(found.i3, "M R²")),
+    ]
+    if found.scale is not None:
+        rows += [
+            ("radius R", _number(1e3 * found.scale.radius, "mm")),
+            ("mass M", _number(1e3 * found.scale.mass, "g")),
+        ]
+    if not found._single:
+        return framed(repr(found), rows, "")
+    for k, (radius, height, fillet) in enumerate(found.circles.tolist()):
+        rounded = f", fillet {fillet:.6g} R" if fillet else ""
+        rows.append((f"circle {k}", f"radius {radius:.6g} R, height {height:+.6g} R{rounded}"))
+    rows += [(f"circle {k + 1} lands at", _angle(x)) for k, x in enumerate(found.borders) if found.spans[k]]
+    for k in found.rests():
+        apex = found.apex(k)
+        if np.isfinite(apex.radius):
+            rows.append((f"rolls on {k} and {k + 1} in a circle", _number(apex.radius, "R")))
+    lies = [found.borders[k] for k in found.rests()]
+    return framed(repr(found), rows, drawing(found, float(lies[0]) if lies else _LEANING, "θ"))
 
 
 def state(found: State) -> str:
@@ -198,10 +223,13 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
     lying = math.pi / 2 + 1e-9 if ell > 0 else math.pi
     if of is not None and of.fillet > 0:
         lying = landing(of) + 1e-9
+    several = of is not None and of.rims is not None
+    if several:
+        lying = math.pi
     thetas = [float(x) for x in (theta, *others)]
     if not 0 <= thetas[0] <= lying:
         return ""
-    rounded = of if of is not None and of.fillet > 0 else None
+    rounded = of if of is not None and (of.fillet > 0 or several) else None
     drawn = [x for x in thetas if 0 <= x <= lying]
     if rounded is None:
         shapes = [_silhouette(ell, x) for x in drawn]
@@ -211,7 +239,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
     across, up = 1j * _axis(thetas[0]), _axis(thetas[0])
     end, half = across + 2 * ell * up, ell
     if rounded is not None:
-        middle, half = skin(rounded).middle, skin(rounded).half
+        middle, half = _middle(rounded)
         across = _centre(rounded, thetas[0]) + (middle - half) * up
         end = across + 2 * half * up
     unit = _SIZE / (2 * max(half, 1.0))
@@ -229,7 +257,7 @@ def drawing(of: Body | None, theta: float, label: str, others: Iterable[float] =
     thin = 'stroke-width="0.8" opacity="0.6"'
     pieces = [path(*shape, shape[0], style='opacity="0.35"') for shape in shapes[1:]]
     pieces.append(path(*shapes[0], shapes[0][0], style='fill="currentColor" fill-opacity="0.12"'))
-    if of is not None and 0 < of.bore < 1:
+    if of is not None and not several and 0 < of.bore < 1:
         for side in (1 - of.bore, 1 + of.bore):
             low = side * across if rounded is None else across + 1j * (side - 1) * up
             pieces.append(path(low, low + 2 * half * up, style=f'stroke-dasharray="4 3" {thin}'))
@@ -265,9 +293,21 @@ def _silhouette(ell: float, theta: float) -> list[complex]:
 
 
 def _centre(of: Body, theta: float) -> complex:
-    """The centre of mass of a body with a fillet, relative to its contact point."""
+    """The centre of mass of a body with a fillet or of several circles, relative to its contact point."""
+    if of.rims is not None:
+        k = int((of.borders < theta).sum())
+        radius, height, fillet = of.circles[k].tolist()
+        return 1j * radius * _axis(theta) - height * _axis(theta) + 1j * fillet
     rim = 1 - float(of.fillet)
     return 1j * rim * _axis(theta) + float(of.ell) * _axis(theta) + 1j * float(of.fillet)
+
+
+def _middle(of: Body) -> tuple[float, float]:
+    """Height of the middle of a body above its centre of mass, and half its length."""
+    if of.rims is None:
+        return skin(of).middle, skin(of).half
+    heights = [z for profile in profiles(of) for _, z in profile.corners]
+    return (max(heights) + min(heights)) / 2, (max(heights) - min(heights)) / 2
 
 
 def _round(of: Body, theta: float, every: int) -> list[complex]:

@@ -8,9 +8,14 @@ A cylinder with a fillet is modelled by a smaller cylinder with a margin: contac
 cylinder are two fillets apart, and MuJoCo puts the contact point half way between them. Therefore the plane
 is one fillet below the table. The shape is exact, without facets. A single circle is modelled by a cylinder
 whose half thickness is a millionth of the radius.
+
+Of a body of several circles only these touch the table: each is such a cylinder, or a ball, and a tip is a
+tiny ball. Where a ball passes into an edge at a smooth joint, the whole ball would be the lowest: there the
+mesh for display touches.
 """
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -111,20 +116,21 @@ def _geometry(
     table = f'    <geom name="table" type="plane" {size} {touch}/>'
     pair, more, heights = "", [], [x["height"] for x in shape.get("circles", [])]
     fillet, rim = shape.get("swollen_by", 0.0), heights and shape["circles"][0]["radius"]
-    if shape["type"] == "ellipsoid":
+    if shape["type"] == "circles":
+        if _is_smooth(shape["circles"]):
+            geoms = [f'name="rim" type="mesh" mesh="looks" {touch}']
+            more.append("NEARLY: a smooth joint. Here the body is a mesh with facets.")
+        else:
+            geoms, deep, pair = _several(shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}")
+            geoms = [f"{geom} {touch}" if _UNSEEN not in geom else geom for geom in geoms]
+            table = "\n".join([table, *(f"{plane} {size} {_UNSEEN}/>" for plane in deep)])
+            more.append("Each circle that can touch the table is a geom of its own.")
+    elif shape["type"] == "ellipsoid":
         of = f'size="{_words(shape["semi_axes"])}" pos="{_words(shape["centre"])}"'
         geoms = [f'name="rim" type="ellipsoid" {of} {touch}']
     elif shape["type"] == "capsule":
         of = f'size="{_words([fillet, heights[1]])}"'
         geoms = [f'name="rim" type="capsule" {of} {touch}']
-    elif shape["type"] == "circles":
-        geoms = [f'name="circle {k}" {_circle(x, metre)} {touch}' for k, x in enumerate(shape["circles"])]
-        told = (
-            ", with the fillet as part of its radius"
-            if any(x["swollen_by"] for x in shape["circles"])
-            else ""
-        )
-        more.append(f"Each circle is a cylinder of {2 * _THIN * metre:.3g} m, or a ball{told}.")
     elif rim == 0:
         of = f'type="sphere" size="{fillet!r}"'
         pairs = zip(("rim", "other"), heights, strict=False)
@@ -149,14 +155,39 @@ def _geometry(
     return table, "\n".join(f"      <geom {geom}/>" for geom in geoms), mesh, pair, more
 
 
-def _circle(of: dict[str, float], metre: float) -> str:
-    """The geom of a circle of a body of several."""
-    radius, half, z = of["radius"] + of["swollen_by"], _THIN * metre, of["height"]
-    if of["radius"] == 0 and radius > 0:
-        return f'type="sphere" size="{radius!r}" pos="0 0 {z!r}"'
-    # its outer edge is the circle
-    inside = z - math.copysign(half, z)
-    return f'type="cylinder" size="{_words([max(radius, half), half])}" pos="0 0 {inside!r}"'
+def _is_smooth(circles: list[dict[str, float]]) -> bool:
+    """Whether any two neighbouring circles touch at a smooth joint."""
+    for below, above in pairwise(circles):
+        apart = math.hypot(above["height"] - below["height"], above["radius"] - below["radius"])
+        if apart <= abs(above["swollen_by"] - below["swollen_by"]) * (1 + 1e-9):
+            return True
+    return False
+
+
+def _several(
+    circles: list[dict[str, float]], metre: float, grip: tuple[float, float], how: str
+) -> tuple[list[str], list[str], str]:
+    """The geoms of several circles, the planes below the table for those with a fillet, and their contacts."""
+    geoms, planes, pairs = [], [], []
+    mu, torsion = grip
+    for k, circle in enumerate(circles):
+        radius, fillet, name = circle["radius"], circle["swollen_by"], f"circle {k}"
+        place = f'name="{name}" pos="0 0 {circle["height"]!r}"'
+        if radius == 0:
+            geoms.append(f'{place} type="sphere" size="{fillet or _THIN * metre!r}"')
+            continue
+        geom = f'{place} type="cylinder" size="{_words([radius, _THIN * metre])}"'
+        if fillet == 0:
+            geoms.append(geom)
+            continue
+        geoms.append(f"{geom} {_UNSEEN}")
+        plane = f"table below circle {k}"
+        planes.append(f'    <geom name="{plane}" type="plane" pos="0 0 {-fillet!r}"')
+        held = f'friction="{_words([mu, mu, torsion, 0.0, 0.0])}"'
+        touch = how.format(f'margin="{2 * fillet!r}" gap="0"')
+        pairs.append(f'    <pair geom1="{plane}" geom2="{name}" {held} {touch}/>\n')
+    contact = "  <contact>\n" + "".join(pairs) + "  </contact>\n" if pairs else ""
+    return geoms, planes, contact
 
 
 def _damped(restitution: float) -> float:

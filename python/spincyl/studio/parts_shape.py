@@ -21,7 +21,7 @@ _STRIPE, _LIFT = 0.08, 0.004
 def profiles_of_parts(body: Body) -> list[Profile]:
     """The surfaces of the parts, without a point, which has none; or the hull of the circles of a body."""
     if not body._parts:
-        return [Profile("hull", IVORY, _hull_of_circles(body))]
+        return [Profile("hull", IVORY, corners, normals) for corners, normals in _hull_of_circles(body)]
     drawn = [(name, _surfaces(form, numbers)) for name, form, numbers in body._parts]
     seen = [(name, surfaces) for name, surfaces in drawn if surfaces]
     return [
@@ -31,17 +31,24 @@ def profiles_of_parts(body: Body) -> list[Profile]:
     ]
 
 
-def _hull_of_circles(body: Body) -> "_Corners":
-    """Radii and heights along the convex hull of a body of several circles, from its lower end up."""
-    ends = [0.0, *body.borders.tolist(), np.pi]
-    found: _Corners = []
-    for (radius, height, fillet), low, high in zip(body.circles.tolist(), ends, ends[1:], strict=False):
-        angle = np.linspace(low, high, _QUARTER if fillet > 0 else 1)
-        found += zip((radius + fillet * np.sin(angle)), (height - fillet * np.cos(angle)), strict=True)
-    return [(0.0, found[0][1]), *((float(r), float(z)) for r, z in found), (0.0, found[-1][1])]
-
-
 _Corners = list[tuple[float, float]]
+
+
+def _hull_of_circles(body: Body) -> Iterator[tuple[_Corners, _Corners | None]]:
+    """The convex hull of a body of several circles, from its lower end up: fillets, straight walls and faces."""
+    ends = [0.0, *body.borders.tolist(), np.pi]
+    rows = body.circles.tolist()
+    last = 0.0, rows[0][1] - rows[0][2]
+    for (radius, height, fillet), (low, high) in zip(rows, pairwise(ends), strict=True):
+        pieces = math.ceil(_QUARTER * (high - low) / (np.pi / 2))
+        corners, normals = arc((radius, height), fillet, low - np.pi / 2, high - np.pi / 2, pieces)
+        if math.dist(last, corners[0]) > _NARROWEST_CUT:
+            yield [last, corners[0]], None
+        if fillet > 0:
+            yield corners, normals
+        last = corners[-1]
+    if last[0] > _NARROWEST_CUT:
+        yield [last, (0.0, last[1])], None
 
 
 def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Corners | None]]:

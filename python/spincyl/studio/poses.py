@@ -23,10 +23,10 @@ from spincyl._asked import Want
 from spincyl._contact import Contact, Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._input.numbers import Floats
-from spincyl._phases import has_friction
+from spincyl._phases import RIMS, has_friction
 from spincyl._slip import lever_of_stone
 from spincyl._state import State
-from spincyl._swing import swing
+from spincyl._swing import swing_on
 from spincyl.studio.aloft import Aloft, aloft, goes_up, parts_of_flight
 from spincyl.studio.surface import rotations
 
@@ -97,12 +97,12 @@ def pace(m: "Motion") -> float:
     if m.losses is not None:
         return _mean_pace(m)
     if not isinstance(m.contact, Coulomb | Viscous):
-        return swing(m.body, m.start, m.contact).period
+        return swing_on(m.body, m.start, m.contact).period
     found = [np.inf]
     for phase in m.phases:
         contact: Contact = "rolling" if phase.kind == "rolling" else "smooth"
         with suppress(ValueError):  # where the first integrals lose their digits
-            found.append(swing(m.body, replace(phase.state, slip=None), contact).period)
+            found.append(swing_on(m.body, replace(phase.state, slip=None), contact, RIMS.index(phase.rim)).period)
     return min(found)
 
 
@@ -110,14 +110,15 @@ def _mean_pace(m: "Motion") -> float:
     """The shown time divided by the number of nutations in it."""
     first, last = span(m)
     t = np.linspace(first, last, _SAMPLES)
-    theta, w = seen(m, t, "theta", "w")
+    theta, w, rims = seen(m, t, "theta", "w", "rim")
     rolls = np.full(t.shape, m.contact != "smooth")
     if has_friction(m.contact):
         rolls = seen(m, t, "phase")[0] == 0
     found = np.zeros(t.shape)
     for k, (tilt, turning, rolling) in enumerate(zip(theta, w, rolls, strict=True)):
         with suppress(ValueError):
-            found[k] = 1 / swing(m.body, State(tilt, *turning), "rolling" if rolling else "smooth").period
+            contact: Contact = "rolling" if rolling else "smooth"
+            found[k] = 1 / swing_on(m.body, State(tilt, *turning), contact, int(rims[k])).period
     many = float(np.mean(found))
     return 1 / many if many > 0 else np.inf
 

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spincyl._circles import circle_of
 from spincyl._input.files import path_of, writing_whole
 from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
@@ -111,15 +112,15 @@ def _impulses(strikes: "list[Impact]", first: float, unit: float, count: int, ra
 
 def _contact(m: "Motion", times: Floats, strikes: bool = False) -> tuple[Floats, Floats]:
     """The azimuth of the contact point and its speed along the body at times; the speed is 0 in the air."""
-    phi, theta, w = seen(m, times, "phi", "theta", "w")
-    s, c, fillet = np.sin(theta), np.cos(theta), m.body.fillet
+    phi, theta, w, rim = seen(m, times, "phi", "theta", "w", "rim")
+    s, c, (radius, fillet) = np.sin(theta), np.cos(theta), circle_of(m.body, rim)
     # finite at the poles of a ball; after a face has landed it is undefined, and the last one is repeated
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        round_the_rim = (1 - fillet) * (w[:, 2] - w[:, 0] * c / s) if fillet < 1 else 0.0
+        round_the_rim = np.where(radius > 0, radius * (w[:, 2] - w[:, 0] * c / s), 0.0)
         speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
     if goes_up(m):
         speed = np.where(seen(m, times, "phase")[0] == FLIES, 0.0, speed)
-    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & (s > 0 if fillet < 1 else True))
+    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & ((s > 0) | (radius == 0)))
     if known.size == 0:
         if strikes:
             return np.zeros(times.size), np.zeros(times.size)

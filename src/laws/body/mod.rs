@@ -325,6 +325,38 @@ impl Body {
         Self { row: Some(row), ..*self }.on_circle(at)
     }
 
+    /// The body with this circle carrying, by its number in [`circles`](Self::circles), as told from its lower end. States and
+    /// poses of a motion refer to the body in this way; one circle or two equal rims are the body itself.
+    ///
+    /// ```
+    /// use spincyl::{Body, State, body::Circle, pose::Pose};
+    ///
+    /// let cone = Body::cone(2.0)?;
+    /// let over = State { theta: 2.0, w1: 0.0, w2: 0.0, w3: 0.0 };
+    /// let height = Pose::start().centre(&cone.standing_on(1), &over).z;
+    /// assert_eq!(height, cone.circles()[1].height(2.0));
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    #[must_use]
+    pub fn standing_on(&self, circle: u8) -> Self {
+        let row = self.row.map(|row| if row.is_over() { row.turned() } else { row });
+        row.and_then(|row| row.at(usize::from(circle))).map_or(*self, |row| self.on(row))
+    }
+
+    /// The same with the circle carrying that does so at this inclination.
+    pub(crate) fn told_at(&self, theta: f64) -> Self {
+        self.standing_on(self.at(theta).view().circles.map_or(0, |[here, _]| here))
+    }
+
+    /// The largest distance of the surface from the centre of mass.
+    pub(crate) fn reach(&self) -> f64 {
+        let of = |circle: &Circle| circle.depth.hypot(circle.radius) + circle.fillet;
+        self.row.map_or_else(
+            || self.ell.hypot(self.rim.hi) + self.fillet,
+            |row| row.circles().iter().map(of).fold(0.0, f64::max),
+        )
+    }
+
     /// Where the circle that carries stands in the body.
     pub(crate) fn view(&self) -> View {
         let Some(row) = &self.row else { return View::default() };
@@ -344,6 +376,11 @@ impl Body {
     /// Whether the circle that carries touches the next one at a smooth joint.
     pub(crate) fn joins_next(&self) -> bool {
         self.row.is_some_and(|row| row.joins_next())
+    }
+
+    /// Whether one of several circles lands at this inclination, told from the lower end of the body.
+    pub(crate) fn lands_at(&self, theta: f64) -> bool {
+        self.row.is_some_and(|row| row.borders().any(|[border, span]| span > 0.0 && theta == border))
     }
 
     /// Whether any two circles of the body touch at a smooth joint.

@@ -17,6 +17,7 @@ use super::{Answer, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room, spare_for};
 use crate::laws::body::Body;
 use crate::laws::state::State;
+use crate::motions::ask::rests_on::axis_up;
 use crate::motions::body::BodyWalk;
 use crate::motions::body::spun::knows;
 use crate::motions::walk::Pause;
@@ -42,7 +43,7 @@ fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), 
     if let Some((y, slip, rim)) = found.last() {
         out.put_last(i, &y, slip);
         out.put_rims(i * times.len(), &path.rims, (i, rim));
-        out.put(Summary::AxisUp, i, y.axis_up(rim));
+        out.put(Summary::AxisUp, i, axis_up(body, &y, rim));
     }
     if out.wants(Summary::RestsOn) {
         out.put(Summary::RestsOn, i, f64::from(found.rests_on(body) as u8));

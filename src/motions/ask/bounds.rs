@@ -65,8 +65,7 @@ impl Motion {
                 *most = most.max(x);
             }
         }
-        let reach = body.ell().hypot(body.rim()) + body.fillet();
-        let size = [reach, body.i1().max(body.i3())];
+        let size = [body.reach(), body.i1().max(body.i3())];
         Bounds::of([self.error, self.pose_error, self.force_error], size, most)
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! a face    the motion ended where a face landed; e3 points up on the first face, and down on the other one
-//! its side  no velocity is left, and both rims touch the table, or theta has reached theta_end
+//! its side  no velocity is left, and both rims or any two circles touch the table, or theta has reached theta_end
 //! an edge   no velocity is left, and dry losses hold the body, or it is balanced: theta'' = 0
 //! ```
 //! A bounce of the face and a spin on it are not computed, and neither changes which face lies on the table. A motion that
-//! ends where its other rim lands is not computed to its rest.
+//! ends where its other rim lands is not computed to its rest. A body of several circles is told from its lower end, so
+//! that theta itself says which face is down, and every border of its circles is a side.
 //!
 //! Error: none, unless the estimated error of the motion is so large that another motion is as likely.
 
@@ -27,11 +28,12 @@ coded! {
     pub enum RestsOn {
         /// The body is not at rest, or its motion was not computed to its rest.
         None = 0,
-        /// The face at the rim from which the initial state was seen: its axis points up.
+        /// The face at the rim from which the initial state was seen, or at the lower end of a body of several circles: its
+        /// axis points up.
         Face = 1,
         /// The face at the other end: its axis points down.
         OtherFace = 2,
-        /// Its side: both rims, or a rim and another part.
+        /// Its side: both rims, two circles, or a rim and another part.
         Side = 3,
         /// A rim: the body stands upright or leans, balanced or held by dry losses. A ball rests anywhere.
         Edge = 4,
@@ -66,21 +68,36 @@ impl LastState {
     fn rests_on(&self, body: &Body) -> RestsOn {
         let State { theta, w1, w2, w3 } = self.state;
         if self.ending == Ending::Face {
-            return if self.state.axis_up(self.rim) > 0.0 { RestsOn::Face } else { RestsOn::OtherFace };
+            let up = axis_up(body, &self.state, self.rim) > 0.0;
+            return if up { RestsOn::Face } else { RestsOn::OtherFace };
         }
         let moves = [w1, w2, w3].into_iter().chain(self.slip).any(|x| x.abs() > REST);
         if moves || self.kind == Some(Kind::Flying) && self.ending == Ending::Done {
             return RestsOn::None;
         }
         match self.ending {
-            Ending::Done | Ending::Stops | Ending::Side if theta >= body.theta_end() => RestsOn::Side,
+            Ending::Done | Ending::Stops | Ending::Side if self.is_on_side(body, theta) => RestsOn::Side,
             Ending::Stops => RestsOn::Edge,
-            Ending::Done if Contact::Rolling.derivative(body, &self.state).w2.abs() < BALANCED => {
-                RestsOn::Edge
-            }
+            Ending::Done if self.tilts(body).abs() < BALANCED => RestsOn::Edge,
             _ => RestsOn::None,
         }
     }
+
+    /// Whether the other rim, another part or two circles touch the table.
+    fn is_on_side(&self, body: &Body, theta: f64) -> bool {
+        let lies = self.kind.is_some_and(|kind| kind as u8 >= Kind::Lying as u8);
+        if body.has_row() { lies || body.lands_at(theta) } else { theta >= body.theta_end() }
+    }
+
+    /// The angular acceleration w2' on the circle that carries.
+    fn tilts(&self, body: &Body) -> f64 {
+        Contact::Rolling.derivative(&body.standing_on(self.rim), &self.state).w2
+    }
+}
+
+/// The cosine of the angle from the vertical to the axis of a body, in a state of its motion.
+pub(crate) fn axis_up(body: &Body, state: &State, rim: u8) -> f64 {
+    state.axis_up(if body.has_row() { 0 } else { rim })
 }
 
 impl Motion {

@@ -163,6 +163,9 @@ pub struct Motion<S: Moving = State> {
     pub path: Option<Box<Path<S>>>,
     /// Whether the table is smooth, so that the centre moves only up and down.
     pub(crate) smooth: bool,
+    /// The number of the only circle that carries a body of several circles, in a motion without a path.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub(crate) circle: Option<u8>,
 }
 
 impl<S: Moving> Motion<S> {
@@ -185,6 +188,7 @@ impl<S: Moving> Motion<S> {
             limit: None,
             path: None,
             smooth: false,
+            circle: None,
         })
     }
 
@@ -236,7 +240,8 @@ impl<S: Moving> Motion<S> {
 
     /// A motion that is seen from one end of the body, as told from its lower end.
     pub(crate) fn told(mut self, view: &View) -> Self {
-        let rim = view.circles.map_or(0, |[here, _]| here);
+        self.circle = view.circles.map(|[here, _]| here);
+        let rim = self.circle.unwrap_or_default();
         self.event.iter_mut().for_each(|event| event.rim = rim);
         if view.over {
             let states = self.states.iter_mut();
@@ -247,6 +252,11 @@ impl<S: Moving> Motion<S> {
             self.forces.iter_mut().flatten().for_each(|force| *force = S::force_told(force));
         }
         self
+    }
+
+    /// Whether the body is told from its lower end, whichever of its several circles carries.
+    pub(crate) fn is_told(&self) -> bool {
+        self.circle.is_some() || self.path.as_ref().is_some_and(|path| path.view.circles.is_some())
     }
 
     /// The motion; None if it was interrupted before it advanced from its initial time.
@@ -276,6 +286,8 @@ coded! {
         Pivoting = 4,
         /// The body lies on both rims and rolls straight on.
         RollingOnItsSide = 5,
+        /// The body lies on two circles of unequal radii and rolls round the point where its axis meets the table.
+        RollingRoundItsApex = 6,
     }
 }
 
@@ -357,7 +369,8 @@ pub struct Path<S = State> {
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
     /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
-    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0.
+    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0. For a
+    /// body of several circles always the number of the circle that carries, from the lower end up, from which all is told.
     pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],

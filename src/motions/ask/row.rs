@@ -64,8 +64,10 @@ impl<S: Moving> Followed<S> {
         }
         if path.goes_on {
             path.aloft.push(row.aloft);
-            path.rims.push(path.rim(lies));
             path.other_rim.push(row.other_rim.unwrap_or([f64::NAN; 5]));
+        }
+        if path.goes_on || path.view.circles.is_some() {
+            path.rims.push(path.rim(lies));
         }
         if let Some((poses, pose)) = motion.poses.as_mut().zip(row.pose) {
             poses.push(pose);

@@ -43,9 +43,13 @@ pub struct Sample<S: Moving = State> {
     pub aloft: [f64; 2],
     /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
     pub other_rim: Option<[f64; 5]>,
-    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one.
+    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one. For a
+    /// body of several circles, which is always told from its lower end, the number of the circle that carries.
     pub rim: u8,
     smooth: bool,
+    /// Whether the body is told from its lower end, whichever circle carries.
+    #[cfg_attr(feature = "serde", serde(default))]
+    told: bool,
 }
 
 impl<S: Moving> Motion<S> {
@@ -80,8 +84,9 @@ impl<S: Moving> Motion<S> {
             kind: path.and_then(|path| path.kinds.get(i).copied()),
             aloft: path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default(),
             other_rim: path.and_then(|path| path.other_rim.get(i).copied().filter(|x| !x[2].is_nan())),
-            rim: path.and_then(|path| path.rims.get(i).copied()).unwrap_or_default(),
+            rim: path.and_then(|path| path.rims.get(i).copied()).or(self.circle).unwrap_or_default(),
             smooth: self.smooth,
+            told: self.is_told(),
         }
     }
 }
@@ -95,23 +100,28 @@ impl Motion {
 }
 
 impl Sample {
+    /// Whether the state is that of the body turned upside down.
+    fn is_over(&self) -> bool {
+        self.rim == 1 && !self.told
+    }
+
     /// The cosine of the angle from the vertical to the axis of the body at the start: 1 where the body lies on its
     /// first face, and -1 where it lies on the other one.
     pub fn axis_up(&self) -> f64 {
-        self.state.axis_up(self.rim)
+        self.state.axis_up(self.is_over().into())
     }
 
     /// The rotation from the axes of the body to those of the laboratory, if poses were requested; see
     /// [`Motion::orientations`].
     pub fn orientation(&self) -> Option<UnitQuaternion<f64>> {
         // A pose on the other rim describes the body after a half turn about its own first axis.
-        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.rim == 1 { PI } else { 0.0 });
+        let over = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), if self.is_over() { PI } else { 0.0 });
         self.pose.map(|pose| pose.orientation(&self.state) * over)
     }
 
     /// The centre of mass, in R, if poses were requested.
     pub fn centre(&self, body: &Body) -> Option<nalgebra::Point3<f64>> {
-        self.pose.map(|pose| pose.centre(body, &self.state))
+        self.pose.map(|pose| pose.centre(&body.standing_on(self.rim), &self.state))
     }
 
     /// The angular velocity along the axes of the laboratory, in sqrt(g/R), if poses were requested.
@@ -134,6 +144,7 @@ impl Sample {
 
     /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested.
     pub fn velocity(&self, body: &Body) -> Option<Vector3<f64>> {
+        let body = &body.standing_on(self.rim);
         let [along, across] = if self.smooth {
             [0.0; 2]
         } else {

@@ -16,7 +16,7 @@ use super::spun::{Roundings, knows};
 use super::tail::{LastTurns, Nods};
 use super::write::state;
 use super::{check_walk, without_friction};
-use crate::error::Error;
+use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Couples;
@@ -118,6 +118,9 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
         if poses(N) && walk.made.path.view.over {
             // From the lower end, from which a pose is told, phi starts at 0.
             walk.at[PHI] = PI;
+        }
+        if body.has_row() {
+            walk.made.path.rims = room(times.len())?;
         }
         walk.next = Some(match aloft {
             Some(aloft) => walk.starts_in_air(aloft),

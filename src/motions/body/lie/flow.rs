@@ -36,11 +36,13 @@ pub(crate) enum Stance {
 }
 
 impl Stance {
-    pub fn kind(self) -> Kind {
+    /// The kind of its phase, where both circles have the same radius if the border is `even`.
+    fn kind(self, even: bool) -> Kind {
         match self {
             Self::Slips => Kind::Lying,
             Self::Pivots { .. } => Kind::Pivoting,
-            Self::Rolls => Kind::RollingOnItsSide,
+            Self::Rolls if even => Kind::RollingOnItsSide,
+            Self::Rolls => Kind::RollingRoundItsApex,
         }
     }
 }
@@ -83,6 +85,10 @@ pub(super) fn flat<T: Copy>(y: &[T]) -> Flat<T> {
 }
 
 impl<G: Own> LyingFlow<G> {
+    pub fn kind(&self) -> Kind {
+        self.stance.kind(self.law.border.even)
+    }
+
     pub fn new(law: Lying<f64>, own: G, fixed: f64, (over, tol): (f64, f64)) -> Self {
         let soft = if law.dry { 0.25 * law.strength[0] * law.yields(0, 0) } else { 0.0 };
         Self {

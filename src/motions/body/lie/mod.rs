@@ -225,8 +225,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             return Next::Ends(Ending::Stops);
         }
+        let kind = flow.kind();
         self.of.lying = Some(Box::new(LyingPhase { flow }));
-        Next::Own(stance.kind())
+        Next::Own(kind)
     }
 
     /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
@@ -621,6 +622,6 @@ fn row_of<G: Own, const N: usize>(
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),
         other_rim: Some([u, v, normal, across, along]),
-        ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.stance.kind())
+        ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.kind())
     }
 }
