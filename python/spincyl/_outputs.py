@@ -167,7 +167,14 @@ class Outputs:
         ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch the table. Needs `restitution=`."
     )
     normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
-    friction_other = Number(ALOFT, '(n,) `friction` of the other rim. Needs `restitution=` and want="force".')
+    friction_other = Number(
+        ALOFT,
+        """(n,) `friction` of the other rim. Needs `restitution=` and want="force".
+
+        While a body rolls round its apex, only the sum of the frictions of both circles is determined: they are
+        shares of it in the ratio of the normal forces.
+        """,
+    )
     work_lost = Number(
         LOSSES, "(n,) energy that `losses` have taken since the initial state, M g R or J. Needs `losses=`."
     )

@@ -33,9 +33,9 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     Parameters
     ----------
     body : Body
-        Single body or family that can touch the table with its rim at theta = pi/2. A can or a coin touches
-        the table with both rims; `roll` then needs ``restitution=0.0`` to continue until the body rolls on
-        its side.
+        Single body or family that can touch the table with its rim at theta = pi/2, also a single body of
+        several circles, such as a bottle. A can, a coin or a bottle touches the table with two rims; `roll`
+        then needs ``restitution=0.0`` to continue until the body rolls on its side.
     velocity : array_like
         Velocity of the centre, in sqrt(g R); for a measured body, or with `scale`, in m/s.
     backspin : array_like
@@ -80,6 +80,8 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     if body._single and body.theta_end < np.nextafter(np.pi / 2, 0):
         why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
         raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
+    if body.rims is not None and body._single:
+        return body.with_centre_velocity(State(np.pi / 2 + 0.0 * backspin, 0.0, 0.0, -backspin), 0.0, velocity)
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
         state, slip = _core.thrown(float(velocity), float(backspin), six_numbers(body))

@@ -38,7 +38,7 @@ def card(found: object) -> str:
 
 def body(found: Body) -> str:
     """The card of a body, balanced on its rim."""
-    excess = found.excess
+    excess = found.excess if found.rims is None else found.i1 / found.i3 - 1
     kind = "a family of bodies"
     if is_scalar(excess):
         kind = "as long as I₁ = I₃" if excess == 0 else "cylinder: I₁ > I₃" if excess > 0 else "disk: I₁ < I₃"
@@ -47,7 +47,7 @@ def body(found: Body) -> str:
     sharp = not is_lazy(found.fillet) and not np.any(found.fillet)
     rows = [("shape", kind)]
     if found.rims is not None:
-        return _several(found, rows)
+        return _of_circles(found, rows)
     if sharp:
         rows.append(("aspect ratio ℓ", _number(found.ell)))
     else:
@@ -61,13 +61,10 @@ def body(found: Body) -> str:
         ("moment of inertia I₁", _number(found.i1, "M R²")),
         ("moment of inertia I₃", _number(found.i3, "M R²")),
     ]
-    if found.rims is None:
-        rows += [
-            ("balanced at θ₀", _angle(found.theta_balance)),
-            ("fast limit θ∞", _angle(found.theta_limit)),
-        ]
-    else:
-        rows.append(("the next circle lands at", _angle(found.theta_end)))
+    rows += [
+        ("balanced at θ₀", _angle(found.theta_balance)),
+        ("fast limit θ∞", _angle(found.theta_limit)),
+    ]
     if found.scale is not None:
         rows += [
             ("radius R", _number(1e3 * found.scale.radius, "mm")),
@@ -75,13 +72,13 @@ def body(found: Body) -> str:
             ("critical rate", _number(found.critical_hertz, "Hz")),
         ]
     picture = ""
-    if found.rims is None and is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
+    if is_scalar(found.ell, found.i1, found.fillet, found.theta_end):
         ball = found.fillet == 1  # a ball balances at no inclination
         picture = drawing(found, *((_LEANING, "θ") if ball else (found.theta_balance, "θ₀")))
     return framed(repr(found), rows, picture)
 
 
-def _several(found: Body, rows: list[tuple[str, str]]) -> str:
+def _of_circles(found: Body, rows: list[tuple[str, str]]) -> str:
     """The card of a body of several circles, lying on the first two on which it can rest."""
     rows += [
         ("moment of inertia I₁", _number(found.i1, "M R²")),

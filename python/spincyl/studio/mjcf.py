@@ -121,7 +121,7 @@ def _geometry(
             geoms = [f'name="rim" type="mesh" mesh="looks" {touch}']
             more.append("NEARLY: a smooth joint. Here the body is a mesh with facets.")
         else:
-            geoms, deep, pair = _several(shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}")
+            geoms, deep, pair = _geoms_of_circles(shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}")
             geoms = [f"{geom} {touch}" if _UNSEEN not in geom else geom for geom in geoms]
             table = "\n".join([table, *(f"{plane} {size} {_UNSEEN}/>" for plane in deep)])
             more.append("Each circle that can touch the table is a geom of its own.")
@@ -164,7 +164,7 @@ def _is_smooth(circles: list[dict[str, float]]) -> bool:
     return False
 
 
-def _several(
+def _geoms_of_circles(
     circles: list[dict[str, float]], metre: float, grip: tuple[float, float], how: str
 ) -> tuple[list[str], list[str], str]:
     """The geoms of several circles, the planes below the table for those with a fillet, and their contacts."""

@@ -602,6 +602,11 @@ fn row_of<G: Own, const N: usize>(
 ) -> OutputRow<State> {
     let mut slips = [y.slip(), flow.law.other_slip([y[W1], y[W3], y[UH], y[U2]])];
     let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[W3], *y);
+    if flow.stance == Stance::Rolls {
+        // The force that keeps the body on its circle round the apex is known, but not its shares: those of the loads.
+        let pull = flow.law.pulls_to_apex(flat(y));
+        forces.iter_mut().for_each(|[normal, _, along]| *along += *normal * pull);
+    }
     if let Some(over) = over {
         let back = |x: f64| 0.0 - x;
         slips = [slips[1].map(back), slips[0].map(back)];
