@@ -37,6 +37,9 @@ TOP = sc.assembled(
         parts.cylinder(outer_diameter="40mm", length="10mm", density=2700, at="8mm"),
     ]
 )
+CUP, BOTTLE = sc.Body.frustum(0.7, 1.0, 2.0), sc.Body.lathe([(1, 0), (1, 3), (0.35, 4.2), (0.35, 5)])
+ROUND_CUP = sc.Body.profile([(0.5, 0, 0.2), (0.8, 1.5, 0.1)], 0.6, 0.4, 0.7)
+UNEQUAL = sc.Body.balls(radii=(1, 0.8))
 LOSSES = {
     "dry contour": sc.loss.DryContour(2e-3),
     "viscous contour": sc.loss.ViscousContour(2e-3),
@@ -91,6 +94,8 @@ ROLLING = {
     "spool": lambda: rolled(SPOOL, SPOOL.steady(1.2).kicked(0.05), 0.2),
     "top": lambda: rolled(TOP, sc.State(0.2, 0.02, 0.0, 0.8), 0.1),
     "rattleback": lambda: rolled(RATTLE, RATTLE.spinning(hertz=-1.0, pitch=0.02), 0.15),
+    "cup on its upper rim": lambda: rolled(CUP, sc.State(2.2, 0.3, 0.4, 0.5), 0.3),
+    "ball on its smaller one": lambda: rolled(UNEQUAL, sc.State(2.5, 0.3, 0.6, 0.4), 0.3),
 }
 ON_ICE = {
     "round on ice": lambda: rolled(ROUNDED, ROUNDED.steady(1.3).kicked(0.05), **SMOOTH),
@@ -118,6 +123,9 @@ RUBBED = {
     ),
     "egg": lambda: rolled(
         EGG, slid(EGG, EGG.spinning(hertz=18, pitch=1.48), 0.0, 0.0), 0.1, contact=sc.Coulomb(0.1)
+    ),
+    "rounded cup slips": lambda: rolled(
+        ROUND_CUP, sc.State(2.4, 0.3, -0.4, 0.5, slip=(0.3, 0.2)), 0.2, contact=sc.Coulomb(0.2)
     ),
     "egg in a film": lambda: rolled(
         EGG,
@@ -158,6 +166,14 @@ ALOFT = {
         COIN, sc.dropped(COIN, 1.0, 1.2, velocity=(0.3, 0.2, 0.1)), 1.5, 101, restitution=0.8, **SMOOTH
     ),
     "dropped on rubber": lambda: rolled(COIN, sc.dropped(COIN, 1.0, 1.2, w3=2.0), 1.5, 101, restitution=0.5),
+    "dropped bottle": lambda: rolled(
+        BOTTLE,
+        sc.dropped(BOTTLE, 0.5, 2.4, w1=1.0, w2=0.5),
+        3.0,
+        121,
+        contact=sc.Coulomb(0.3),
+        restitution=0.5,
+    ),
     "lies": lambda: rolled(PIPE, PRESSED[5.0], 10.0, 201, contact=sc.Coulomb(0.3), restitution=0.0),
 }
 SCENES = ROLLING | ON_ICE | RUBBED | LOST | ALOFT

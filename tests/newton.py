@@ -52,7 +52,8 @@ class Engine:
         found = []
         for circle in self.shape["circles"]:
             z, r = circle["height"], circle["radius"]
-            found.append((z * a - r * out - self.shape["swollen_by"] * UP, z * moves - r * leans))
+            rounded = circle.get("swollen_by", self.shape["swollen_by"])  # each of several circles has its own
+            found.append((z * a - r * out - rounded * UP, z * moves - r * leans))
         return min(found, key=lambda pair: pair[0][2])
 
     def couple(self, turn, w, normal):

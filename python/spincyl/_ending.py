@@ -55,8 +55,8 @@ class RestsOn(IntEnum):
     NONE
         The body is not at rest, or the motion was not computed to its rest.
     FACE
-        Its first face, at the rim from which the initial state is seen, or at the lower end of a body of several
-        circles; `Motion.axis_up` is then 1. A bounce of the face and a spin on it are not computed.
+        Its first face, at the rim from which the initial state is seen, or at the lower end of a body of
+        several circles; `Motion.axis_up` is then 1. A bounce of the face and a spin on it are not computed.
     OTHER_FACE
         The face at its other end; `Motion.axis_up` is then -1.
     SIDE

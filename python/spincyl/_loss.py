@@ -107,11 +107,15 @@ class Loss:
         3 (xarray: dimension "axis"). If a rotation has stopped, dry friction sets only the largest couple
         that can hold it; the couple returned is then 0.
         """
-        return _core.loss_couple(*numbered(3, *self._given(body, state, normal), name="axis"))
+        found = _core.loss_couple(*numbered(3, *self._given(body, state, normal), name="axis"))
+        if body.rims is None:
+            return found
+        sign = body._sign(state.theta)  # of e2 and e3, seen from the end that is nearer to the table
+        return found * np.stack([np.ones(np.shape(sign)), sign, sign], axis=-1)
 
     def _given(self, body: Body, state: State, normal: Reals) -> tuple[Reals, ...]:
         instance_of("body", body, Body)
-        return *self._coefficients, reals("normal", normal), *numbers(state), *body._numbers
+        return *self._coefficients, reals("normal", normal), *body._at(*numbers(state))
 
     def __add__(self, other: "Loss") -> "Loss":
         if not isinstance(other, Loss) or other._function is not None:

@@ -21,6 +21,7 @@ from spincyl._labelled import AXES, Components, frame, labelled
 from spincyl._measured import errors_in_seconds, in_si, natural_time, output_in_si
 from spincyl._outputs import ALOFT, FRICTION, POSE, Outputs, missing_output, output_in_units
 from spincyl._phases import (
+    KINDS,
     LOST_COLUMN,
     RIMS,
     Impact,
@@ -29,8 +30,10 @@ from spincyl._phases import (
     lowest_point_height,
     phases,
     state_of_phase,
+    told_phases,
 )
 from spincyl._scale import Scale
+from spincyl._slip import told_of_lowest
 from spincyl._state import State
 from spincyl._swing import numbers_of_one, single_aloft, single_slip
 from spincyl._told import message
@@ -140,6 +143,16 @@ class Motion(Outputs):
         """All states as one `State` of arrays, in natural units."""
         if self._natural is not None:
             return self._natural.states
+        found = self._seen
+        if found.lift is None or getattr(self.body, "rims", None) is None:
+            return found
+        return told_of_lowest(self.body, found, self.rim, self.phase == KINDS.index("flying"))
+
+    @property
+    def _seen(self) -> State:
+        """The states; in the air slip, height and lift are those of the circle that `rim` names."""
+        if self._natural is not None:
+            return self._natural._seen
         slip = self._extra.get("slip")
         pair = None if slip is None else (slip[:, 0], slip[:, 1])
         aloft = {name: self._extra.get(name) for name in ("height", "lift")}
@@ -156,7 +169,7 @@ class Motion(Outputs):
         energy: Floats = (
             self.body.energy(self.states, contact)
             if getattr(self.body, "rims", None) is None
-            else self.body._energy(self.states, contact, self.rim)
+            else self.body._energy(self._seen, contact, self.rim)
         )
         return self._told("energy", energy)
 
@@ -186,8 +199,8 @@ class Motion(Outputs):
     def axis_up(self) -> Floats:
         """(n,) cosine of the angle from the vertical to the body's axis, which points out of its first rim.
 
-        1 if the body lies on its first face (heads), -1 if it lies on the other one (tails), 0 on its side. The
-        first face of a body of several circles is that at its lower end, so that this is cos theta.
+        1 if the body lies on its first face (heads), -1 if it lies on the other one (tails), 0 on its side.
+        The first face of a body of several circles is that at its lower end, so that this is cos theta.
         """
         up: Floats = _core.axis_up(self.theta, self.rim if self.body.rims is None else 0)
         return up
@@ -253,7 +266,8 @@ class Motion(Outputs):
         """
         if self._phases is None:
             raise missing_output(self, "phases", FRICTION)
-        return phases(self._phases, self._begun)
+        found = phases(self._phases, self._begun)
+        return found if getattr(self.body, "rims", None) is None else told_phases(self.body, found)
 
     @property
     def losses(self) -> "Loss | None":

@@ -143,8 +143,8 @@ class Outputs:
         FRICTION,
         """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
 
-        0 rolling, 1 slipping, 2 flying; on both rims or two circles 3 lying and slipping, 4 pivoting, 5 rolling
-        on its side, 6 rolling round its apex.
+        0 rolling, 1 slipping, 2 flying; on both rims or two circles 3 lying and slipping, 4 pivoting, 5
+        rolling on its side, 6 rolling round its apex.
         """,
     )
     drilling = Number(
@@ -171,8 +171,8 @@ class Outputs:
         ALOFT,
         """(n,) `friction` of the other rim. Needs `restitution=` and want="force".
 
-        While a body rolls round its apex, only the sum of the frictions of both circles is determined: they are
-        shares of it in the ratio of the normal forces.
+        While a body rolls round its apex, only the sum of the frictions of both circles is determined: they
+        are shares of it in the ratio of the normal forces.
         """,
     )
     work_lost = Number(

@@ -9,6 +9,7 @@ from spincyl import _core
 from spincyl._circles import lowest_point_of
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, is_scalar, number
+from spincyl._slip import told_of_lowest
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air, state_without_checks
 
 if TYPE_CHECKING:
@@ -184,6 +185,18 @@ def phases(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Ph
         at = state(numbers, (along, across), (height, lift) if kind == "flying" else None)
         found.append(Phase(time, kind, at, RIMS[int(rim)]))
     return tuple(found)
+
+
+def told_phases(body: "Body", found: Sequence[Phase]) -> tuple[Phase, ...]:
+    """The phases of a body of several circles: a state in the air is told of the lowest circle."""
+    told = []
+    for phase in found:
+        if phase.kind == "flying":
+            state = told_of_lowest(body, phase.state, RIMS.index(phase.rim), True)
+            lowest = int((body._borders < phase.state.theta).sum())
+            phase = phase._replace(state=state, rim=RIMS[lowest])
+        told.append(phase)
+    return tuple(told)
 
 
 def phases_in_words(phases: Sequence[Phase], unit: str = "") -> str:

@@ -1,10 +1,11 @@
 """Slip of the contact point over the table, and the corresponding velocity of the centre."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from spincyl import _core
+from spincyl._circles import lowest_point_of
 from spincyl._input.numbers import Floats, Reals, Result, components, numbered
 from spincyl._state import State, numbers
 
@@ -37,6 +38,23 @@ def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Re
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
     """The horizontal velocity of the centre, along e_h and e2."""
     return _centre_moves(body, state, state._slip)
+
+
+def told_of_lowest(body: "Laws", state: State, rim: Any, flies: Any) -> State:
+    """States with slip, height and lift of the circles `rim`, told of the lowest circle where the body flies.
+
+    From a state of `State`, the circle follows from its inclination alone.
+    """
+    four, level = numbers(state), (0.0, 0.0)
+    sign, theta = body._sign(state.theta), np.asarray(state.theta)
+    before, now = body._at(*four, *state._slip, rim=rim), body._at(*four, *level)
+    slip = tuple(sign * (law(*before) - law(*now)) for law in (_core.centre_along, _core.centre_across))
+    rise = _core.centre_up(*body._at(*four, *level, rim=rim)) - _core.centre_up(*now)
+    lower = lowest_point_of(body, theta, rim)
+    given = (*state._slip, state.height, state.lift)
+    other = (*slip, state.height + lower, state.lift + rise)  # type: ignore[operator]  # both are set
+    along, across, height, lift = (np.where(flies, y, x)[()] for x, y in zip(given, other, strict=True))
+    return State(*four, slip=(along, across), height=height, lift=lift)
 
 
 def lever_of_stone(stone: "Ellipsoid", vertical: Floats) -> Floats:

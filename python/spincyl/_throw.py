@@ -81,7 +81,9 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
         why = "since the body must stand on edge; a cup, which rolls in a circle, needs a State"
         raise ValueError(f"theta_end = {body.theta_end!r}: expected at least pi/2, {why}")
     if body.rims is not None and body._single:
-        return body.with_centre_velocity(State(np.pi / 2 + 0.0 * backspin, 0.0, 0.0, -backspin), 0.0, velocity)
+        return body.with_centre_velocity(
+            State(np.pi / 2 + 0.0 * backspin, 0.0, 0.0, -backspin), 0.0, velocity
+        )
     given = velocity, backspin, *body._numbers
     if is_scalar(*given):
         state, slip = _core.thrown(float(velocity), float(backspin), six_numbers(body))

@@ -31,8 +31,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> Start {
 
 /// Motions on all kinds of tables, at times a little apart in threes.
 fn motions(body: &Body, next: &mut impl FnMut() -> f64) -> Vec<Motion> {
-    let times: Vec<_> =
-        (0..20).flat_map(|k| [-1e-5, 0.0, 1e-5].map(|by| 0.2 * f64::from(k) + 0.1 + by)).collect();
+    let times: Vec<_> = (0..20).flat_map(|k| [0.0, 1e-5, 2e-5].map(|by| 0.2 * f64::from(k) + by)).collect();
     let loss = Losses::NONE.with(Law::DryContour, 0.02);
     let rough = Ask::on(Friction::coulomb(0.2));
     let asks = [
@@ -62,6 +61,9 @@ fn centre_axis_and_velocity_are_those_of_the_body_whichever_circle_carries_it() 
                 m.path.iter().flat_map(|path| path.phases.iter().map(|phase| phase.time)).chain(struck);
             let kinks: Vec<_> = began.collect();
             let all: Vec<_> = m.samples().collect();
+            let first = all.first().and_then(|now| now.pose);
+            let begins = first.filter(|_| m.times[0] == 0.0);
+            assert!(begins.is_none_or(|pose| pose.phi.rest.abs() < 1e-15), "{body:?}, {begins:?}");
             for now in &all {
                 carried[usize::from(now.rim)] += 1;
                 let axis = now.orientation().unwrap() * spincyl::nalgebra::Vector3::z();

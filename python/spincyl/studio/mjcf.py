@@ -121,7 +121,9 @@ def _geometry(
             geoms = [f'name="rim" type="mesh" mesh="looks" {touch}']
             more.append("NEARLY: a smooth joint. Here the body is a mesh with facets.")
         else:
-            geoms, deep, pair = _geoms_of_circles(shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}")
+            geoms, deep, pair = _geoms_of_circles(
+                shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}"
+            )
             geoms = [f"{geom} {touch}" if _UNSEEN not in geom else geom for geom in geoms]
             table = "\n".join([table, *(f"{plane} {size} {_UNSEEN}/>" for plane in deep)])
             more.append("Each circle that can touch the table is a geom of its own.")
@@ -167,7 +169,7 @@ def _is_smooth(circles: list[dict[str, float]]) -> bool:
 def _geoms_of_circles(
     circles: list[dict[str, float]], metre: float, grip: tuple[float, float], how: str
 ) -> tuple[list[str], list[str], str]:
-    """The geoms of several circles, the planes below the table for those with a fillet, and their contacts."""
+    """The geoms of several circles, planes below the table for those with a fillet, and their contacts."""
     geoms, planes, pairs = [], [], []
     mu, torsion = grip
     for k, circle in enumerate(circles):

@@ -35,7 +35,7 @@ _Corners = list[tuple[float, float]]
 
 
 def _hull_of_circles(body: Body) -> Iterator[tuple[_Corners, _Corners | None]]:
-    """The convex hull of a body of several circles, from its lower end up: fillets, straight walls and faces."""
+    """The convex hull of a body of several circles from its lower end up: fillets, straight walls, faces."""
     ends = [0.0, *body.borders.tolist(), np.pi]
     rows = body.circles.tolist()
     last = 0.0, rows[0][1] - rows[0][2]

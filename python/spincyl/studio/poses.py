@@ -102,7 +102,8 @@ def pace(m: "Motion") -> float:
     for phase in m.phases:
         contact: Contact = "rolling" if phase.kind == "rolling" else "smooth"
         with suppress(ValueError):  # where the first integrals lose their digits
-            found.append(swing_on(m.body, replace(phase.state, slip=None), contact, RIMS.index(phase.rim)).period)
+            start, rim = replace(phase.state, slip=None), RIMS.index(phase.rim)
+            found.append(swing_on(m.body, start, contact, rim).period)
     return min(found)
 
 

@@ -43,6 +43,11 @@ pub trait Moving: Copy + Debug + PartialEq {
     fn pose_told(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
+    /// The same for a pose of a motion whose poses all are told in this way, after a half turn of the laboratory about the
+    /// vertical, so that phi begins with 0.
+    fn pose_told_from_start(pose: &Self::Pose) -> Self::Pose {
+        *pose
+    }
     /// The same for a force.
     fn force_told(force: &Self::Force) -> Self::Force {
         *force
@@ -89,6 +94,9 @@ impl Moving for State {
     fn pose_told(pose: &Pose) -> Pose {
         let phi = Angle { rest: pose.phi.rest - PI, ..pose.phi }.settled();
         Pose { phi, psi: Angle { turns: 0.0 - pose.psi.turns, rest: 0.0 - pose.psi.rest }, ..*pose }
+    }
+    fn pose_told_from_start(pose: &Pose) -> Pose {
+        Pose { phi: pose.phi, contact_point: -pose.contact_point, ..Self::pose_told(pose) }
     }
     fn force_told(force: &Force) -> Force {
         Force { normal: force.normal, along: 0.0 - force.along, across: 0.0 - force.across }

@@ -248,7 +248,7 @@ impl<S: Moving> Motion<S> {
             states
                 .chain(self.event.iter_mut().map(|event| &mut event.state))
                 .for_each(|y| *y = y.told(view.tells(y.theta())));
-            self.poses.iter_mut().flatten().for_each(|pose| *pose = S::pose_told(pose));
+            self.poses.iter_mut().flatten().for_each(|pose| *pose = S::pose_told_from_start(pose));
             self.forces.iter_mut().flatten().for_each(|force| *force = S::force_told(force));
         }
         self
