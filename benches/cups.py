@@ -87,7 +87,9 @@ def rises_at(body, make):
         rate = share * body.apex().rate
         model = mujoco.MjModel.from_xml_string(make(scene_of(body, rate).mjcf))
         half = float(body.scale.seconds(np.pi / rate))
-        rows = run(model, lambda rows: rows[-1][0] > half or abs(rows[-1][4] - rows[0][4]) > np.radians(1))
+        rows = run(
+            model, lambda rows, half=half: rows[-1][0] > half or abs(rows[-1][4] - rows[0][4]) > np.radians(1)
+        )
         if abs(rows[-1, 4] - rows[0, 4]) > np.radians(1):
             return f"{share:.3f}"
     return "above 1.5"

@@ -52,9 +52,22 @@ class Engine:
         found = []
         for circle in self.shape["circles"]:
             z, r = circle["height"], circle["radius"]
-            rounded = circle.get("swollen_by", self.shape["swollen_by"])  # each of several circles has its own
+            rounded = circle.get(
+                "swollen_by", self.shape["swollen_by"]
+            )  # each of several circles has its own
             found.append((z * a - r * out - rounded * UP, z * moves - r * leans))
         return min(found, key=lambda pair: pair[0][2])
+
+    def touching(self, a):
+        """Radius of the circle of contact of a body with this axis."""
+        s = np.linalg.norm(np.cross(UP, a))
+        circles = self.shape["circles"]
+        rounded = [circle.get("swollen_by", self.shape["swollen_by"]) for circle in circles]
+        pairs = list(zip(circles, rounded, strict=True))
+        circle, fillet = min(
+            pairs, key=lambda pair: pair[0]["height"] * a[2] - pair[0]["radius"] * s - pair[1]
+        )
+        return circle["radius"] + fillet * s
 
     def couple(self, turn, w, normal):
         """The losses, from the formulas of the file."""
@@ -64,9 +77,7 @@ class Engine:
         known = {"n": UP, "w": w, "s": s, "N": normal, "R": self.shape["radius"], "pi": np.pi}
         known |= {"sign": np.sign, "abs": abs, "norm": np.linalg.norm, "w_n": w[2], "t": w - w[2] * UP}
         known |= {"h": (c * UP - a) / s, "q": (w @ a - c * w[2]) / s**2}
-        known["A"] = (self.shape["circles"][0]["radius"] + self.shape["swollen_by"] * s) / self.shape[
-            "radius"
-        ]
+        known["A"] = self.touching(a) / self.shape["radius"]
         total = np.zeros(3)
         for law in self.table["losses"]:
             if normal is None and law["coefficient"] not in ("b", "b2"):

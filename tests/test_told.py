@@ -1,7 +1,11 @@
 """What a motion of a body of several circles tells, held to the geometry of the body, whichever circle carries it."""
 
+import json
 import re
+import shutil
+import subprocess
 from dataclasses import replace
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -261,3 +265,38 @@ def test_the_card_of_a_body_of_several_circles_names_each_of_them(name):
     lands = re.findall(r"lands at</td><td[^>]*>([0-9.]+)", text)
     expected = np.degrees(body.borders[body.spans > 0])
     assert [float(x) for x in lands] == pytest.approx(expected, abs=0.006)
+
+
+#: What the scripts of a page find in a browser, and in place of those that draw.
+IN_A_BROWSER = """
+const any = () => new Proxy(function () {}, {
+  get: (of, name) => name === Symbol.toPrimitive ? () => 0 : name === "length" ? 0
+    : ["forEach", "map", "flatMap"].includes(name) ? () => [] : any(),
+  set: () => true, apply: any, construct: any, has: () => true,
+});
+globalThis.document = any();
+let lathe, arrowOf, trace;
+"""
+POSES = (
+    "ts => ts.map(t => { const p = pose(motions[0], t); return [p.kind ?? 0, ...p.centre, ...p.contact]; })"
+)
+
+
+@pytest.mark.skipif(not shutil.which("node"), reason="needs node")
+@pytest.mark.parametrize(("name", "how"), [("cup", GRIP), ("bottle", TABLES[1]), ("bowl", {}), ("balls", {})])
+def test_a_recorded_page_draws_the_body_on_the_circle_that_carries_it(name, how):
+    m = of(name, how)
+    view = sc.view(m)
+    scripts = ["pose", "poses", "rounded", *(["forces", "slip", "aloft"] if how else []), "circles"]
+    folder = files("spincyl") / "studio" / "pages" / "js"
+    text = "\n".join((folder / f"page.{script}.js").read_text(encoding="utf-8") for script in scripts)
+    text = text.replace('JSON.parse($("data").textContent)', json.dumps(view._data()))
+    t = np.sort(np.random.default_rng(1).uniform(0, m.t[-1], 60))
+    asked = f"{IN_A_BROWSER}{text}\nconsole.log(JSON.stringify(({POSES})({t.tolist()})));"
+    run = subprocess.run(["node", "-"], input=asked, capture_output=True, text=True, timeout=120, check=True)
+    there = m.wanting("pose", t=t)
+    drawn = np.array(json.loads(run.stdout))[: there.t.size]
+    # the cubics of the page are within 2e-3 of the motion
+    assert np.abs(drawn[:, 1:4] - there.centre).max() < 4e-3
+    down = drawn[:, 0] != aloft.FLIES
+    assert np.abs(drawn[down, 4:6] - there.contact_point[down]).max() < 4e-3

@@ -81,6 +81,7 @@ def body(found: Body) -> str:
 def _of_circles(found: Body, rows: list[tuple[str, str]]) -> str:
     """The card of a body of several circles, lying on the first two on which it can rest."""
     rows += [
+        ("circles on which it can stand", str(found.rims.shape[-2])),
         ("moment of inertia I₁", _number(found.i1, "M R²")),
         ("moment of inertia I₃", _number(found.i3, "M R²")),
     ]

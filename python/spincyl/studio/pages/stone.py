@@ -23,6 +23,9 @@ _SAMPLES_PER_KNOT = 8  # samples between two knots
 def numbers(m: Motion, t: Floats) -> dict[str, Any]:
     """Numbers of the body; of a stone the times of its reversals, and `ell` of a cylinder of its reach."""
     found = {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
+    if m.body.rims is not None:
+        rows = {"circles": m.body.circles.tolist(), "borders": m.body.borders.tolist()}
+        return found | rows | {"ell": max(0.0, reach(m.body) ** 2 - 1) ** 0.5}
     return found | ({"fillet": m.body.fillet, "far": reach(m.body)} if m.body.fillet > 0 else {})
 
 

@@ -23,7 +23,7 @@ from spincyl.studio.shape import Letter, marks
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
 #: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
-#: these and "aloft" if a body leaves the table or lies on both rims.
+#: these and "aloft" if a body leaves the table or lies on both rims; "circles" for bodies of several circles.
 _STYLES = ("page.css", "page.slip.css", "page.aloft.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -36,6 +36,7 @@ _SCRIPTS = tuple(
         "forces",
         "slip",
         "aloft",
+        "circles",
         "spin",
         "context",
         "gl",
@@ -85,10 +86,11 @@ class View:
     @property
     def html(self) -> str:
         """The page as text."""
-        rounded = any(not m._nods or m.body.fillet > 0 for m in self.motions)
+        circles = any(m._nods and m.body.rims is not None for m in self.motions)
+        rounded = circles or any(not m._nods or m.body.fillet > 0 for m in self.motions)
         there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
         there |= dict.fromkeys(("stone", "spin"), any(not m._nods for m in self.motions))
-        there["aloft"] = any(map(goes_up, self.motions))
+        there["aloft"], there["circles"] = any(map(goes_up, self.motions)), circles
         useless = [word for word in there if not there[word]]
         styles, scripts = (
             [x for x in names if not any(f".{word}." in x for word in useless)]
