@@ -1,7 +1,7 @@
 // Bodies that leave the table or lie on both rims: their height, the lower rim and its path, the forces on the other
 // rim, names of phases. Pages without them omit this file. It comes after page.slip.js and replaces some of its functions.
 
-const KINDS = ["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side"], FLIES = 2;
+const KINDS = ["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side", "rolling round its apex"], FLIES = 2;
 const rubbed = kind => kind % 2 === 1 && kind < 5 || kind === 4;
 for (const m of motions) if (m.aloft) {
   m.now = t => m.phases.findLast(([begin], i) => begin <= t || i === 0);
