@@ -28,6 +28,8 @@ SCENES = (
     "tippe_top_turns",
     "billiard",
     "falling_pencil",
+    "rolled_cup",
+    "tipped_bottle",
     "rattleback",
     "rising_egg",
 )

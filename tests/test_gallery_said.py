@@ -20,6 +20,8 @@ import pytest
 import rattleback
 import rising_egg
 import rocking_can
+import rolled_cup
+import tipped_bottle
 import tippe_top_turns
 
 import spincyl as sc
@@ -220,6 +222,51 @@ def test_a_pencil_slips_backwards_below_a_coefficient_and_forwards_above():
         np.abs(m.friction[early] - np.abs(friction)).max() < 2e-3
         and np.abs(m.normal[early] - normal).max() < 2e-3
     )
+
+
+def test_a_cup_rolls_round_its_apex_to_rest_as_a_closed_form_says_and_too_fast_it_slides_outwards():
+    says(
+        rolled_cup, "goes round its apex in a circle", "at a time and place that a closed form gives",
+        "Pushed too fast for its friction, it slides outwards first, and its bottom may rise",
+    )  # fmt: skip
+    scene = rolled_cup
+    for speed, slides, rises in ((0.5, False, False), (1.1, False, False), (1.25, True, False), (1.4, True, True)):
+        rate = scene.rate_of(speed)
+        how = {"contact": scene.table, "restitution": 0.0, "losses": scene.LOSS, "want": "pose"}
+        m = sc.roll(scene.body, scene.pushed(rate), scene.t, **how)
+        assert (m.phases[0].kind == "lying") == slides and (m.theta.max() > scene.lies + 0.1) == rises
+        assert m.status == sc.Ending.STOPS and m.phases[-1].kind == "rolling round its apex"
+        far = [np.hypot(*way.T) for way in scene.contacts(m)]
+        if slides:
+            assert far[1].max() > 1.05 * far[1][0]
+            continue
+        time, rounds = scene.law(rate)
+        assert m.event.time == pytest.approx(time, rel=1e-12)
+        assert m.phi[-1] / (2 * np.pi) == pytest.approx(rounds, rel=1e-4)  # the last output is before the end
+        r, wide = scene.body.circles[:, 0]
+        for way, radius in zip(far, (r, wide), strict=True):
+            known = 100 * scene.scale.metres(radius * scene.body.spans[0] / (wide - r))
+            assert way == pytest.approx(known, rel=1e-9)
+
+
+def test_a_bottle_tips_rocks_infinitely_often_and_rolls_round_less_far_the_better_it_bounces():
+    says(
+        tipped_bottle, "infinitely often in a quarter of a second", "rolls round its apex until it rests",
+        "the more of its energy the impacts take, and the less far it rolls",
+    )  # fmt: skip
+    lost, far = [], []
+    for bounces in (0.0, tipped_bottle.RESTITUTION, 0.8):
+        m = tipped_bottle.tipped(bounces)
+        last = m.phases[-1]
+        assert m.status == sc.Ending.STOPS and last.kind == "rolling round its apex"
+        if bounces == tipped_bottle.RESTITUTION:
+            rocks = tipped_bottle.scale.seconds(last.time - m.impacts[0].time)
+            assert rocks == pytest.approx(0.25, abs=0.02)
+            assert len(m.impacts) > 100 and any(impact.stays for impact in m.impacts)
+            assert {impact.rim for impact in m.impacts} >= {"first", "other"}
+        lost.append(m.lost_in_impacts[-1])
+        far.append(np.ptp(m.phi[m.t > last.time]))
+    assert (np.diff(lost) > 0).all() and (np.diff(far) < 0).all()
 
 
 def test_a_rattleback_turns_back_and_the_other_way_takes_more_than_four_times_as_long():

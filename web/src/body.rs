@@ -21,6 +21,15 @@ impl Desk {
         self.take(if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? })
     }
 
+    /// Sets a uniform frustum by the radii of both ends, the larger of which is 1, and its height. After the
+    /// numbers of every body it writes radius, depth below the centre of mass, and fillet of each circle.
+    pub fn frustum(&mut self, [bottom, top, height]: [f64; 3]) -> Answer {
+        let body = Body::frustum(bottom, top, height, None)?;
+        self.take(body)?;
+        self.out.extend(body.circles().iter().flat_map(|it| [it.radius, it.depth, it.fillet]));
+        Ok(())
+    }
+
     /// Writes the half length of the critical tube.
     pub fn critical(&mut self, [bore, fillet]: [f64; 2]) -> Answer {
         self.out.push(Body::critical_aspect(bore, fillet)?);

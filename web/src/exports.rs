@@ -38,6 +38,7 @@ tells! {
 exports! {
     tube(ell, bore, fillet);
     body(ell, i1, i3, fillet, theta_end);
+    frustum(bottom, top, height);
     critical(bore, fillet);
     map(w, h, ell_lo, ell_hi, theta_lo, theta_hi, bore, fillet);
     curves(n, ell_lo, ell_hi, bore, fillet);

@@ -30,8 +30,8 @@ pub(crate) struct Row {
     /// The vertical velocity of the lowest point of the rim.
     #[cfg_attr(not(feature = "friction"), allow(dead_code))]
     pub lift: f64,
-    /// Whether the row is told from the rim that was the upper one at the start.
-    pub turned: bool,
+    /// The circle that carries: of two equal rims 1 if it was the upper one at the start, of more its number.
+    pub rim: u8,
 }
 
 /// The current motion.
@@ -134,14 +134,14 @@ impl Desk {
     }
 
     /// Writes rows at equally spaced times: t, theta, w, phi and psi with whole turns, the contact point, N, |F|/N,
-    /// slip, energy, the kind of the phase, the lost energy, the height of the rim's lowest point, and whether this rim was
-    /// the upper one at the start.
+    /// slip, energy, the kind of the phase, the lost energy, the height of the rim's lowest point, and the number of
+    /// this rim.
     pub fn follow(&mut self, [n, from, to]: [f64; 3]) -> Answer {
-        for Row { t, y, pose, force, slip, kind, energy, lost, turned, .. } in self.rows(n, from, to)? {
+        for Row { t, y, pose, force, slip, kind, energy, lost, rim, .. } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, y.w1, y.w2, y.w3, pose.phi.radians(), pose.psi.radians()]);
             self.out.extend([pose.contact_point.x, pose.contact_point.y]);
             self.out.extend([force.normal, force.friction_coefficient(), slip[0], slip[1], energy]);
-            self.out.extend([f64::from(kind as u8), lost, pose.height, f64::from(u8::from(turned))]);
+            self.out.extend([f64::from(kind as u8), lost, pose.height, f64::from(rim)]);
         }
         Ok(())
     }
@@ -170,7 +170,7 @@ impl Desk {
                     let (y, pose) = (swing.state(t), swing.pose(t)?);
                     let (force, energy) = (force(*contact, body, &y), contact.energy(body, &y));
                     let (slip, kind) = ([0.0; 2], Kind::Rolling);
-                    Some(Row { t, y, pose, force, slip, kind, energy, lost: 0.0, lift: 0.0, turned: false })
+                    Some(Row { t, y, pose, force, slip, kind, energy, lost: 0.0, lift: 0.0, rim: 0 })
                 };
                 Ok(times(from, to, n).take_while(|t| t <= until).map_while(row).collect())
             }

@@ -11,7 +11,7 @@ use spincyl::motion::path::{self, Kind};
 use spincyl::motion::{Ask, Method, Motion, Start};
 use spincyl::pose::{Angle, Pose};
 use spincyl::{Body, Contact};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
 const TOL: f64 = 1e-11;
@@ -67,6 +67,11 @@ impl Desk {
 }
 
 impl Walked {
+    /// Whether the body has circles that are not equal.
+    fn is_uneven(&self) -> bool {
+        self.body.borders().iter().any(|[theta, _]| *theta != FRAC_PI_2)
+    }
+
     /// Rows at equally spaced times, up to the end of the motion.
     pub fn at(&self, from: f64, to: f64, n: usize) -> Result<Vec<Row>, Refusal> {
         let wanted: Vec<f64> = times(from, to, n).take_while(|t| *t <= self.until).collect();
@@ -80,6 +85,8 @@ impl Walked {
         // Nor is one started where the body has just left the table, which two numbers do not tell.
         let sound = |row: &&Row| {
             let leaves = row.kind == Kind::Flying && row.pose.height == 0.0;
+            // On two unequal circles a state does not tell to which of them the slip belongs.
+            let leaves = leaves || self.is_uneven() && row.kind as u8 > Kind::Flying as u8;
             row.t <= from && row.y.theta.min(PI - row.y.theta) > FLAT && !leaves
         };
         if let Some(near) = self.rows.iter().rev().find(sound) {
@@ -105,16 +112,17 @@ impl Walked {
             let knocks = path.impacts.iter().take_while(|hit| hit.time < t).map(|hit| hit.lost);
             let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0) + knocks.sum::<f64>();
             let [height, lift] = path.aloft.get(i).copied().unwrap_or_default();
+            let rim = path.rims.get(i).copied().unwrap_or_default();
+            let body = self.body.standing_on(rim);
             let energy = match self.ask.table {
                 _ if self.ask.restitution.is_some() => {
-                    let rise = slip::centre_rise(&self.body, &y);
-                    slip::energy(&self.body, &y, slip) + height + lift * (0.5 * lift + rise)
+                    let rise = slip::centre_rise(&body, &y);
+                    slip::energy(&body, &y, slip) + height + lift * (0.5 * lift + rise)
                 }
-                Table::Rubs(_) => slip::energy(&self.body, &y, slip),
-                Table::Smooth => Contact::Smooth.energy(&self.body, &y),
-                Table::Rolling { .. } => Contact::Rolling.energy(&self.body, &y),
+                Table::Rubs(_) => slip::energy(&body, &y, slip),
+                Table::Smooth => Contact::Smooth.energy(&body, &y),
+                Table::Rolling { .. } => Contact::Rolling.energy(&body, &y),
             };
-            let turned = path.rims.get(i) == Some(&1);
             let row = Row {
                 t,
                 y,
@@ -125,11 +133,13 @@ impl Walked {
                 energy,
                 lost,
                 lift,
-                turned,
+                rim,
             };
             from.map_or(row, |from| {
-                let pose = moved(&from.pose, pose, turned);
-                Row { t: from.t + t, pose, lost: from.lost + lost, turned: from.turned != turned, ..row }
+                // Two equal rims are told from the rim at the start, more from the lower end of the body.
+                let turned = !self.is_uneven() && rim == 1;
+                let rim = if self.is_uneven() { rim } else { from.rim ^ rim };
+                Row { t: from.t + t, pose: moved(&from.pose, pose, turned), lost: from.lost + lost, rim, ..row }
             })
         };
         poses.zip(forces).enumerate().map(row).collect()

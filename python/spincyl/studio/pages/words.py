@@ -25,6 +25,8 @@ def words_of_body(body: Body) -> dict[str, Any]:
     if isinstance(body, Ellipsoid):
         raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
     instance_of("body", body, Body)
+    if body.rims is not None:
+        return _words_of_frustum(body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
         raise ValueError("body: expected a single body, not a family")
@@ -36,6 +38,20 @@ def words_of_body(body: Body) -> dict[str, Any]:
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
     told = {"ell": ell, "i1": i1, "i3": i3, "fillet": fillet} | size | _words_of_parts(body)
     return told if np.isnan(most) else told | {"end": most}
+
+
+def _words_of_frustum(body: Body) -> dict[str, Any]:
+    """Words for a solid frustum, such as a cup or a cone: radii of both ends, and height."""
+    several = "expected a solid frustum, such as Body.frustum(0.7, 1, 2) or Body.cone(2)"
+    if body.rims.ndim > 2:
+        raise ValueError("body: expected a single body, not a family")
+    (bottom, low, _), *_, (top, high, _) = body.rims.tolist()
+    told = {"bottom": bottom, "top": top, "height": high - low}
+    same = _natural_of(told)
+    near = len(body.rims) == 2 and np.allclose([body.i1, body.i3], [same.i1, same.i3], rtol=1e-12, atol=0)
+    if not (near and np.allclose(body.rims, same.rims, rtol=0, atol=1e-12)):
+        raise ValueError(f"body: {several}; a page shows no other body of several circles")
+    return told | _words_of_scale(body.scale)
 
 
 def _words_of_parts(body: Body) -> dict[str, Any]:
@@ -119,6 +135,8 @@ def body_of(words: Mapping[str, Any]) -> Body:
 
 
 def _natural_of(words: Mapping[str, Any]) -> Body:
+    if words.get("height") is not None:
+        return Body.frustum(words["bottom"], words["top"], words["height"])
     if words.get("i1") is None:
         return Body.tube(words["ell"], words.get("bore", 0.0), words.get("fillet", 0.0))
     end = words.get("end")
@@ -209,6 +227,11 @@ def _all() -> Iterator[tuple[str, dict[str, Any]]]:
     yield "a coin whirrs", steady(Body.solid(0.05), np.degrees(0.25), kick=0.15, slow=20)
     yield "a can rocks", free(Body.solid(1.0), State(0.3, 1e-3, 0.0, 0.0), "rolling", slow=20)
     yield "Hurricane balls", steady(Body.balls(), 78.0, kick=0.02, slow=10)
+    cup = Body.frustum(0.7, 1.0, 2.0)
+    theta = float(cup.borders[0])
+    push = 0.3 * np.sin(theta)  # it turns about its line of contact
+    rolled = free(cup, State(theta, push, 0.0, -push * np.tan(theta)), Coulomb(0.6), until=60, slow=10)
+    yield "a cup is rolled in a circle", rolled | words_of_restitution(0.0)
     # the top of Leine and Glocker, Eur. J. Mech. A 22, 193 (2003): 15 mm, 6 g, 180 rad/s
     top = Body.ball(-0.2, 8e-7 / (0.006 * 0.015**2), 7e-7 / (0.006 * 0.015**2))
     top = replace(top, scale=Scale(0.015, 0.006, 9.81))

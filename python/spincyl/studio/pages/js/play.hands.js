@@ -9,6 +9,7 @@ const KNOBS = [
   { name: "rate", text: "rate Ω√I₃", low: 0, high: () => 4, ...same, told: x => rated(x) },
   { name: "bore", text: "bore", low: 0, high: () => 1, ...same, told: x => decimal(x) },
   { name: "fillet", text: "fillet", low: 0, high: () => isTube() ? Math.min(1 - s.bore, s.ell) : 1, ...same, told: x => decimal(x) },
+  ...["bottom", "top", "height"].map(name => ({ name, text: name, low: name === "height" ? 0.05 : 0, high: () => name === "height" ? 6 : 1, ...same, told: x => decimal(x) })),
   { name: "kick", text: "kick θ′", low: -0.6, high: () => 0.6, ...same, told: x => decimal(x, 3) },
   { name: "precession", text: "centre’s circle", low: -1, high: () => 1, ...same, told: () => Number.isFinite(s.precession) ? decimal(here.circle) + " R" : "at rest" },
   { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
@@ -62,10 +63,13 @@ function knobs() {
     const off = knob.name === "mu" ? s.contact !== "coulomb" : knob.name === "c" ? s.contact !== "viscous" : knob.name === "loss" ? s.law === "none" : ["ell", "bore", "fillet"].includes(knob.name) && !isTube() || knob.name === "rate" && (s.w || !(here.rate > 0));
     // shows only the coefficient of the present law of friction
     if (["mu", "c"].includes(knob.name)) knob.label.hidden = (s.contact === "viscous") !== (knob.name === "c");
+    // a frustum has numbers of its own
+    if (["ell", "bore", "fillet", "rate"].includes(knob.name)) knob.label.hidden = isFrustum();
+    if (["bottom", "top", "height"].includes(knob.name)) knob.label.hidden = !isFrustum();
     // a patch belongs to dry friction, and excludes a restitution
     if (knob.name === "patch") knob.label.hidden = s.contact !== "coulomb" || Number.isFinite(s.restitution);
     // bounces need a rim and friction
-    if (knob.name === "restitution") knob.label.hidden = !rubbing() || s.contact === "coulomb" && s.patch > 0 || body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
+    if (knob.name === "restitution") knob.label.hidden = !rubbing() || s.contact === "coulomb" && s.patch > 0 || !body.circles && body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
     knob.label.classList.toggle("off", off);
     knob.input.disabled = off && knob.name !== "rate";
     if (knob.choices) { knob.input.value = value; continue; }
@@ -227,7 +231,7 @@ addEventListener("hashchange", e => {
 });
 const first = parsed(location.hash);
 // an address that names a body is complete: the other numbers are defaults
-Object.assign(s, "ell" in first || first.stone ? BLANK : {}, first);
+Object.assign(s, "ell" in first || first.height || first.stone ? BLANK : {}, first);
 held_ = true; // the first map is coarse
 if (!still.matches) play_(true);
 solve({ restart: true });

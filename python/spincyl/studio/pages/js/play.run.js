@@ -6,7 +6,7 @@ const show = () => { if (!asked) { asked = true; requestAnimationFrame(frame); }
 
 // every change of the state goes through here; `more` has options of `solve`, and the text `on`
 function change(part, more = {}) {
-  const tilts = ["theta", "ell", "bore", "fillet", "i1", "i3", "precession"].some(name => name in part && !Object.is(part[name], s[name]));
+  const tilts = ["theta", "ell", "bottom", "top", "height", "bore", "fillet", "i1", "i3", "precession"].some(name => name in part && !Object.is(part[name], s[name]));
   if (tilts && !("w" in part)) s.w = null; // a given state belonged to the previous body
   if (["ell", "fillet"].some(name => name in part)) s.parts = null; // and so did these
   for (const [name, value] of Object.entries(part)) {
@@ -91,7 +91,7 @@ function frame(at) {
   if (playing && seen || filming()) show();
 }
 // the phase, and in the air the height of the lower rim
-const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + Math.min(0, 2 * body.ell * Math.cos(row[1]))); return kind ? `\n${KINDS[kind]}${kind === FLIES ? sized() ? ` ${decimal(100 * high * size(), 1)} cm high` : ` ${decimal(high)} R high` : ""}` : ""; };
+const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + (body.circles ? 0 : Math.min(0, 2 * body.ell * Math.cos(row[1])))); return kind ? `\n${KINDS[kind]}${kind === FLIES ? sized() ? ` ${decimal(100 * high * size(), 1)} cm high` : ` ${decimal(high)} R high` : ""}` : ""; };
 function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${phased(row)}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });

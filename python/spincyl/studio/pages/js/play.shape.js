@@ -91,6 +91,8 @@ function mark(b, letter, end) {
   }
   return { colour: letter === "O" ? BLUE : ORANGE, places, normals, triangles };
 }
+// surfaces of a frustum: its wall and both its ends
+const turnedOf = ([[r, low], [wide, high]]) => [[0, 1, [[r, -low], [wide, -high]]], [1, 0, [[wide, -high], [0, -high]]], [1, 0, [[0, -low], [r, -low]]]];
 // surfaces of parts as given by Python, with two stripes along the widest
 function parted(parts) {
   const most = Math.max(...parts.flatMap(([, , corners]) => corners.map(c => c[0])));

@@ -7,11 +7,11 @@ live.before = live.after = { at: NaN, event: false };
 let now = 0, playing = false;
 
 function placed(row) {
-  const [, theta, w1, w2, w3, phi, psi, x, y] = row, [s, c, rim] = [Math.sin(theta), Math.cos(theta), 1 - body.fillet], out = rim * c - body.ell * s;
+  const [, theta, w1, w2, w3, phi, psi, x, y] = row, [s, c] = [Math.sin(theta), Math.cos(theta)], [rim, ell, fillet] = body.circles?.[row[OF_ROW.turned]] || [1 - body.fillet, body.ell, body.fillet], out = rim * c - ell * s;
   const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]), lies = row[OF_ROW.kind] > FLIES, high = row[OF_ROW.height];
-  p.centre[2] = p.matrix[14] = body.fillet + body.ell * c + rim * s + high;
+  p.centre[2] = p.matrix[14] = fillet + ell * c + rim * s + high;
   // refers to the rim that was the upper one: the body is turned about its first axis
-  if (row[OF_ROW.turned]) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
+  if (row[OF_ROW.turned] && !body.circles) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
   // for a body on both rims the sum of the forces is shown, in the middle
   const contact = lies ? [p.centre[0], p.centre[1], 0] : [x, y, 0];
   return Object.assign(p, { high, lies, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
@@ -32,7 +32,7 @@ function pose(m, t) {
 // makes the surface anew if the body has changed
 let drawnBody = "";
 function dress() {
-  const b = { ...body, bore: isTube() ? s.bore : NaN, parts: s.parts }, key = [b.ell, b.bore, b.fillet, b.most, b.parts].join();
+  const b = { ...body, bore: isTube() ? s.bore : NaN, parts: body.circles ? turnedOf(body.circles) : s.parts }, key = [b.ell, b.bore, b.fillet, b.most, b.parts].join();
   if (key === drawnBody) return;
   drawnBody = key;
   const turned = clothe(lookOf(b));
@@ -74,8 +74,8 @@ const STATES = 300;
 let tracked = { rows: [], first: 0, last: 1 };
 // the only row of a body at rest at the start; its centre is placed as in a motion
 function standing() {
-  const { w1, w2, w3 } = start, out = body.ell * Math.sin(s.theta) - (1 - body.fillet) * Math.cos(s.theta);
-  return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0, 0, 0];
+  const { w1, w2, w3 } = start, k = +(body.circles && s.theta > body.most), [rim, ell] = body.circles?.[k] || [1 - body.fillet, body.ell], out = ell * Math.sin(s.theta) - rim * Math.cos(s.theta);
+  return [0, s.theta, w1, w2, w3, 0, 0, out, 0, NaN, NaN, 0, 0, 0, 0, 0, 0, k];
 }
 // loads rows from a time on, the path through them, and the extent that the camera must show
 function look(first, many = STATES) {
