@@ -249,6 +249,10 @@ impl Case {
         }
     }
 
+    fn equal_rims(&self) -> bool {
+        self.circles.windows(2).all(|of| of[0].radius == of[1].radius && of[0].fillet == of[1].fillet)
+    }
+
     /// Where the table says that a phase begins, and its kind as the library has it. The last one of several at one time is a
     /// phase.
     fn phases(&self) -> Vec<(&Row, Kind)> {
@@ -257,7 +261,8 @@ impl Case {
             let kind = match row.kind.as_str() {
                 "slides" | "lies" | "rocked" => Kind::Lying,
                 "pivots" => Kind::Pivoting,
-                "round" => Kind::RollingOnItsSide,
+                "round" if self.equal_rims() => Kind::RollingOnItsSide,
+                "round" => Kind::RollingRoundItsApex,
                 "slips" | "passes" => Kind::Slipping,
                 "rises" | "rocks" | "rolls" | "joint" if row.told.slip == [0.0; 2] => Kind::Rolling,
                 "rises" | "rocks" | "rolls" | "joint" => Kind::Slipping,
@@ -338,7 +343,10 @@ fn phases_begin_and_motions_end_where_those_of_the_references_do() {
             let phase = &all[if rocks { near(row) } else { i }];
             let late = (phase.time - row.time).abs();
             assert!(phase.kind == *kind && late <= most, "{} {} {late:e}: {phase:?}", case.name, row.kind);
-            let lies = matches!(kind, Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide);
+            let lies = matches!(
+                kind,
+                Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide | Kind::RollingRoundItsApex
+            );
             let lower = case.lower();
             let told = Told {
                 circle: if lies { lower } else { phase.rim.into() },

@@ -126,7 +126,7 @@ fn a_cone_rolls_on_its_side_about_its_tip_with_the_energy_of_the_textbook() {
         let round = TAU / rate;
         let times: Vec<f64> = (0..=8).map(|k| round * f64::from(k) / 8.0).collect();
         let m = cone.moves(cone.start([0.0, rolling], [0.0; 2]), &ask(mu), &times);
-        assert_eq!(kinds(&m), [Kind::RollingOnItsSide]);
+        assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
         // Landau and Lifshitz, Mechanics, section 32.
         let told = 3.0 / 40.0 * (height * rate).powi(2) * (1.0 + 5.0 * half.cos().powi(2));
         assert!((cone.inertia * rolling * rolling / 2.0 - told).abs() < 1e-14 * told);
@@ -161,14 +161,14 @@ fn the_narrow_end_of_what_rolls_round_its_apex_rises_above_a_rate_and_its_fricti
         let near = 1e-6;
         let holds = cup.height * wide / cup.inertia;
         let m = rolled(1.0 - near, 1.1 * holds);
-        assert_eq!(kinds(&m), [Kind::RollingOnItsSide]);
+        assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
         assert!(m.path.as_ref().unwrap().other_rim[0][0] == 0.0);
         let m = rolled(1.0 + near, 1.1 * holds);
         assert_eq!(kinds(&m), [Kind::Rolling], "{:?}", m.event);
         assert_eq!(m.path.as_ref().unwrap().rims[0], 1 - narrow as u8, "the wide end carries it");
         // At a lower rate the friction that it needs falls with the square of the rate.
         let m = rolled(0.5, 0.25 * holds * (1.0 + near));
-        assert_eq!(kinds(&m), [Kind::RollingOnItsSide]);
+        assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
         let m = rolled(0.5, 0.25 * holds * (1.0 - 1e-3));
         assert_eq!(kinds(&m)[0], Kind::Lying);
         let [along, _] = m.path.as_ref().unwrap().slip[0];
@@ -197,7 +197,7 @@ fn what_slides_along_its_side_stops_as_a_block_does_unless_it_tips_over_its_lead
             let (stop, far) = (speed / mu, 0.5 * speed * speed / mu);
             let m = cup.moves(start, &ask(mu), &[0.5 * stop, stop + 1.0]);
             let path = m.path.as_ref().unwrap();
-            assert_eq!(kinds(&m), [Kind::Lying, Kind::RollingOnItsSide]);
+            assert_eq!(kinds(&m), [Kind::Lying, Kind::RollingRoundItsApex]);
             assert!((path.phases[1].time - stop).abs() < 1e-12 * stop);
             assert!((path.heat - 0.5 * speed * speed).abs() < 1e-12 * speed * speed);
             let ways = [0.75 * far, far].map(|x| way * x);
@@ -252,7 +252,7 @@ fn what_rolls_round_its_apex_slows_and_rests_as_its_losses_say() {
         let rolling = (0.2 + 0.3 * next()) * if next() < 0.5 { 1.0 } else { -1.0 };
         let (delta, air) = (0.01 + 0.05 * next(), 0.01 + 0.1 * next());
         let (start, friction, speed) = (cup.start([0.0, rolling], [0.0; 2]), ask(10.0), rolling.abs());
-        if kinds(&cup.moves(start, &friction, &[1.0])) != [Kind::RollingOnItsSide] {
+        if kinds(&cup.moves(start, &friction, &[1.0])) != [Kind::RollingRoundItsApex] {
             continue;
         }
         let inertia = cup.inertia;
@@ -282,7 +282,7 @@ fn what_rolls_round_its_apex_slows_and_rests_as_its_losses_say() {
 #[test]
 fn a_body_that_lies_makes_the_same_motion_told_from_either_end() {
     let mut next = wander(14);
-    let mut seen = [0; 6];
+    let mut seen = [0; 7];
     for _ in 0..drawn(180) {
         let cup = any(&mut next);
         let (there, mut number) = (OnTwo::of(turned(&cup.body)), || 2.0 * next() - 1.0);

@@ -123,23 +123,19 @@ impl Walked {
                 Table::Smooth => Contact::Smooth.energy(&body, &y),
                 Table::Rolling { .. } => Contact::Rolling.energy(&body, &y),
             };
-            let row = Row {
-                t,
-                y,
-                pose: *pose,
-                force: *force,
-                slip,
-                kind: path.kinds[i],
-                energy,
-                lost,
-                lift,
-                rim,
-            };
+            let row =
+                Row { t, y, pose: *pose, force: *force, slip, kind: path.kinds[i], energy, lost, lift, rim };
             from.map_or(row, |from| {
                 // Two equal rims are told from the rim at the start, more from the lower end of the body.
                 let turned = !self.is_uneven() && rim == 1;
                 let rim = if self.is_uneven() { rim } else { from.rim ^ rim };
-                Row { t: from.t + t, pose: moved(&from.pose, pose, turned), lost: from.lost + lost, rim, ..row }
+                Row {
+                    t: from.t + t,
+                    pose: moved(&from.pose, pose, turned),
+                    lost: from.lost + lost,
+                    rim,
+                    ..row
+                }
             })
         };
         poses.zip(forces).enumerate().map(row).collect()
