@@ -166,12 +166,9 @@ class Motion(Outputs):
         """
         free = self.contact == "smooth" and self._phases is not None
         contact = Coulomb(0.0) if free else self.contact
-        energy: Floats = (
-            self.body.energy(self.states, contact)
-            if getattr(self.body, "rims", None) is None
-            else self.body._energy(self._seen, contact, self.rim)
-        )
-        return self._told("energy", energy)
+        if getattr(self.body, "rims", None) is None:
+            return self._told("energy", self.body.energy(self.states, contact))
+        return self._told("energy", self.body._energy(self._seen, contact, self.rim))
 
     @property
     def height(self) -> Floats:
@@ -183,10 +180,8 @@ class Motion(Outputs):
     def rim(self) -> NDArray[np.uint8]:
         """(n,) code of the rim from which the body is seen at each time: 0 its first rim, 1 the other one.
 
-        For a body of several circles it is the number of the circle in `Body.circles` that carries the body,
-        or that would carry it in the air; on two circles the lower number. Theta is then always the
-        inclination of the body's lower end, so that only the contact point, `slip`, `normal` and `friction`
-        refer to this circle.
+        For a body of several circles it is the number of the circle in `Body.circles` that carries the body
+        or did so before a flight; on two circles the lower one. Theta, w, phi, psi then do not depend on it.
 
         The first rim is that of the initial state. Theta, w, phi, psi, the contact point, `slip`, `normal`
         and `friction` refer to this rim; `centre` and `orientation` do not depend on it. Always 0 without

@@ -52,7 +52,7 @@ def told_of_lowest(body: "Laws", state: State, rim: Any, flies: Any) -> State:
     rise = _core.centre_up(*body._at(*four, *level, rim=rim)) - _core.centre_up(*now)
     lower = lowest_point_of(body, theta, rim)
     given = (*state._slip, state.height, state.lift)
-    other = (*slip, state.height + lower, state.lift + rise)  # type: ignore[operator]  # both are set
+    other = (*slip, state.height + lower, state.lift + rise)
     along, across, height, lift = (np.where(flies, y, x)[()] for x, y in zip(given, other, strict=True))
     return State(*four, slip=(along, across), height=height, lift=lift)
 

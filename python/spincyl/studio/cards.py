@@ -294,7 +294,7 @@ def _centre(of: Body, theta: float) -> complex:
     """The centre of mass of a body with a fillet or of several circles, relative to its contact point."""
     if of.rims is not None:
         k = int((of.borders < theta).sum())
-        radius, height, fillet = of.circles[k].tolist()
+        radius, height, fillet = map(float, of.circles[k])
         return 1j * radius * _axis(theta) - height * _axis(theta) + 1j * fillet
     rim = 1 - float(of.fillet)
     return 1j * rim * _axis(theta) + float(of.ell) * _axis(theta) + 1j * float(of.fillet)

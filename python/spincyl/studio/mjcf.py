@@ -121,11 +121,11 @@ def _geometry(
             geoms = [f'name="rim" type="mesh" mesh="looks" {touch}']
             more.append("NEARLY: a smooth joint. Here the body is a mesh with facets.")
         else:
-            geoms, deep, pair = _geoms_of_circles(
+            geoms, planes, pair = _geoms_of_circles(
                 shape["circles"], metre, (mu, torsion), f"{dim} {{}} {stiff}"
             )
             geoms = [f"{geom} {touch}" if _UNSEEN not in geom else geom for geom in geoms]
-            table = "\n".join([table, *(f"{plane} {size} {_UNSEEN}/>" for plane in deep)])
+            table = "\n".join([table, *(f"{plane} {size} {_UNSEEN}/>" for plane in planes)])
             more.append("Each circle that can touch the table is a geom of its own.")
     elif shape["type"] == "ellipsoid":
         of = f'size="{_words(shape["semi_axes"])}" pos="{_words(shape["centre"])}"'
