@@ -385,5 +385,38 @@ def test_a_motion_of_a_cup_is_drawn_told_and_saved():
         [0.021, 0.03]
     )
     assert m.to_xarray()["theta"].size == 20
-    with pytest.raises(ValueError, match=r"^body: expected a lowest circle of outer radius R"):
-        sc.play(CUP)
+
+
+def contact_of(m):
+    """The point of the circle that is told which is nearest to the table, from the centre and the orientation."""
+    x, y, z, w = m.orientation.T
+    axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], -1)
+    assert axis[:, 2] == pytest.approx(np.cos(m.theta), abs=1e-12)
+    radius, height, fillet = m.body.circles[m.rim].T[:, :, np.newaxis]
+    up = np.array([0.0, 0.0, 1.0])
+    down = axis[:, 2:] * axis - up
+    return (
+        m.centre + height * axis + radius * down / np.linalg.norm(down, axis=1)[:, np.newaxis] - fillet * up
+    )
+
+
+def test_pose_and_centre_of_a_body_of_several_circles_are_those_of_the_circle_that_touches():
+    t, seen = np.linspace(0, 6, 301), set()
+    for body, start, how in (
+        (CUP, sc.State(1.8, 0.5, 0.1, 0.5), {}),
+        (CUP, sc.State(2.2, 0.3, 0.4, 0.5), HELD),
+        (BALLS, sc.State(1.0, 1.5, -0.5, 2.0), HELD),
+        (BOTTLE, sc.State(1.2, 0.3, -0.6, 0.4), HELD),
+        (BOTTLE, sc.State(2.2, 0.6, 0.4, -0.5, slip=(0.1, 0.3)), HELD),
+    ):
+        m = sc.roll(body, start, t, want="pose", **how)
+        table = m.contact_point
+        point = contact_of(m)
+        lift = point[:, 2]
+        assert m.t.size > 5 and (lift > -1e-11).all()
+        down = np.abs(lift) < 1e-11
+        assert point[down, :2] == pytest.approx(table[down], abs=1e-10)
+        assert np.abs(np.diff(m.centre, axis=0)).max() < 0.2, "the centre of mass does not jump"
+        assert (m.axis_up == np.cos(m.theta)).all()
+        seen |= {*m.rim.tolist()}
+    assert seen == {0, 1, 2}

@@ -8,6 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._circles import FIELDS, extent_of, set_rims
 from spincyl._circular import circular as _circular
+from spincyl._circular import steady_on_circle as _steady_on_circle
 from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
@@ -318,17 +319,13 @@ class Body(Laws, Outlines, Sized, Hinting):
             If a single inclination has no steady state; the message gives the forbidden band. An array of
             inclinations gives NaN there.
         """
-        plain = type(theta) is float and self._single and abs(theta) <= np.pi
-        given = theta if plain else radians("theta", theta, self._leans)
-        seen, *numbers = self._at(given)
-        if plain or is_scalar(given, *numbers):
-            found: Any = _core.steady_state(float(seen), numbers)
-            if self.rims is not None:
-                found = given, found[1], 0.0, float(self._sign(given) * found[3])
-            return state_without_checks(found)
-        w3 = _core.steady_w3(seen, *numbers)
-        w3 = w3 if self.rims is None else self._sign(given) * w3
-        return State(given, _core.steady_w1(seen, *numbers), given * 0.0, w3)
+        numbers, plain = self._raw, type(theta) is float and self._single and abs(theta) <= np.pi
+        theta = theta if plain else radians("theta", theta, self._leans)
+        if self.rims is not None:
+            return _steady_on_circle(self, theta)
+        if plain or is_scalar(theta, *numbers):
+            return state_without_checks(_core.steady_state(float(theta), numbers))
+        return State(theta, _core.steady_w1(theta, *numbers), theta * 0.0, _core.steady_w3(theta, *numbers))
 
     @elementwise
     def circular(

@@ -291,6 +291,14 @@ def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
     return radius, fillet
 
 
+def circles_at(body: Any, theta: Floats) -> NDArray[np.uint8]:
+    """The circles that carry a single body at these inclinations; 0 if it has no `rims`."""
+    found = np.zeros(theta.size, np.uint8)
+    if getattr(body, "rims", None) is not None:
+        found += (body._borders < theta[:, np.newaxis]).sum(-1).astype(np.uint8)
+    return found
+
+
 def lowest_point_of(body: Circles, theta: Floats, rim: Any) -> Any:
     """The height of the lowest point of a body above that of one of its several circles; 0 or less."""
 

@@ -1,4 +1,4 @@
-"""Steady states whose centre runs on a circle."""
+"""Steady states whose centre runs on a circle, and those of a body of several circles."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -48,3 +48,13 @@ def _on_a_circle(body: "Body", theta: Reals, numbers: Any, name: str, number: Re
         return state_without_checks(_core.circular_state(float(theta), float(number), numbers))
     w1, w3 = (f(theta, number, *numbers) for f in (_core.circular_w1, _core.circular_w3))
     return State(theta, w1, w1 * 0.0, w3)
+
+
+def steady_on_circle(body: "Body", theta: Reals) -> State:
+    """The steady state with the centre at rest of a body of several circles."""
+    seen, *numbers = body._at(theta)
+    if is_scalar(theta, *numbers):
+        _, w1, _, w3 = _core.steady_state(float(seen), numbers)
+        return State(theta, w1, 0.0, body._sign(theta) * w3)
+    w1, w3 = (law(seen, *numbers) for law in (_core.steady_w1, _core.steady_w3))
+    return State(theta + 0.0 * w1, w1, w1 * 0.0, body._sign(theta) * w3)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from spincyl import _core
 from spincyl._asked import Asked, Want, options_for_core, times_of, union_of_wants
 from spincyl._body import Body
+from spincyl._circles import circles_at
 from spincyl._contact import AnyContact, Coulomb
 from spincyl._ending import Ending, Event, FixedStep, RestsOn
 from spincyl._input.equality import compared_by_value
@@ -188,7 +189,7 @@ class Motion(Outputs):
         `restitution=`, and while both rims touch the table.
         """
         found = self._extra.get("rim")
-        return np.zeros(self.t.size, np.uint8) if found is None else found
+        return circles_at(self.body, self.theta) if found is None else found
 
     @property
     def axis_up(self) -> Floats:

@@ -96,7 +96,7 @@ class Outlines:
         >>> import spincyl as sc
         >>> cup = sc.Body.frustum("25mm", "35mm", "90mm", wall=0.0).in_metres("7g")
         >>> cup.apex().rate.round(4), round(cup.scale.radius, 4)
-        (np.float64(0.4062), 0.035)
+        (np.float64(0.3127), 0.035)
         """
         named = {"bottom": bottom, "top": top, "height": height} | ({} if wall is None else {"wall": wall})
         lower, upper, tall, *thick = metres(lengths_in_metres("", named)[0]).values()

@@ -2,8 +2,10 @@
 
 use crate::common::wander;
 use spincyl::body::Circle;
-use spincyl::contact::Contact;
-use spincyl::{Body, stability, steady};
+use spincyl::contact::{Contact, Friction};
+use spincyl::ensemble::{Job, MotionColumns, MotionOutput, roll as roll_many};
+use spincyl::motion::{Ask, Method, Start, roll_with};
+use spincyl::{Body, State, stability, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The body, its theta_k and D, height Z and levers g of both contacts there, and the moment J about the line through
@@ -308,4 +310,42 @@ fn steady_states_of_a_rate_their_folds_and_their_stability_do_not_depend_on_the_
         }
     }
     assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
+}
+
+#[test]
+fn cups_among_tubes_move_in_a_sweep_as_they_do_alone() {
+    let mut next = wander(11);
+    let mut pairs = Vec::new();
+    for k in 0..60 {
+        let body = match k % 3 {
+            0 => Body::frustum(0.7, 1.0, 0.5 + 2.0 * next(), None),
+            1 => Body::tube(0.5 + next(), 0.3),
+            _ => Body::unequal_balls([0.8, 1.0], 1.0),
+        };
+        let [w1, w2, w3] = [(); 3].map(|()| 2.0 * next() - 1.0);
+        pairs.push((body.unwrap(), State { theta: 0.3 + 1.2 * next(), w1, w2, w3 }));
+    }
+    let columns: MotionColumns = pairs.iter().copied().collect();
+    let (times, mut ended) = ([0.5, 2.0], 0);
+    let hits = Ask::on(Friction::coulomb(0.3)).with_restitution(0.2);
+    for ask in [Ask::default(), Ask::on(Friction::coulomb(0.3)), hits] {
+        let (mut error, mut method, mut status) = (vec![0.0; 60], vec![0; 60], vec![0; 60]);
+        let mut last = [(); 4].map(|()| vec![f64::NAN; 60]);
+        let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
+        out.last = Some(last.each_mut().map(Vec::as_mut_slice));
+        let job = Job { tol: 1e-12, ..Job::new(&times).with_ask(ask) };
+        assert!(roll_many(&columns.starts(), &job, out, 2, |_| true).unwrap());
+        for (i, (body, y)) in pairs.iter().enumerate() {
+            let rubs = ask != Ask::default();
+            let alone = if rubs { ask.with_method(Method::Tolerance(1e-12)) } else { ask };
+            let m = roll_with(body, Start::from(*y), &times, &alone, || true).unwrap().unwrap();
+            assert_eq!(status[i], m.ending() as u8, "{i} {body:?}");
+            let there = m.event.map_or_else(|| m.states[1], |event| event.state);
+            for (x, column) in <[f64; 4]>::from(there).iter().zip(&last) {
+                assert!((x - column[i]).abs() < 1e-7, "{i}: {x} {} {body:?}", column[i]);
+            }
+            ended += usize::from(m.event.is_some());
+        }
+    }
+    assert!((10..170).contains(&ended), "{ended}");
 }
