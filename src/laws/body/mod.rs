@@ -25,15 +25,14 @@ pub(crate) mod rim;
 mod tube;
 
 use crate::error::{Error, within};
-use crate::laws::state::State;
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
 pub use apex::Apex;
 use core::f64::consts::{FRAC_PI_2, PI};
 pub use profile::Circle;
-use profile::Row;
+use profile::CircleRow;
 pub(crate) use profile::{Landings, MOST_CIRCLES};
-pub(crate) use rim::{Border, Rim, Shape, Touching};
+pub(crate) use rim::{Border, CircleDown, Rim, Shape};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
@@ -63,7 +62,7 @@ pub struct Body {
     /// The inclination at which the circle before the one that carries lands; 0 without one.
     low: f64,
     /// The circles of the body, if they are neither one circle nor two equal rims.
-    row: Option<Row>,
+    row: Option<CircleRow>,
 }
 
 impl Body {
@@ -142,7 +141,7 @@ impl Body {
         let body = if bore.is_nan() {
             Self::rounded(ell, i1, i3, fillet)
         } else if bore.is_sign_negative() {
-            let row = Row::of(&[Circle { radius: -bore, depth: ell, fillet }])?;
+            let row = CircleRow::of(&[Circle { radius: -bore, depth: ell, fillet }])?;
             return Ok(Self { theta_end, row: None, ..Self::bare(0.0, 0.0).with_moments(i1, i3)?.on(row) });
         } else {
             Self::tube_on(ell, bore, fillet)
@@ -198,7 +197,7 @@ impl Body {
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     pub fn profile(circles: &[Circle], i1: f64, i3: f64) -> Result<Self, Error> {
-        let row = Row::of(circles)?;
+        let row = CircleRow::of(circles)?;
         Self::bare(0.0, 0.0).with_moments(i1, i3)?.on(row).of_this_world()
     }
 
@@ -219,7 +218,7 @@ impl Body {
     }
 
     /// This body on the circle of a row that carries.
-    fn on(self, row: Row) -> Self {
+    fn on(self, row: CircleRow) -> Self {
         let Circle { radius, depth, fillet } = row.here();
         let [low, theta_end] = row.range();
         let unit = radius + fillet == 1.0;
@@ -264,7 +263,7 @@ impl Body {
     /// The circle that lands at theta_end; without one, the mirror image of the circle that carries.
     pub(crate) fn next_rim(&self) -> Rim<f64> {
         let here = self.shape().rim;
-        let next = self.row.as_ref().and_then(Row::next);
+        let next = self.row.as_ref().and_then(CircleRow::next);
         next.map_or(Rim { ell: -here.ell, ..here }, Circle::rim)
     }
 
@@ -360,7 +359,7 @@ impl Body {
     /// Where the circle that carries stands in the body.
     pub(crate) fn view(&self) -> View {
         let Some(row) = &self.row else { return View::default() };
-        let number = |row: &Row| row.number() as u8;
+        let number = |row: &CircleRow| row.number() as u8;
         let next = row.at(row.here_is() + 1);
         let (range, told) = (row.range(), row.told());
         let borders = [0, 1].map(|i| [range[i], told[if row.is_over() { 1 - i } else { i }]]);
@@ -538,13 +537,6 @@ impl Body {
     /// The circle of the body that lands at theta_end, and the one before it.
     pub(crate) fn border(&self) -> Border<f64> {
         Border::between([self.shape().rim, self.next_rim()], landing_angle(self.theta_end))
-    }
-
-    /// The state and the slip of the circle that lands at theta_end, seen from that circle, whose face is at theta = 0:
-    /// phi becomes phi + pi, and psi becomes -psi.
-    pub(crate) fn seen_from_next(&self, y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
-        let theta = if y.theta == FRAC_PI_2 { y.theta } else { PI - y.theta };
-        (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
     }
 
     /// Whether the body can land only on its rim, or on the other of two equal rims.

@@ -105,7 +105,7 @@ impl Landings {
 
 /// The circles of a body in the order in which they carry it, as seen from one end.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct CircleRow {
     circles: [Circle; MOST_CIRCLES],
     count: usize,
     /// The circle that carries.
@@ -114,7 +114,7 @@ pub(crate) struct Row {
     over: bool,
 }
 
-impl Row {
+impl CircleRow {
     /// The row of circles of a body, from the lower end up, without those that never touch.
     pub fn of(given: &[Circle]) -> Result<Self, Error> {
         let none = Circle { radius: 0.0, depth: 0.0, fillet: 0.0 };

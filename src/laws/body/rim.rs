@@ -82,7 +82,7 @@ impl<T: Real> Rim<T> {
 
 /// A circle on which a body touches the table at one inclination.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Touching<T> {
+pub(crate) struct CircleDown<T> {
     /// Radius A of the circle of contact.
     pub radius: T,
     /// Depth L of the circle of contact.
@@ -99,14 +99,14 @@ pub(crate) struct Border<T> {
     /// Height Z of the centre of mass.
     pub height: T,
     /// The circle that touches at smaller inclinations, and the other one.
-    pub circles: [Touching<T>; 2],
+    pub circles: [CircleDown<T>; 2],
     /// Whether both touch with the same radius A.
     pub even: bool,
 }
 
 impl Border<f64> {
     pub fn between(rims: [Rim<f64>; 2], angle: (f64, f64)) -> Self {
-        let circles = rims.map(|rim| Touching {
+        let circles = rims.map(|rim| CircleDown {
             radius: rim.radius(angle),
             depth: rim.depth(angle),
             lever: rim.lever(angle),
@@ -126,7 +126,7 @@ impl<T: Real> Border<T> {
     /// Converts each number with `f`.
     pub fn map<U: Real>(&self, f: impl Fn(T) -> U) -> Border<U> {
         let circle =
-            |of: Touching<T>| Touching { radius: f(of.radius), depth: f(of.depth), lever: f(of.lever) };
+            |of: CircleDown<T>| CircleDown { radius: f(of.radius), depth: f(of.depth), lever: f(of.lever) };
         let Self { angle: (s, c), height, circles: [here, there], even } = *self;
         Border { angle: (f(s), f(c)), height: f(height), circles: [circle(here), circle(there)], even }
     }

@@ -33,7 +33,7 @@ use crate::laws::body::{Body, Border};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
 use crate::laws::state::{State, drilling_of};
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body after its other rim has landed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -147,8 +147,7 @@ pub(crate) fn land_at(
     let before = energy(&landing.border, body, y, slip, lift);
     let end = |outcome, Pushed { y, slips: [slip, there], lift, .. }: Pushed| {
         let lost = before - energy(&landing.border, body, &y, slip, lift);
-        let (state, slip) =
-            if outcome == Outcome::Changes { body.seen_from_next(&y, there) } else { (y, slip) };
+        let (state, slip) = if outcome == Outcome::Changes { seen_from_next(&y, there) } else { (y, slip) };
         Landed { outcome, state, slip, lost }
     };
     let mu = |[u, v]: [f64; 2]| coefficient(own, friction.strength(), || u.hypot(v));
@@ -229,12 +228,19 @@ pub(crate) fn settled(
     (after, if slip == [0.0; 2] { slip } else { landing.slips(impulses, 0.0)[0] })
 }
 
+/// The state and the slip of the circle that lands at theta_end, seen from that circle, whose face is at theta = 0: phi
+/// becomes phi + pi, and psi becomes -psi.
+fn seen_from_next(y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
+    let theta = if y.theta == FRAC_PI_2 { y.theta } else { PI - y.theta };
+    (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
+}
+
 /// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
     let border = body.border();
-    body.seen_from_next(y, [slip[0], slip[1] - border.span() * drilling_of(border.angle, y.w1, y.w3)])
+    seen_from_next(y, [slip[0], slip[1] - border.span() * drilling_of(border.angle, y.w1, y.w3)])
 }
 
 /// Kinetic energy at theta_end, from the state, and the slip and the vertical velocity of the circle that carries.

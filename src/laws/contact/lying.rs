@@ -20,7 +20,7 @@
 //! Error: a few roundings of the terms written above; tests of `laws` compare with Newton's equations.
 
 use super::slip::Friction;
-use crate::laws::body::{Body, Border, Shape, Touching};
+use crate::laws::body::{Body, Border, CircleDown, Shape};
 use crate::laws::loss::{Couples, Holds, Kinematics, Losses};
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::numbers::Real;
@@ -261,7 +261,7 @@ impl<T: Real> Lying<T> {
         let way = if other { -turn } else { turn };
         let across = self.strength[slips] * loads[slips] * one.splat(way);
         let along_arm = |[d1, d3]: [T; 2]| at.depth * d1 - at.radius * d3;
-        let arm = |of: Touching<T>| self.turned([of.depth, zero - of.radius]);
+        let arm = |of: CircleDown<T>| self.turned([of.depth, zero - of.radius]);
         let pull = (one + along_arm(arm(far))) * across + along_arm(self.turned([m1, m3]));
         let holds = zero - pull / (one + along_arm(arm(at)));
         let mut force = [[zero; 3]; 2];

@@ -234,7 +234,8 @@ impl<G: Own> LyingFlow<G> {
         let [here, there] = at.force;
         let (held, Ways { contour, drilling, .. }) = (law.held(), self.ways());
         let angle = law.border.angle;
-        let turning = [drilling_of(angle, y[0], y[1]), -rolling_of(angle, y[0], y[1])];
+        let [w1, w3, ..] = y;
+        let turning = [drilling_of(angle, w1, w3), -rolling_of(angle, w1, w3)];
         let (limits, resist) = (self.limits_under(&at.force), self.resists());
         let hold = |i: usize| {
             let (needs, way) = ([at.couple[i], limits[i]], one.splat([drilling, contour][i]));

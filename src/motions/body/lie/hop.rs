@@ -25,8 +25,8 @@ const SHORT_HOP: f64 = 1e-4;
 const SOON: f64 = 3e-3;
 /// Where hops follow each other at one time, one that is slower than this is an error, which lasts for so long in units of
 /// its velocity.
-const HARDLY: f64 = 1e-6;
-const LASTS: f64 = 10.0;
+const LOST_RISE: f64 = 1e-6;
+const HOPS_ON: f64 = 10.0;
 /// A slip lasts longer than the hop if it is faster than what friction changes in that time by this factor.
 const OUTLASTS: f64 = 30.0;
 /// Number of corrections of the duration.
@@ -41,9 +41,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !self.of.body.has_row() || !at_border || !(0.0..SHORT_HOP).contains(&rises) || rises == 0.0 {
             return false;
         }
-        if rises < HARDLY && self.does_not_advance() {
+        if rises < LOST_RISE && self.does_not_advance() {
             let [u, v] = self.at.slip();
-            self.claims(LASTS * rises + if u.hypot(v) < HARDLY { u.hypot(v) } else { 0.0 });
+            self.claims(HOPS_ON * rises + if u.hypot(v) < LOST_RISE { u.hypot(v) } else { 0.0 });
             let next = self.settles_on_side();
             self.continues_with(next);
             return true;

@@ -468,7 +468,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.begins_lawfully(&flow, &place)?;
         let (ask, over, made) = (self.ask, self.over(), &mut self.made);
         let (over, way, body) = (over.as_ref(), made.path.way, self.of.body);
-        let mut write = |y: &[f64; N]| made.push(row_of(&ask, &flow, Seen { over, way, body: &body }, y));
+        let mut write =
+            |y: &[f64; N]| made.push(row_of(&ask, &flow, LyingView { over, way, body: &body }, y));
         let flown = flow.run(place, steps, &self.since[first..], &mut write, go_on);
         self.has_spent(flown.spent);
         self.heeds_laws(&flow, &flown, || flown.y)?;
@@ -570,7 +571,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Writes a body on both rims to the outputs.
     pub(crate) fn writes_lying(&mut self, flow: &LyingFlow<G>, y: &[f64; N]) {
         let over = self.over();
-        let seen = Seen { over: over.as_ref(), way: self.made.path.way, body: &self.of.body };
+        let seen = LyingView { over: over.as_ref(), way: self.made.path.way, body: &self.of.body };
         self.made.push(row_of(&self.ask, flow, seen, y));
     }
 
@@ -587,7 +588,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
 /// How a body on both rims is seen: numbers of the same phase if these are seen from the other rim; the direction in which
 /// the slip of a rim just begins; and the body as seen from this rim.
-struct Seen<'a> {
+struct LyingView<'a> {
     over: Option<&'a Aloft>,
     way: [f64; 2],
     body: &'a Body,
@@ -597,7 +598,7 @@ struct Seen<'a> {
 fn row_of<G: Own, const N: usize>(
     ask: &Ask,
     flow: &LyingFlow<G>,
-    Seen { over, way, body }: Seen<'_>,
+    LyingView { over, way, body }: LyingView<'_>,
     y: &[f64; N],
 ) -> OutputRow<State> {
     let mut slips = [y.slip(), flow.law.other_slip([y[W1], y[W3], y[UH], y[U2]])];
