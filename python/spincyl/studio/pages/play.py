@@ -74,7 +74,21 @@ _SCRIPTS = (
 )
 #: The scripts of a page without friction, which has no stones.
 _SCRIPTS_WITHOUT_FRICTION = tuple(name for name in _SCRIPTS if "stone" not in name)
-_BODY = ("parts", "bottom", "top", "height", "ell", "bore", "fillet", "i1", "i3", "end", "radius", "mass", "gravity")
+_BODY = (
+    "parts",
+    "bottom",
+    "top",
+    "height",
+    "ell",
+    "bore",
+    "fillet",
+    "i1",
+    "i3",
+    "end",
+    "radius",
+    "mass",
+    "gravity",
+)
 #: The core without friction and losses, and the one with them.
 CORES = "core.wasm.gz", "core.friction.wasm.gz"
 #: Permissions and style of the frame in a notebook.
