@@ -385,6 +385,7 @@ def test_a_motion_of_a_cup_is_drawn_told_and_saved():
         [0.021, 0.03]
     )
     assert m.to_xarray()["theta"].size == 20
+    assert "<!DOCTYPE html>" in sc.play(CUP).html
 
 
 def contact_of(m):

@@ -16,13 +16,7 @@ if TYPE_CHECKING:
     from spincyl._body import Body
 
 Kind: TypeAlias = Literal[
-    "rolling",
-    "slipping",
-    "flying",
-    "lying",
-    "pivoting",
-    "rolling on its side",
-    "rolling round its apex",
+    "rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side", "rolling round its apex"
 ]
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -33,7 +27,7 @@ HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
 
 Rim: TypeAlias = Literal["first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth"]
 #: Rim from which a state is seen, for each code in `Motion.rim`.
-RIMS: tuple[Rim, ...] = ("first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+RIMS: tuple[Rim, ...] = get_args(Rim)
 
 
 class Phase(NamedTuple):
@@ -189,13 +183,11 @@ def phases(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Ph
 
 def told_phases(body: "Body", found: Sequence[Phase]) -> tuple[Phase, ...]:
     """The phases of a body of several circles: a state in the air is told of the lowest circle."""
-    told = []
-    for phase in found:
-        if phase.kind == "flying":
-            state = told_of_lowest(body, phase.state, RIMS.index(phase.rim), True)
-            lowest = int((body._borders < phase.state.theta).sum())
-            phase = phase._replace(state=state, rim=RIMS[lowest])
-        told.append(phase)
+    told = list(found)
+    for i, (time, kind, state, rim) in enumerate(found):
+        if kind == "flying":
+            state = told_of_lowest(body, state, RIMS.index(rim), True)
+            told[i] = Phase(time, kind, state, RIMS[int((body._borders < state.theta).sum())])
     return tuple(told)
 
 
