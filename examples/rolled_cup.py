@@ -107,7 +107,9 @@ if __name__ == "__main__":
         print(f"Pushed at {speed} m/s, it rests after", end=" ")
         print(f"{motion.phi[-1] / (2 * np.pi):.4f} rounds and {rests:.4f} s", end="")
         if len(motion.phases) == 1:
-            print(f"\n  (closed form: {rounds:.4f} rounds, {scale.seconds(time):.4f} s).")
+            print(
+                f"\n  (closed form: {rounds:.4f} rounds, {scale.seconds(time):.4f} s)."
+            )
             continue
         rises = np.degrees(motion.theta.max() - lies)
         rolls = scale.seconds(motion.phases[-1].time)

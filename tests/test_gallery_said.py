@@ -21,8 +21,8 @@ import rattleback
 import rising_egg
 import rocking_can
 import rolled_cup
-import tipped_bottle
 import tippe_top_turns
+import tipped_bottle
 
 import spincyl as sc
 
@@ -230,7 +230,12 @@ def test_a_cup_rolls_round_its_apex_to_rest_as_a_closed_form_says_and_too_fast_i
         "Pushed too fast for its friction, it slides outwards first, and its bottom may rise",
     )  # fmt: skip
     scene = rolled_cup
-    for speed, slides, rises in ((0.5, False, False), (1.1, False, False), (1.25, True, False), (1.4, True, True)):
+    for speed, slides, rises in (
+        (0.5, False, False),
+        (1.1, False, False),
+        (1.25, True, False),
+        (1.4, True, True),
+    ):
         rate = scene.rate_of(speed)
         how = {"contact": scene.table, "restitution": 0.0, "losses": scene.LOSS, "want": "pose"}
         m = sc.roll(scene.body, scene.pushed(rate), scene.t, **how)

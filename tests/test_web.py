@@ -229,6 +229,35 @@ def test_flights_impacts_and_lying_agree_within_the_error_that_they_state(ask, w
     assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
 
 
+CUP = sc.Body.frustum(0.7, 1.0, 2.0)
+LIES = float(CUP.borders[0])
+
+
+@pytest.mark.parametrize(
+    ("state", "kinds"),
+    [
+        (sc.State(LIES, 0.3 * np.sin(LIES), 0.0, -0.3 * np.sin(LIES) * np.tan(LIES)), {6}),
+        (sc.State(LIES, 0.5 * np.sin(LIES), 0.0, 0.5 * np.cos(LIES)), {3, 6}),
+        (sc.State(1.0, 0.1, 0.0, 0.3), {2, 6}),
+        (sc.State(1.8, 0.4, 0.0, -0.8), {1}),
+    ],
+)
+def test_a_cup_tips_lies_and_rolls_round_its_apex_within_the_error_that_it_states(ask, state, kinds):
+    how = {"contact": sc.Coulomb(0.6), "restitution": 0.5, "want": WANT}
+    native = sc.roll(CUP, state, TIMES, **how)
+    start = (state.theta, state.w1, state.w2, state.w3, 0.0, 0.0)
+    given = ("frustum", (0.7, 1.0, 2.0))
+    told, rows, few = compared(ask, given, start, 2, 0.6, native, bounce=0.5)
+    assert {*rows[:, 14]} >= kinds
+    np.testing.assert_array_equal(rows[:, 14], native.phase)
+    np.testing.assert_array_equal(rows[:, 17], native.rim)
+    there = sc.roll(CUP, state, few[:, 0], t0=0.0, **how)
+    assert np.abs(few[:, 1] - there.theta).max() <= 2 * told[8] + there.error
+    assert np.abs(few[:, 7:9] - there.contact_point).max() <= 2 * told[9] + there.pose_error
+    whole = rows[:, 13] + rows[:, 15]
+    assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
+
+
 def test_without_a_restitution_a_motion_ends_where_it_leaves_the_table_or_lands(ask):
     start = (FALLS.theta, FALLS.w1, FALLS.w2, FALLS.w3, *FALLS.slip, 2.0, 0.2, 0.0, 20.0, 301)
     _, ends, rolls = ask(BODIES["cylinder"][0], ("start", (*start, NONE)), ("start", (*start, 0.0)))
@@ -335,7 +364,7 @@ def test_a_refusal_is_a_code_with_a_meaning(ask, why):
 
 
 CALLS = {
-    "tube": 3, "body": 5, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
+    "tube": 3, "body": 5, "frustum": 3, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
     "losses": 2, "start": 12, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
 }  # fmt: skip
 

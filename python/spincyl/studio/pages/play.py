@@ -121,12 +121,14 @@ class Play:
         self._of_revolution()
         found, own = body_of(self._told), self._body
         # the same one knows its parts, and its circles, of which a page has the lowest one
-        same = own if own.rims is None else replace(own, rims=None)
+        same = own if own.rims is None or found.rims is not None else replace(own, rims=None)
         return own if found == same else found
 
     @body.setter
     def body(self, body: Body) -> None:
-        self._set(words_of_body(body), gone=(*_BODY, "w", "precession", "stone"))
+        told = words_of_body(body)
+        _check_circles(told, self.contact)
+        self._set(told, gone=(*_BODY, "w", "precession", "stone"))
         self._body = body
 
     @property
@@ -166,6 +168,7 @@ class Play:
     def contact(self, contact: AnyContact) -> None:
         _check_contents(self.friction, contact, None, None if self._told.get("stone") else self.body)
         _check_bounces(self.friction, contact, self.restitution)
+        _check_circles(self._told, contact)
         self._set(words_of_table(contact), gone=("patch",))
 
     @property
@@ -300,8 +303,9 @@ def play(
     Parameters
     ----------
     body : Body, optional
-        Single body. Default: the measured tube of the paper. For a measured body the page also gives times
-        in seconds and rates in hertz.
+        Single body. A solid frustum (`Body.frustum`, `Body.cone`) moves on both circles, with friction; any
+        other body of several circles moves on the lowest one. Default: the measured tube of the paper. For a
+        measured body the page also gives times in seconds and rates in hertz.
     theta : float, optional
         Inclination of the initial steady state, in radians. If there is no steady state at this inclination,
         the body starts at rest. Default: 1.3; for the tube of the paper 89.5 degrees.
@@ -375,6 +379,7 @@ def play(
         told |= {"until": in_range("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": in_range("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
+    _check_circles(told, contact)
     _check_contents(friction, contact, losses, body)
     _check_bounces(friction, contact, restitution)
     return Play(told, line("title", title), friction, body)
@@ -410,6 +415,13 @@ def _check_bounces(friction: bool, contact: AnyContact, restitution: float | Non
         raise ValueError(
             f"restitution = {restitution}: expected None, since the contact has a patch, {contact!r}"
         )
+
+
+def _check_circles(told: dict[str, Any], contact: AnyContact) -> None:
+    """Raise ValueError for a frustum whose contact has no law of friction, or has a patch."""
+    if "height" in told and (isinstance(contact, str) or has_patch(contact)):
+        why = "a page moves a frustum with friction at a point: give sc.Coulomb(mu) or sc.Viscous(c)"
+        raise ValueError(f"contact = {contact!r}: {why}")
 
 
 def _json(what: Any) -> str:

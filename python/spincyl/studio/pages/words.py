@@ -19,21 +19,26 @@ from spincyl.loss import KINDS
 from spincyl.studio import parts_shape
 from spincyl.studio.surface import SHADE
 
+#: Least and greatest height of a frustum on the page, in units of its larger radius.
+TALL = 0.05, 20.0
+
 
 def words_of_body(body: Body) -> dict[str, Any]:
     """Words for a body: half length, bore and fillet of a tube; the numbers of any other body."""
     if isinstance(body, Ellipsoid):
         raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
     instance_of("body", body, Body)
-    if body.rims is not None:
-        return _words_of_frustum(body)
     numbers = body.ell, body.i1, body.i3, body.fillet, body.theta_end, body.bore
     if not is_scalar(*numbers):
         raise ValueError("body: expected a single body, not a family")
     ell, i1, i3, fillet, most, bore = map(float, numbers)
     size = _words_of_scale(body.scale)
+    frustum = _words_of_frustum(body)
+    if frustum:
+        return frustum | size
     if body.rims is not None and body.rims[0, 0] + fillet != 1:
-        raise ValueError("body: expected a lowest circle of outer radius R, on which alone a page moves it")
+        why = "expected a frustum, or a lowest circle of outer radius R, on which alone a page moves it"
+        raise ValueError(f"body: {why}")
     if not np.isnan(bore):
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
     told = {"ell": ell, "i1": i1, "i3": i3, "fillet": fillet} | size | _words_of_parts(body)
@@ -41,17 +46,17 @@ def words_of_body(body: Body) -> dict[str, Any]:
 
 
 def _words_of_frustum(body: Body) -> dict[str, Any]:
-    """Words for a solid frustum, such as a cup or a cone: radii of both ends, and height."""
-    several = "expected a solid frustum, such as Body.frustum(0.7, 1, 2) or Body.cone(2)"
-    if body.rims.ndim > 2:
-        raise ValueError("body: expected a single body, not a family")
-    (bottom, low, _), *_, (top, high, _) = body.rims.tolist()
+    """Words for a solid frustum, such as a cone: radii of both ends, and height; none for another body."""
+    if body.rims is None or len(body.rims) != 2:
+        return {}
+    (bottom, low, _), (top, high, _) = body.rims.tolist()
+    if max(bottom, top) != 1 or body.rims[:, 2].any() or not TALL[0] <= high - low <= TALL[1]:
+        return {}
     told = {"bottom": bottom, "top": top, "height": high - low}
     same = _natural_of(told)
-    near = len(body.rims) == 2 and np.allclose([body.i1, body.i3], [same.i1, same.i3], rtol=1e-12, atol=0)
-    if not (near and np.allclose(body.rims, same.rims, rtol=0, atol=1e-12)):
-        raise ValueError(f"body: {several}; a page shows no other body of several circles")
-    return told | _words_of_scale(body.scale)
+    moments = [body.i1, body.i3], [same.i1, same.i3]
+    near = same.rims is not None and np.allclose(*moments, rtol=1e-12, atol=0)
+    return told if near and np.allclose(body.rims, same.rims, rtol=0, atol=1e-12) else {}
 
 
 def _words_of_parts(body: Body) -> dict[str, Any]:
@@ -173,6 +178,8 @@ def table_of(words: Mapping[str, Any]) -> AnyContact:
 def restitution_of(words: Mapping[str, Any]) -> float | None:
     """The restitution that the words describe; None without friction, where the page has no bounces."""
     found: float | None = words.get("restitution")
+    if found is None and words.get("height") is not None:
+        return 0.0  # a page follows a frustum on both of its circles
     return found if words.get("contact") in ("coulomb", "viscous") else None
 
 

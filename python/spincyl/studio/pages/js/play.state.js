@@ -4,7 +4,7 @@
 const RANGE = {
   __proto__: null, // no inherited keys: an address may contain "toString"
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
-  precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50], bottom: [0, 1], top: [0, 1], height: [0.01, 20],
+  precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50], bottom: [0, 1], top: [0, 1], height: [0.05, 20],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
 // the loss laws in the order of the core, which Python tells: name and label
