@@ -113,7 +113,7 @@ def test_the_example_of_a_missing_unit_is_of_the_same_quantity(unit):
 
 
 RIM = parts.cylinder(outer_diameter="300mm", length="20mm", mass="0.5kg", at="90mm")
-WHEEL = sc.assembled([RIM, parts.cylinder(outer_diameter="10mm", length="200mm", mass="0.2kg", at=0)])
+STEM = sc.Body(0.8, 0.5, 0.45, theta_end=0.55)
 DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
 
 
@@ -136,7 +136,7 @@ DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
             "theta: expected a drift; all values are 0.35$",
         ),
         (
-            lambda: WHEEL.circular(np.radians(75), radius=3.0),
+            lambda: STEM.circular(np.radians(75), radius=3.0),
             "theta = 1.3.*: expected at most theta_end = 0.55.*, where another part lands$",
         ),
         (

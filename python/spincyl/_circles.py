@@ -142,11 +142,18 @@ class Circles:
 
     @property
     def _numbers(self) -> _Six:
-        """The six numbers, or ValueError for a body of several circles."""
-        if self.rims is not None:
+        """The six numbers; of a body of several circles those of the lowest one, up to where the next one lands.
+
+        A lowest circle with another radius than R raises ValueError.
+        """
+        if self.rims is None:
+            return self._raw
+        if np.any(self.rims[..., 0, 0] + self.rims[..., 0, 2] != 1):
             several = f"not {self.rims.shape[-2]} circles (body.circles)"
             raise ValueError(f"body: expected one circle or two equal rims, {several}")
-        return self._raw
+        # pi/2 itself stands for two equal rims
+        end = np.where(self.theta_end == np.pi / 2, np.nextafter(np.pi / 2, 0), self.theta_end)[()]
+        return self.ell, self.i1, self.i3, np.nan, self.fillet, end
 
     def _at(self, theta: Reals, *w: Reals, rim: Any = None) -> tuple[Any, ...]:
         """A state, with w1, w2, w3 and a slip if given, and the numbers of the circle that carries.
