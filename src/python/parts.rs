@@ -23,8 +23,8 @@ fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
 
 /// The six numbers of a body, and its circles as rows of radius, height above the centre of mass, and fillet, if it has
 /// several. The six numbers are then those of its lowest circle, whose bore is minus the radius.
-pub type NumbersOfBody = ([f64; 6], Rows<3>);
-type Rows<const N: usize> = Vec<[f64; N]>;
+pub type NumbersOfBody = ([f64; 6], ToldCircles<3>);
+type ToldCircles<const N: usize> = Vec<[f64; N]>;
 
 fn numbers_of(body: &Body) -> NumbersOfBody {
     let (bore, rows) =
@@ -43,7 +43,7 @@ pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(Numbers
 /// The circles of a body, and for each two neighbours the inclination at which both touch the table, the distance of both
 /// points of contact, three numbers of `Apex`, and whether the body rests on both.
 #[pyfunction]
-pub fn body_circles(body: [f64; 6], rows: Rows<3>) -> PyResult<(Rows<3>, Rows<6>)> {
+pub fn body_circles(body: [f64; 6], rows: ToldCircles<3>) -> PyResult<(ToldCircles<3>, ToldCircles<6>)> {
     let body = Body::of_rows(body, &rows)?;
     let borders = body.borders().into_iter().enumerate().map(|(k, [theta, span])| {
         let [radius, rate, friction] =
