@@ -88,7 +88,7 @@ def test_a8_more_impacts_than_memory_holds_are_a_memory_error():
     ("job", "most"),
     few(
         [
-            ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 260),
+            ("sc.sweep.portrait(1.3, np.linspace(0.1, 3, 300_000))", 300_000 * 560),
             (
                 "sc.sweep.survey([0.5, 1.0], np.linspace(0.1, 3, 20_000), want=('region', 'rate'))",
                 20_000 * 500,

@@ -251,8 +251,8 @@ fn outlines_that_no_body_has_are_refused_by_name() {
     let (low, high) = (circle(0.7, 1.0, 0.0), circle(1.0, -1.0, 0.0));
     for (said, name) in [
         (profile(&[], 0.5, 0.4), "circles = 0.0"),
-        (profile(&[low, circle(-1.0, -1.0, 0.0)], 0.5, 0.4), "radius = -1.0"),
-        (profile(&[low, circle(1.0, -1.0, -0.1)], 0.5, 0.4), "fillet = -0.1"),
+        (profile(&[low, circle(-1.0, -1.0, 0.0)], 0.5, 0.4), "circles = -1.0"),
+        (profile(&[low, circle(1.0, -1.0, -0.1)], 0.5, 0.4), "circles = -0.1"),
         (profile(&[low, circle(1.0, nan, 0.0)], 0.5, 0.4), "depth = NaN"),
         (profile(&[circle(0.0, 0.0, 1.0), circle(0.0, -0.1, 0.5)], 0.5, 0.4), "circles = 1.0"),
         (profile(&[high, low], 0.5, 0.4), "circles = "),

@@ -121,9 +121,9 @@ impl CircleRow {
         let mut row = Self { circles: [none; MOST_CIRCLES], count: 0, at: 0, over: false };
         let refuse = |value, expected| Err(Error::OutOfRange { name: "circles", value, expected });
         'circles: for (k, circle) in given.iter().enumerate() {
-            within("radius", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
-            within("depth", circle.depth, (-1e100, 1e100), "-1e100 <= depth <= 1e100, of a circle")?;
-            within("fillet", circle.fillet, (0.0, 1e100), "0 <= fillet <= 1e100, of a circle")?;
+            within("circles", circle.radius, (0.0, 1e100), "0 <= radius <= 1e100, of a circle")?;
+            within("circles", circle.depth, (-1e100, 1e100), "-1e100 <= depth <= 1e100, of a circle")?;
+            within("circles", circle.fillet, (0.0, 1e100), "0 <= fillet <= 1e100, of a circle")?;
             while row.count > 0 {
                 let last = row.circles[row.count - 1];
                 let Some([border, _]) = last.border(circle) else {
