@@ -140,7 +140,20 @@ def test_the_page_has_the_words_of_its_options():
     told = {word for page in pages for word in page.split(": ")[1].split()}
     assert told <= words
     assert words - told == {
-        *("ell", "bore", "fillet", "i1", "i3", "end", "parts", "stone", "twist", "bottom", "top", "height"),  # the body
+        *(
+            "ell",
+            "bore",
+            "fillet",
+            "i1",
+            "i3",
+            "end",
+            "parts",
+            "stone",
+            "twist",
+            "bottom",
+            "top",
+            "height",
+        ),  # the body
         *("theta", "kick", "precession", "w", "spin"),  # its state
         *("until", "slow", "radius", "mass", "gravity"),  # times and size
     }

@@ -104,7 +104,9 @@ def test_a_straight_cap_can_be_thrown_on_its_side_but_not_pressed_like_a_tube():
     wall = parts.wall(lower_diameter="16mm", upper_diameter="16mm", length="60mm", density=1.0)
     cap = sc.assembled([floor, wall])
     assert cap.theta_end == pytest.approx(np.pi / 2, abs=1e-15) and len(cap.circles) == 2
-    with pytest.raises(ValueError, match="^theta_end = 1.57.*: expected pi/2, for a body that can lie on two rims"):
+    with pytest.raises(
+        ValueError, match="^theta_end = 1.57.*: expected pi/2, for a body that can lie on two rims"
+    ):
         sc.pressed(cap, 0.005, np.radians(60), finger=0.3)
     state = sc.thrown(cap, 0.5, 0.0)
     assert state.theta == np.pi / 2 and state.slip[0] == 0

@@ -142,7 +142,7 @@ class Circles:
 
     @property
     def _numbers(self) -> _Six:
-        """The six numbers; of a body of several circles those of the lowest one, up to where the next one lands.
+        """The six numbers; of a body of several circles those of the lowest one, until the next one lands.
 
         A lowest circle with another radius than R raises ValueError.
         """
@@ -152,8 +152,8 @@ class Circles:
             several = f"not {self.rims.shape[-2]} circles (body.circles)"
             raise ValueError(f"body: expected one circle or two equal rims, {several}")
         # pi/2 itself stands for two equal rims
-        end = np.where(self.theta_end == np.pi / 2, np.nextafter(np.pi / 2, 0), self.theta_end)[()]
-        return self.ell, self.i1, self.i3, np.nan, self.fillet, end
+        end: Any = np.where(floats(self.theta_end) == np.pi / 2, np.nextafter(np.pi / 2, 0), self.theta_end)
+        return self.ell, self.i1, self.i3, np.nan, self.fillet, end[()]
 
     def _at(self, theta: Reals, *w: Reals, rim: Any = None) -> tuple[Any, ...]:
         """A state, with w1, w2, w3 and a slip if given, and the numbers of the circle that carries.
