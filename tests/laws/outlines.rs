@@ -253,7 +253,7 @@ fn outlines_that_no_body_has_are_refused_by_name() {
         (profile(&[], 0.5, 0.4), "circles = 0.0"),
         (profile(&[low, circle(-1.0, -1.0, 0.0)], 0.5, 0.4), "circles = -1.0"),
         (profile(&[low, circle(1.0, -1.0, -0.1)], 0.5, 0.4), "circles = -0.1"),
-        (profile(&[low, circle(1.0, nan, 0.0)], 0.5, 0.4), "depth = NaN"),
+        (profile(&[low, circle(1.0, nan, 0.0)], 0.5, 0.4), "circles = NaN"),
         (profile(&[circle(0.0, 0.0, 1.0), circle(0.0, -0.1, 0.5)], 0.5, 0.4), "circles = 1.0"),
         (profile(&[high, low], 0.5, 0.4), "circles = "),
         (profile(&[low, high], 0.5, 1.1), "i3 = 1.1, i1 = 0.5"),
