@@ -1,8 +1,14 @@
 """The rows of the references of motions that fly and lie, beside a motion of the library."""
 
+import json
 import math
+import pathlib
+import types
 
 import numpy as np
+from mpmath import mp, mpf
+
+REFERENCE = pathlib.Path(__file__).with_name("reference")
 
 
 def sampled(case):
@@ -19,3 +25,17 @@ def off(found, rows, names):
     """The errors, over the size of the number if that is above 1."""
     true = np.array([[float(getattr(row, name)) for name in names] for row in rows])
     return np.abs(np.asarray(found) - true) / np.maximum(1, np.abs(true))
+
+
+def table(file):
+    """The motions of a table of tests/reference, with rows of exact numbers."""
+    with (REFERENCE / file).open() as opened, mp.workdps(40):
+        data = json.load(opened)
+        cases = []
+        for case in data["motions"]:
+            rows = [dict(zip(data["columns"], row, strict=True)) for row in case["rows"]]
+            rows = [{k: v if k == "kind" else mpf(v) for k, v in row.items()} for row in rows]
+            named = {k: v for k, v in zip(data["laws"], case["losses"], strict=True) if v}
+            rows = [types.SimpleNamespace(**row) for row in rows]
+            cases.append(types.SimpleNamespace(**{**case, "rows": rows, "losses": named}))
+        return cases

@@ -5,7 +5,6 @@ obeys the balance of energy, heat and what losses take, and the closed solutions
 `sc.roll` with it.
 """
 
-import json
 import math
 import operator
 import pathlib
@@ -17,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference_rows import off, sampled, whole
+from reference_rows import off, sampled, table, whole
 from scenes import LAWS
 
 import spincyl as sc
@@ -30,21 +29,7 @@ POSE = ("phi", "psi", "x", "y")
 TIGHT = mpf("1e-22")
 
 
-def table():
-    """The motions, with rows of exact numbers."""
-    with (REFERENCE / "lying.json").open() as file, mp.workdps(40):
-        data = json.load(file)
-        cases = []
-        for case in data["motions"]:
-            rows = [dict(zip(data["columns"], row, strict=True)) for row in case["rows"]]
-            rows = [{k: v if k == "kind" else mpf(v) for k, v in row.items()} for row in rows]
-            named = {k: v for k, v in zip(data["laws"], case["losses"], strict=True) if v}
-            rows = [types.SimpleNamespace(**row) for row in rows]
-            cases.append(types.SimpleNamespace(**{**case, "rows": rows, "losses": named}))
-        return cases
-
-
-MOTIONS = table()
+MOTIONS = table("lying.json")
 each_motion = pytest.mark.parametrize("case", MOTIONS, ids=[case.name for case in MOTIONS])
 
 

@@ -4,43 +4,24 @@ The table, on which two formulations agree to 24 digits or more, obeys the balan
 losses take, and the closed solutions of cups and cones that roll, rise, rock and rest.
 """
 
-import json
-import pathlib
 import types
 from itertools import pairwise
 
 import pytest
 from mpmath import mp, mpf
+from reference_rows import table
 
-REFERENCE = pathlib.Path(__file__).with_name("reference")
 STATE = ("theta", "w1", "w2", "w3", "u_h", "u_2")
 TIGHT = mpf("1e-22")
 
 
-def table(file="rims.json"):
-    """The motions, with rows of exact numbers."""
-    with (REFERENCE / file).open() as opened, mp.workdps(40):
-        data = json.load(opened)
-        cases = []
-        for case in data["motions"]:
-            rows = [dict(zip(data["columns"], row, strict=True)) for row in case["rows"]]
-            rows = [{k: v if k == "kind" else mpf(v) for k, v in row.items()} for row in rows]
-            named = {k: v for k, v in zip(data["laws"], case["losses"], strict=True) if v}
-            rows = [types.SimpleNamespace(**row) for row in rows]
-            cases.append(types.SimpleNamespace(**{**case, "rows": rows, "losses": named}))
-        return cases
-
-
-MOTIONS = table()
+MOTIONS = table("rims.json")
 each_motion = pytest.mark.parametrize("case", MOTIONS, ids=[case.name for case in MOTIONS])
 
 
 def of(name, cases=MOTIONS):
     """The rows of a motion, and the first of each kind."""
-    found = [case for case in cases if case.name == name]
-    if not found:
-        pytest.skip(f"the table has not this motion yet: python tests/reference/rims.py '{name}'")
-    (case,) = found
+    (case,) = (case for case in cases if case.name == name)
     return case, {row.kind: row for row in reversed(case.rows)}
 
 

@@ -123,7 +123,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The rates of the numbers, without those of the inclination, which is theta_end - chi.
-    fn hop_rates(&self, y: &[f64; N], chi: f64, sticks: bool) -> [f64; N] {
+    pub(super) fn hop_rates(&self, y: &[f64; N], chi: f64, sticks: bool) -> [f64; N] {
         let (angle, w, slip) = (self.hop_angle(chi), y.w(), y.slip());
         let mut all = [0.0; N];
         let (rate, drift, warms, taken) = if sticks {

@@ -8,12 +8,10 @@
 //! summed, and that time, times the angle by which a slow slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
-use crate::laws::state::{State, spin_of};
+use crate::laws::state::State;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
-use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
-};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, U2, UH, W1, W2, W3};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
@@ -47,42 +45,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
-            let y = State { theta: self.of.body.theta_end(), w2: 0.0, ..self.of.state };
             let (slip, rises) = (self.at.slip(), self.at[W2]);
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
-            let w = [y.w1, 0.0, y.w3];
             if law.dry && !sticks {
                 slowest = slowest.min(slip[0].hypot(slip[1]));
             }
-            let (rate, drift, warms, taken) = if sticks {
-                let (rate, taken) = self.rolling_of(&y);
-                (rate, [0.0; 2], 0.0, taken)
-            } else {
-                let (at, taken) = self.of.slide.slips(self.of.body.border_angle(), w, slip, None);
-                (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
-            };
-            if rate[1] >= 0.0 {
+            self.at[W2] = 0.0;
+            let rates = self.hop_rates(&self.at, 0.0, sticks);
+            if rates[W2] >= 0.0 {
                 return None;
             }
-            let lasts = 2.0 * rises / -rate[1];
-            for (i, rate) in
-                [(W1, rate[0]), (W3, rate[2]), (UH, drift[0]), (U2, drift[1]), (TIME, 1.0), (HEAT, warms)]
-            {
-                self.at[i] += lasts * rate;
-            }
-            if loses(N) {
-                self.at[N - 1] += lasts * taken;
-            }
-            if poses(N) {
-                let angle = self.of.body.border_angle();
-                let spin = spin_of(angle, y.w1, y.w3);
-                let over = [slip[0], slip[1] + self.of.slide.law.shape.rim.radius(angle) * spin];
-                let rates = pose_rates(self.at[PHI], [y.w1 / angle.0, spin], over);
-                for (number, rate) in self.at[PHI..].iter_mut().zip(rates) {
-                    *number += lasts * rate;
-                }
-            }
+            let lasts = 2.0 * rises / -rates[W2];
+            self.at.iter_mut().zip(rates).for_each(|(number, rate)| *number += lasts * rate);
+            self.at[TIME] += lasts;
             self.at[W2] = -rises;
             let before =
                 State { theta: self.of.body.theta_end(), w1: self.at[W1], w2: -rises, w3: self.at[W3] };
