@@ -11,6 +11,7 @@
 //! Error: 64 ulp of the largest term, by comparison with a three-dimensional model in a test of `laws`.
 
 pub(crate) mod delassus;
+pub(crate) mod face;
 pub(crate) mod impact;
 pub mod landing;
 pub mod lossy;
@@ -30,6 +31,7 @@ pub use super::newton::Force;
 use super::state::State;
 use crate::numbers::Real;
 use reduced::{Rates, Reduced};
+pub use face::Face;
 pub use slip::Friction;
 pub use table::{Table, TableKind};
 

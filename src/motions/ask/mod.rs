@@ -9,7 +9,7 @@ pub(crate) mod sample;
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;
-use crate::laws::contact::Table;
+use crate::laws::contact::{Face, Table};
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
@@ -66,6 +66,8 @@ pub struct Ask {
     /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
     /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims.
     pub restitution: Option<f64>,
+    /// How the table presses on a face on which the body stands.
+    pub face: Face,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
     /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
@@ -113,6 +115,12 @@ impl Ask {
     #[must_use]
     pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
         Self { restitution: restitution.into(), ..self }
+    }
+
+    /// Returns these options with this pressure on a face.
+    #[must_use]
+    pub fn with_face(self, face: Face) -> Self {
+        Self { face, ..self }
     }
 
     /// Returns these options, with or without an end at rolling.

@@ -85,7 +85,7 @@ impl LastState {
 
     /// Whether the other rim, another part or two circles touch the table.
     fn is_on_side(&self, body: &Body, theta: f64) -> bool {
-        let lies = self.kind.is_some_and(|kind| kind as u8 >= Kind::Lying as u8);
+        let lies = self.kind.is_some_and(|kind| kind >= Kind::Lying && kind != Kind::OnItsFace);
         if body.has_row() { lies || body.lands_at(theta) } else { theta >= body.theta_end() }
     }
 

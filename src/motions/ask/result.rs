@@ -288,6 +288,8 @@ coded! {
         RollingOnItsSide = 5,
         /// The body lies on two circles of unequal radii and rolls round the point where its axis meets the table.
         RollingRoundItsApex = 6,
+        /// The body stands, slides or spins on its face.
+        OnItsFace = 7,
     }
 }
 
