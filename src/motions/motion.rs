@@ -89,7 +89,7 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
-    let found = if ask.conserves() && !body.has_joints() {
+    let found = if ask.conserves() && !body.has_joints() && !path::on_face(body, &start.state) {
         path::refuse_slip(start.slip)?;
         let (body, start) = start.seen_on(body);
         conserved(&body, &start, times, ask, go_on)?.told(&body.view())

@@ -119,6 +119,7 @@ impl MotionAsked {
             max_evaluations: self.max_nfev,
             pose: self.pose,
             force: self.force,
+            ..Ask::default()
         })
     }
 }

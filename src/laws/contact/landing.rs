@@ -29,7 +29,7 @@
 use super::lying::Lying;
 use super::slip::Friction;
 use crate::error::{Error, within};
-use crate::laws::body::{Body, Border};
+use crate::laws::body::{Body, Border, CircleDown};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
 use crate::laws::state::{State, drilling_of};
@@ -185,6 +185,42 @@ pub(crate) fn bounced(
     let energy = |y: &State, slip, lift| energy(&landing.border, body, y, slip, lift);
     let lost = energy(y, slip, lift) - energy(&after.y, after.slips[0], after.lift);
     Ok((after.y, after.slips[0], after.lift, lost))
+}
+
+/// A face after its fall in a plane.
+pub(crate) struct Fallen {
+    /// The rate at which it rises on the point that has landed; negative on the other one, and 0 on both.
+    pub rises: f64,
+    /// The slip of the point that has landed, in its direction, and the vertical velocity of the other one.
+    pub slip: f64,
+    pub lift: f64,
+    pub lost: f64,
+}
+
+/// The landing of a face of radius a, the centre of mass Z above it, that falls in a plane: its inclination at the rate `falls`
+/// > 0, while the point on which it turns moves towards the other one at `along` and comes down at `lift` <= 0. Both points
+/// bounce with the restitution `e` if both come down. None where there is no unique outcome.
+pub(crate) fn falls_flat(
+    body: &Body,
+    [radius, height]: [f64; 2],
+    [falls, along, lift]: [f64; 3],
+    (friction, e): (&Friction, f64),
+    own: &impl SpeedLaw,
+) -> Option<Fallen> {
+    let circle = |lever: f64| CircleDown { radius: -lever, depth: height, lever };
+    let border = Border { angle: (0.0, 1.0), height, circles: [circle(radius), circle(-radius)], even: false };
+    // Seen as another circle that lands, which lies at smaller levers.
+    let (y, slip) = (State { theta: 0.0, w1: 0.0, w2: -falls, w3: 0.0 }, [-along, 0.0]);
+    let landing = Landing { body, border, y, slip, lift, friction, own };
+    let Compressed { here, there, mut end } = landing.compressed().ok()?;
+    if e > 0.0 && lift < 0.0 {
+        let given = Carries::Given(end.push.map(|p| e * p));
+        end = Landing { y: end.y, slip: end.slips[0], lift: end.lift, ..landing }.solved(given)?;
+    } else if here && there {
+        end.y.w2 = 0.0;
+    }
+    let lost = energy(&border, body, &y, slip, lift) - energy(&border, body, &end.y, end.slips[0], end.lift);
+    Some(Fallen { rises: -end.y.w2, slip: -end.slips[1][0], lift: end.lift, lost })
 }
 
 /// The end of a compression, and which circles remain on the table: the one that carried, and the one that landed.

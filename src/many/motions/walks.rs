@@ -64,7 +64,8 @@ fn kind_and_lane_numbers<const N: usize>(
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
     // A hop that rolls and loses nothing is short; the lanes know one circle of radius 1 or two equal rims.
-    if body.has_row() || walk.of.lying.is_some() || walk.lossy().is_some() && walk.ask.losses.is_none() {
+    let apart = walk.of.lying.is_some() || walk.of.standing.is_some();
+    if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() {
         return None;
     }
     if let Some(lossy) = walk.lossy() {

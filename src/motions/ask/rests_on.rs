@@ -13,6 +13,7 @@
 
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
+use crate::motions::body::face::FLAT;
 use crate::laws::state::State;
 use crate::motions::body::roll::lossy::REST;
 #[cfg(feature = "many")]
@@ -76,6 +77,9 @@ impl LastState {
             return RestsOn::None;
         }
         match self.ending {
+            Ending::Stops if theta.sin() < FLAT && body.rim() > 0.0 => {
+                if axis_up(body, &self.state, self.rim) > 0.0 { RestsOn::Face } else { RestsOn::OtherFace }
+            }
             Ending::Done | Ending::Stops | Ending::Side if self.is_on_side(body, theta) => RestsOn::Side,
             Ending::Stops => RestsOn::Edge,
             Ending::Done if self.tilts(body).abs() < BALANCED => RestsOn::Edge,

@@ -13,16 +13,17 @@ use super::own::Own;
 use super::roll::lossy::LossyFlow;
 use super::slide::Slide;
 use super::spun::{Roundings, knows};
+use super::stand::flow::StandingFlow;
 use super::tail::{LastTurns, Nods};
 use super::write::state;
-use super::{check_walk, without_friction};
+use super::{check_walk, on_face, without_friction};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Couples;
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::Flow;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, leans_over, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, leans_over, poses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
@@ -65,6 +66,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(super) rocked: Vec<Vec<f64>>,
     /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase<G>>>,
+    /// The current phase, if the body is on its face.
+    pub(crate) standing: Option<Box<StandingFlow>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
     /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
@@ -124,6 +127,7 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
         }
         walk.next = Some(match aloft {
             Some(aloft) => walk.starts_in_air(aloft),
+            None if on_face(&walk.of.body, &start.state) => walk.starts_on_face()?,
             None => walk.first_phase()?,
         });
         if start.state.theta < body.theta_end() {
@@ -209,6 +213,7 @@ impl<G: Own> BodyPhases<G> {
             lossy: None,
             rocked: Vec::new(),
             lying: None,
+            standing: None,
             takeoff: Takeoff::default(),
             struck: 0.0,
             energy: None,
@@ -242,6 +247,13 @@ impl<G: Own> BodyPhases<G> {
             return;
         }
         let (down, up) = (1.0 - share, 1.0 + share);
+        if walk.is_on_face() {
+            let more = share * walk.at[W3];
+            walk.at[W3] += more;
+            walk.at[U2] -= walk.of.body.rim() * more;
+            walk.of.state.w3 = walk.at[W3];
+            return;
+        }
         let State { theta, w1, w2, w3 } = walk.of.state;
         // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
         // stays zero.

@@ -24,6 +24,7 @@ pub(crate) mod pole;
 pub(crate) mod roll;
 pub(crate) mod slide;
 pub(crate) mod spun;
+pub(crate) mod stand;
 mod strike;
 mod tail;
 mod uniform;
@@ -35,11 +36,13 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::{Friction, centre_velocity};
+use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
+use core::f64::consts::PI;
 pub(crate) use body_walk::BodyWalk;
 
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
@@ -113,9 +116,9 @@ fn walk<'a, const N: usize>(
 /// body slips without friction.
 pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, Start) {
     let (mut ask, mut start) = (*ask, *start);
-    if ask.table == Table::Smooth && ask.restitution.is_some() {
+    if ask.table == Table::Smooth && (ask.restitution.is_some() || on_face(body, &start.state)) {
         ask.table = Friction::coulomb(0.0).into();
-        if start.aloft.is_none() {
+        if start.aloft.is_none() && !on_face(body, &start.state) {
             let [v_h, v_2] = centre_velocity(body, &start.state, [0.0; 2]);
             start.slip = [0.0 - v_h, 0.0 - v_2];
         }
@@ -127,6 +130,7 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
 pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     match start.aloft {
         Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
+        None if on_face(body, &start.state) => exact::check_on_face(body, &start.state)?,
         _ => exact::check(body, &start.state)?,
     }
     ask.table.check()?;
@@ -155,7 +159,12 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             within("height", value, (0.0, 1e6), "all rims above the table")?;
         }
     }
-    if ask.table.rubs() || start.aloft.is_some() { Ok(fine) } else { refuse_slip(start.slip).map(|()| fine) }
+    if ask.table.rubs() || start.aloft.is_some() || on_face(body, &start.state) { Ok(fine) } else { refuse_slip(start.slip).map(|()| fine) }
+}
+
+/// Whether a body with a face stands on it.
+pub(crate) fn on_face(body: &Body, y: &State) -> bool {
+    (y.theta == 0.0 || y.theta == PI) && body.rim() > 0.0
 }
 
 /// Returns an error for a slip without a law of friction.

@@ -29,6 +29,8 @@ use core::f64::consts::PI;
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a phase, as a share of the last step of the phase of its kind before.
 const LATELY: f64 = 0.5;
+/// The first step of a body on its face.
+const STANDING: f64 = 0.05;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The force of the table on one rim in the state `y`, with the current slip.
@@ -137,6 +139,9 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     }
 
     fn write_here(walk: &mut BodyWalk<'_, N, G>) {
+        if walk.is_on_face() {
+            return walk.writes_on_face();
+        }
         let (y, slip, at) = (&walk.of.state, walk.at.slip(), &walk.at);
         let kind = if walk.slips_here() { Kind::Slipping } else { walk.kind() };
         let force = walk.ask.force.then(|| doubted(y, [0.0; 2], |y| walk.force_on_rim(y)));
@@ -222,10 +227,11 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         kind: Kind,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error> {
-        if kind != Kind::Flying {
-            return Ok(walk.lies());
+        match kind {
+            Kind::Flying => walk.flies(go_on),
+            Kind::OnItsFace => return Ok(walk.stands()),
+            _ => return Ok(walk.lies()),
         }
-        walk.flies(go_on);
         Ok(None)
     }
     fn slip_kind(walk: &BodyWalk<'_, N, G>) -> Kind {
@@ -269,7 +275,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
 
     fn has_series(walk: &BodyWalk<'_, N, G>) -> bool {
         let (of, slide) = (&walk.of, &walk.of.slide);
-        let alone = of.lossy.is_none() && of.lying.is_none();
+        let alone = of.lossy.is_none() && of.lying.is_none() && of.standing.is_none();
         alone && slide.law.dry && !slide.settled && Self::begins_slowly(walk)
     }
 
@@ -343,6 +349,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn first(walk: &BodyWalk<'_, N, G>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),
+            _ if walk.of.standing.is_some() => return STANDING * if walk.perturbation > 0.0 { LONGER } else { 1.0 },
             (_, Some(flow)) => flow.first(y).max((LATELY * walk.of.lately[1]).min(flow.calm(y))),
             _ => {
                 let slide = &walk.of.slide;
@@ -362,6 +369,9 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         if walk.of.lying.is_some() {
             return walk.lies_on(y, steps, go_on);
         }
+        if walk.of.standing.is_some() {
+            return walk.stands_on(y, steps, go_on);
+        }
         match walk.of.lossy {
             Some(LossyPhase { flow, .. }) => walk.loses(&flow, y, steps, go_on),
             None => walk.slides(walk.of.slide.place(y), steps, go_on),
@@ -372,6 +382,9 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         if walk.of.lying.is_some() {
             walk.stops_lying(y, halt);
             return;
+        }
+        if walk.of.standing.is_some() {
+            return walk.stops_standing(y, halt);
         }
         walk.slip_ends(y, halt);
     }

@@ -49,25 +49,25 @@ const SUMMED: f64 = 1e2;
 /// Time of the rest of a rattle, in units of its velocities.
 const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is computed hop by hop.
-const ROCKED: f64 = 1e-5;
+pub(super) const ROCKED: f64 = 1e-5;
 /// A smaller w2 after a landing is a rounding error.
-const ROCKED_OUT: f64 = 1e-15;
+pub(super) const ROCKED_OUT: f64 = 1e-15;
 /// Both rims land together if |cos theta| is below this.
 const BOTH_AT_ONCE: f64 = 1e-14;
 /// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
-const RATTLE_OVER: f64 = 1e-9;
+pub(super) const RATTLE_OVER: f64 = 1e-9;
 /// Share of its terms below which N0 is a rounding error.
 pub(super) const ROUNDED: f64 = 1e-12;
 /// A jam needs a larger impulse than this share of the slip.
 const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
-const MOST_IN_TURN: u32 = 10_000;
+pub(super) const MOST_IN_TURN: u32 = 10_000;
 
 /// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
-const PERFECTLY_ROUGH: f64 = 1e100;
+pub(super) const PERFECTLY_ROUGH: f64 = 1e100;
 
 /// The momentum that the centre of mass has gained, which is the impulse of both rims together, seen from this one.
-fn gained(rim: &Rim<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
+pub(super) fn gained(rim: &Rim<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
     let velocity = |at: &Aloft| {
         let ([w1, w2, w3], [along, across], angle) = (at.w, at.slip, at.angle);
         let aside = across - rim.depth(angle) * w1 + rim.radius(angle) * w3;
@@ -113,7 +113,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
-            return Next::Ends(Ending::Face);
+            return self.strikes_flat(e);
         }
         let theta = from.angle.0.atan2(from.angle.1);
         if self.of.body.carries()[0] > 0.0 {
@@ -164,7 +164,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The impact at these numbers; None for a rolling contact without a solution.
-    fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+    pub(super) fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         if self.of.uniform && from.slip == [0.0; 2] {
             return Some(self.rebounds(from.lift, e));
         }
@@ -267,7 +267,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The numbers after an impact, which is also recorded.
-    fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
+    pub(super) fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
         // No impact gains energy.
@@ -277,7 +277,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// Adds an impact to the results, from the numbers before and after it as seen from the rim that lands.
-    fn records(
+    pub(super) fn records(
         &mut self,
         both: [&Aloft; 2],
         other: bool,

@@ -160,6 +160,15 @@ pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     check_speeds(y)
 }
 
+/// Returns an error for a body on its face that moves otherwise than by a spin, or by a kick that lets it rise.
+pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
+    check_body(body)?;
+    check_speeds(y)?;
+    within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: a kick that lets the body rise is a w2")?;
+    let expected = "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point from which its state is told";
+    within("w2", y.theta.cos() * y.w2, (f64::MIN, 0.0), expected).map(drop)
+}
+
 /// Returns an error for a body or a state outside the range in which flights are computed, which may begin at a pole.
 pub(crate) fn check_in_air(body: &Body, y: &State) -> Result<(), Error> {
     within("theta", y.theta, (0.0, PI), "0 <= theta <= pi (radians)")?;

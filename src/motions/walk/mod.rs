@@ -230,7 +230,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             }
             let limit = self.changes();
             if P::is_over(self, &next, limit.is_some()) {
-                break;
+                continue;
             }
             let next = match limit {
                 Some(limit) if !matches!(next, Next::Ends(_)) => self.gives_up(limit),
@@ -538,7 +538,7 @@ pub(crate) fn after_rest(found: Standstill) -> Next {
 pub(crate) fn ending(halt: Halt) -> Ending {
     match halt {
         Halt::Time | Halt::Pause | Halt::Standstill | Halt::Pole => Ending::Done,
-        Halt::Face => Ending::Face,
+        Halt::Face | Halt::Topples => Ending::Face,
         Halt::Side => Ending::Side,
         Halt::LiftOff => Ending::LiftOff,
         Halt::Jam => Ending::Painleve,

@@ -42,6 +42,8 @@ pub(crate) enum Halt {
     OtherStandstill,
     /// A lying body that pivots about one rim has stopped turning.
     Turned,
+    /// A body on its face topples.
+    Topples,
     /// Time hardly advances, or the steps are too many.
     Endless,
 }

@@ -190,7 +190,9 @@ impl Flight {
     /// The time up to which the series of a rim that touches at the start is used.
     pub(super) fn near(&self, k: usize) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
-        let near = if sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
+        // On a pole, where the axis leaves in a plane, the sine is that of the angle itself.
+        let upright = s == 0.0 && (self.planar || self.transverse == 0.0);
+        let near = if !upright && sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
         } else {
             1.0 / (1.0 + self.rate)
@@ -260,6 +262,14 @@ impl Flight {
         (cosines[0], sines[0]) = (c, s);
         // The height of a ball does not depend on s, which may be zero.
         let terms = if self.landings.rims.iter().any(|rim| rim.a > 0.0) { terms } else { 0 };
+        if s == 0.0 {
+            let mut power = 1.0;
+            for (k, sine) in sines.iter_mut().enumerate().take(terms) {
+                *sine = [0.0, 1.0, 0.0, -1.0][k % 4] * power;
+                power *= self.transverse * near / (k + 1) as f64;
+            }
+            return [sines, cosines];
+        }
         // The coefficients of s from s^2 = 1 - c^2.
         for k in 1..terms {
             let square: f64 = (0..=k).map(|i| cosines[i] * cosines[k - i]).sum();

@@ -53,10 +53,12 @@ impl Aloft {
     /// The same body, told with the phi with which its axis leaves a pole: theta grows from 0, or falls from pi. The
     /// lowest point then is the opposite one of its face.
     fn leaving_pole(&self, shape: &Shape<f64>) -> Self {
-        let ((s, c), [w1, w2, w3], [u, v], [phi, psi, x, y]) = (self.angle, self.w, self.slip, self.pose);
-        if s != 0.0 || c * w2 <= 0.0 {
-            return *self;
-        }
+        if self.angle.0 != 0.0 || self.angle.1 * self.w[1] <= 0.0 { *self } else { self.opposite(shape) }
+    }
+
+    /// The same body on a pole, told from the opposite point of its face.
+    pub fn opposite(&self, shape: &Shape<f64>) -> Self {
+        let ((_, c), [w1, w2, w3], [u, v], [phi, psi, x, y]) = (self.angle, self.w, self.slip, self.pose);
         let [radius, lever] = [shape.rim.radius(self.angle), shape.rim.lever(self.angle)].map(|x| 2.0 * x);
         let (sin, cos) = phi.sin_cos();
         Self {

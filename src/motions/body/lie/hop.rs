@@ -124,10 +124,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The rates of the numbers, without those of the inclination, which is theta_end - chi.
     pub(super) fn hop_rates(&self, y: &[f64; N], chi: f64, sticks: bool) -> [f64; N] {
-        let (angle, w, slip) = (self.hop_angle(chi), y.w(), y.slip());
+        self.rates_on_rim(self.hop_angle(chi), self.of.body.theta_end() - chi, y, sticks)
+    }
+
+    /// The same at this inclination.
+    pub(crate) fn rates_on_rim(&self, angle: (f64, f64), theta: f64, y: &[f64; N], sticks: bool) -> [f64; N] {
+        let (w, slip) = (y.w(), y.slip());
         let mut all = [0.0; N];
         let (rate, drift, warms, taken) = if sticks {
-            let theta = self.of.body.theta_end() - chi;
             let (rate, taken) = self.rolling_of(&State { theta, w1: w[0], w2: w[1], w3: w[2] });
             (rate, [0.0; 2], 0.0, taken)
         } else {

@@ -138,7 +138,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Halt::Face => {
                 let (left, doubt) = flow.rest_of(&self.at);
                 self.claims(doubt + self.rocks_on());
-                self.at[TIME] += left;
+                self.falls_the_rest(left, true);
                 self.at[SIN] = 0.0;
                 self.of.state = state(&self.at);
                 Next::Ends(Ending::Face)

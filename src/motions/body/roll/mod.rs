@@ -64,6 +64,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             && self.of.slide.tol > BRIEF_ROLLING_TOLERANCE
             && !upright
             && !self.of.planar;
+        // A body that rises from its face is followed by steps at first.
+        self.of.by_steps |= upright && y.theta.cos() * y.w2 < 0.0 && !body.is_ball();
         if self.of.integrates || self.hops_low() || upright && body.is_ball() || self.of.by_steps {
             return Ok(self.begins_to_lose(mu)?.map(WalkStep::Flows));
         }

@@ -81,7 +81,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let fall = (c * w2).max(0.0);
             let [end, doubt] = end.unwrap_or([self.at[TIME] + if fall > 0.0 { s / fall } else { 0.0 }, 0.0]);
             self.claims(doubt + self.rocks_on());
-            (self.at[SIN], self.at[TIME]) = (0.0, end);
+            self.falls_the_rest(end - self.at[TIME], false);
+            self.at[SIN] = 0.0;
         }
         self.made.path.slipping += self.at[TIME] - self.began;
         if !matches!(halt, Halt::Time | Halt::Pause | Halt::Pole) {
@@ -234,6 +235,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[SIN], self.at[TIME]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);
-        self.records_event(Ending::Face);
+        self.next = Some(Next::Ends(Ending::Face));
     }
 }

@@ -1,0 +1,383 @@
+//! The flow of a body on its face: its rates, and the margins at which it ends.
+//!
+//! ```text
+//! |v| = r cos k,  a |w| = r sin k,   d t = (r/mu) d tau       under dry friction, of a body that slides and spins
+//! ln(r)' = -(cos k G_x + sin k q),   k' = sin k G_x - cos k q,   alpha' = -G_y/cos k,    q = gg/i3 + losses
+//! v' = F,   I3 w' = M                                         otherwise, in time
+//! ```
+//! Slide and spin end together, after infinitely many turns of v in a finite time. In tau all of these rates are bounded and
+//! smooth, and depend on k alone. The flow ends where r has fallen to a rounding; the rest is extrapolated linearly.
+//! [`contact::face`](crate::laws::contact) has the law of friction.
+//!
+//! Error: the tolerance of the steps.
+
+use crate::laws::body::Shape;
+use crate::laws::contact::Force;
+use crate::laws::contact::face::FaceFriction;
+use crate::laws::contact::slip::Friction;
+use crate::laws::loss::{Law, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, FlowPlace};
+use crate::methods::rk8;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::body::write;
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, TIME, U2, UH, W1, W2, W3, loses, lost, pose_rates, poses,
+};
+use crate::motions::{Ask, Kind};
+use crate::numbers::Dual;
+
+/// The numbers of a flow in tau, in place of w1, w2 and w3.
+const ALPHA: usize = W1;
+const SIZE: usize = W2;
+const SHARE: usize = W3;
+
+/// A slide is over where both speeds are below this share of those at its start.
+const OVER: f64 = 1e-14;
+/// The longest step in tau.
+const LONGEST: f64 = 4.0;
+
+const ENDS: [Halt; MARGINS] =
+    [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Time, Halt::Time, Halt::Time];
+
+/// How the velocities change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Course {
+    /// Both slide and spin rub, in tau.
+    Rubs,
+    /// Only one of them does, under dry friction.
+    Straight,
+    /// A viscous film, or no friction.
+    Soft,
+}
+
+/// A body on its face: its friction, and what its flow starts from.
+#[derive(Clone, Copy)]
+pub(crate) struct StandingFlow {
+    shape: Shape<f64>,
+    /// Radius a of the ring, height Z of the centre of mass, cos theta, and the sign of w_z.
+    radius: f64,
+    height: f64,
+    up: f64,
+    way: f64,
+    course: Course,
+    face: FaceFriction,
+    /// mu, or c.
+    strength: f64,
+    dry: bool,
+    /// The lengths and coefficients of drilling, and of the air, linear and quadratic.
+    losses: [f64; 3],
+    /// Cosine and sine of the direction of v at the start, along e_h and e2, and ln(r) where the flow ends.
+    towards: [f64; 2],
+    least: f64,
+    pub tol: f64,
+}
+
+impl StandingFlow {
+    /// The flow from these numbers, on a face that friction `face` holds.
+    pub fn new<const N: usize>(
+        (shape, face): (Shape<f64>, FaceFriction),
+        friction: &Friction,
+        losses: &Losses,
+        y: &[f64; N],
+        tol: f64,
+    ) -> Self {
+        let (rim, angle) = (shape.rim, y.angle());
+        let laws = [Law::Drilling, Law::AirLinear, Law::AirQuadratic].map(|law| losses.coefficient(law));
+        let mut flow = Self {
+            shape,
+            radius: rim.radius(angle),
+            height: rim.height(angle),
+            up: y[COS],
+            way: if y[W3] == 0.0 { 0.0 } else { (y[COS] * y[W3]).signum() },
+            course: Course::Soft,
+            face,
+            strength: friction.strength(),
+            dry: matches!(friction, Friction::Coulomb { .. }),
+            losses: laws,
+            towards: [1.0, 0.0],
+            least: 0.0,
+            tol,
+        };
+        let [v_h, v_2] = flow.velocity(y);
+        let (v, s) = (v_h.hypot(v_2), flow.radius * y[W3].abs());
+        flow.course = match friction {
+            Friction::Coulomb { mu, .. } if *mu > 0.0 && v > 0.0 && s > 0.0 => Course::Rubs,
+            Friction::Coulomb { mu, .. } if *mu > 0.0 => Course::Straight,
+            _ => Course::Soft,
+        };
+        if v > 0.0 {
+            flow.towards = [v_h / v, v_2 / v];
+        }
+        flow.least = (OVER * v.hypot(s)).ln();
+        flow
+    }
+
+    /// The velocity of the centre along e_h and e2.
+    pub fn velocity<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
+        [y[UH], y[U2] + self.radius * y[W3]]
+    }
+
+    /// Whether friction or losses change the velocities.
+    pub fn changes(&self) -> bool {
+        self.strength > 0.0 || self.losses != [0.0; 3]
+    }
+
+    /// The numbers from which the flow starts.
+    pub fn enter<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
+        let (v, s) = (v_h.hypot(v_2), self.radius * y[W3].abs());
+        if self.course == Course::Rubs {
+            (all[ALPHA], all[SIZE], all[SHARE]) = (0.0, v.hypot(s).ln(), s.atan2(v));
+            (all[UH], all[U2]) = (0.0, 0.0);
+        } else {
+            (all[UH], all[U2]) = (v_h, v_2);
+        }
+        all
+    }
+
+    /// The speeds |v| and a |w| of a flow in tau. Beyond k = 0 the spin, and beyond a right angle the slide, has turned round.
+    fn speeds<const N: usize>(y: &[f64; N]) -> [f64; 2] {
+        let (size, (sin, cos)) = (y[SIZE].exp(), y[SHARE].sin_cos());
+        [size * cos, size * sin]
+    }
+
+    /// Force and couple at the numbers of a flow in time. Dry friction keeps its direction, beyond rest as well.
+    fn along<const N: usize>(&self, y: &[f64; N]) -> [f64; 3] {
+        let (v, w) = ([y[UH], y[U2]], self.up * y[W3]);
+        if self.course == Course::Straight {
+            let turns = self.way != 0.0;
+            return self.pushed(if turns { [0.0; 2] } else { self.towards }, self.way);
+        }
+        self.pushed(v, w)
+    }
+
+    /// The friction -F/(mu N) along v, across it and about the axis at these speeds, which may have turned round.
+    fn rubs(&self, [v, s]: [f64; 2]) -> [f64; 3] {
+        // Steps may look a little beyond the fold at which they end.
+        let most = self.face.fold() * s.abs();
+        let at = self.face.at(if v.abs() > most { most } else { v.abs() }, s.abs(), None);
+        at.map_or([f64::NAN; 3], |at| {
+            [at.along * v.signum(), at.across * v.signum() * s.signum(), at.couple * s.signum()]
+        })
+    }
+
+    /// The couple of the losses against w.
+    fn lost(&self, w: f64) -> f64 {
+        let [drilling, linear, square] = self.losses;
+        if w == 0.0 { 0.0 } else { drilling * w.signum() + (linear + square * w.abs()) * w }
+    }
+
+    /// Force along e_h and e2 and couple about the vertical, at the velocity of the centre and w_z.
+    fn pushed(&self, [v_h, v_2]: [f64; 2], w: f64) -> [f64; 3] {
+        let (v, s) = (v_h.hypot(v_2), self.radius * w.abs());
+        if !self.dry {
+            let q = self.strength * self.height * w;
+            let per = -self.strength / (1.0 + q * q);
+            let [f_h, f_2] = [per * (v_h - q * v_2), per * (v_2 + q * v_h)];
+            return [f_h, f_2, -self.strength * w * self.stands_under([f_h, f_2])];
+        }
+        if v == 0.0 && s == 0.0 || self.strength == 0.0 {
+            return [0.0; 3];
+        }
+        let [x, z] = if v > 0.0 { [v_h / v, v_2 / v] } else { [1.0, 0.0] };
+        let [along, across, couple] = self.rubs([v, s]).map(|of| -self.strength * of);
+        let (aside, about) = (across * w.signum(), self.radius * couple * w.signum());
+        [along * x - aside * z, along * z + aside * x, if s > 0.0 { about } else { 0.0 }]
+    }
+
+    /// The margin of toppling under this force: it vanishes where the centre of the pressure reaches the ring.
+    fn stands_under(&self, [f_h, f_2]: [f64; 2]) -> f64 {
+        self.radius * self.radius - self.height * self.height * (f_h * f_h + f_2 * f_2)
+    }
+
+    /// Whether the body topples at the start.
+    pub fn topples<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let ([v_h, v_2], w) = (self.velocity(y), self.up * y[W3]);
+        if !self.dry {
+            let [f_h, f_2, _] = self.pushed([v_h, v_2], w);
+            return self.stands_under([f_h, f_2]) <= 0.0;
+        }
+        let (v, s) = (v_h.hypot(v_2), self.radius * w.abs());
+        self.strength > 0.0 && (v > self.face.fold() * s || self.face.at(v, s, None).is_none())
+    }
+
+    /// The time in which what is left of slide and spin comes to rest.
+    pub fn left<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let ([v_h, v_2], w) = (self.velocity(y), self.up * y[W3]);
+        let [f_h, f_2, couple] = self.pushed([v_h, v_2], w);
+        let slows = (couple - self.lost(w)) / self.shape.i3;
+        let (a, size) = (self.radius, v_h * v_h + v_2 * v_2 + (self.radius * w).powi(2));
+        let rate = -(v_h * f_h + v_2 * f_2 + a * a * w * slows);
+        if size > 0.0 && rate > 0.0 { size / rate } else { 0.0 }
+    }
+
+    /// The outputs at these numbers of a walk.
+    pub fn row<const N: usize>(&self, ask: &Ask, y: &[f64; N]) -> OutputRow<State> {
+        let [along, across, _] = self.pushed(self.velocity(y), self.up * y[W3]);
+        let state = State { theta: 0f64.atan2(y[COS]), w1: 0.0, w2: 0.0, w3: y[W3] };
+        OutputRow {
+            pose: poses(N).then(|| write::pose(y)),
+            force: ask.force.then_some((Force { normal: 1.0, along, across }, self.tol)),
+            ..OutputRow::on_table(state, y.slip(), [y[HEAT], lost(y)], Kind::OnItsFace)
+        }
+    }
+}
+
+impl Flow<MARGINS> for StandingFlow {
+    type Halt = Halt;
+    const TIME: usize = TIME;
+    const OVER: Halt = Halt::Time;
+    const PAUSE: Halt = Halt::Pause;
+    const ENDLESS: Halt = Halt::Endless;
+    const CALLS: bool = true;
+    const LOOPS: bool = true;
+
+    fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        0f64.atan2(y[COS])
+    }
+
+    fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        let i3 = self.shape.i3;
+        *all = [0.0; N];
+        let (mut pace, mut spin) = (1.0, y[W3]);
+        let mut velocity = [y[UH], y[U2]];
+        if self.course == Course::Rubs {
+            let (r, [v, s]) = (y[SIZE].exp(), Self::speeds(y));
+            let (sin, cos) = y[SHARE].sin_cos();
+            let [along, across, couple] = self.rubs([cos, sin]);
+            let lost = self.lost(s / self.radius);
+            pace = r / self.strength;
+            let slows = self.radius * (self.strength * self.radius * couple + lost) / (self.strength * i3);
+            (all[SIZE], all[SHARE]) = (-(cos * along + sin * slows), sin * along - cos * slows);
+            all[ALPHA] = -across / cos;
+            all[HEAT] = r * (v * along + s * couple);
+            if loses(N) {
+                all[N - 1] = pace * lost * s / self.radius;
+            }
+            let ((sin, cos), [x, z]) = ((self.way * y[ALPHA]).sin_cos(), self.towards);
+            velocity = [v * (x * cos - z * sin), v * (z * cos + x * sin)];
+            spin = self.up * self.way * s / self.radius;
+        } else {
+            let w = self.up * y[W3];
+            let ([f_h, f_2, couple], lost) = (self.along(y), self.lost(w));
+            (all[UH], all[U2], all[W3]) = (f_h, f_2, self.up * (couple - lost) / i3);
+            all[HEAT] = -(f_h * y[UH] + f_2 * y[U2] + couple * w);
+            if loses(N) {
+                all[N - 1] = lost * w;
+            }
+        }
+        all[TIME] = pace;
+        if poses(N) {
+            let pose = pose_rates(y[PHI], [0.0, spin], velocity);
+            all[PHI..PHI + 4].copy_from_slice(&pose.map(|rate| rate * pace));
+        }
+    }
+
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        let mut all = [Dual { value: 1.0, slope: 0.0 }; MARGINS];
+        let (y, rate) = (&place.y, &place.rate);
+        for (i, margin) in all.iter_mut().enumerate().take(3) {
+            margin.value = self.margin(y, i);
+        }
+        match self.course {
+            Course::Rubs => {
+                all[0].slope = rate[SIZE];
+                if all[1].value != 1.0 {
+                    all[1].slope = rate[SHARE];
+                }
+                if all[2].value != 1.0 {
+                    let (sin, cos) = y[SHARE].sin_cos();
+                    all[2].slope = (self.face.fold() * cos + sin) * rate[SHARE];
+                }
+            }
+            Course::Straight => {
+                all[0].slope = if self.way == 0.0 {
+                    self.towards[0] * rate[UH] + self.towards[1] * rate[U2]
+                } else {
+                    self.way * self.up * rate[W3]
+                };
+            }
+            Course::Soft => {
+                let by = 1e-6 / (1.0 + place.rate.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+                let aside = |by: f64| self.margin(&core::array::from_fn::<f64, N, _>(|i| y[i] + by * rate[i]), 2);
+                if self.strength > 0.0 {
+                    all[2].slope = (aside(by) - aside(-by)) / (2.0 * by);
+                }
+                if self.losses[0] > 0.0 {
+                    all[1].slope = self.way * self.up * rate[W3];
+                }
+            }
+        }
+        all
+    }
+
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        let dry = self.losses[0] > 0.0;
+        match (self.course, i) {
+            (Course::Rubs, 0) => y[SIZE] - self.least,
+            (Course::Rubs, 1) if self.losses != [0.0; 3] => y[SHARE],
+            (Course::Rubs, 2) if self.face.fold() < f64::INFINITY => {
+                let (sin, cos) = y[SHARE].sin_cos();
+                self.face.fold() * sin - cos
+            }
+            (Course::Straight, 0) if self.way == 0.0 => self.towards[0] * y[UH] + self.towards[1] * y[U2],
+            (Course::Straight, 0) => self.way * self.up * y[W3],
+            (Course::Soft, 1) if dry && y[W3] != 0.0 => self.way * self.up * y[W3],
+            (Course::Soft, 2) if self.strength > 0.0 => {
+                let [f_h, f_2, _] = self.along(y);
+                self.stands_under([f_h, f_2])
+            }
+            _ => 1.0,
+        }
+    }
+
+    fn end(&self, i: usize) -> Halt {
+        ENDS[i]
+    }
+
+    fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
+        let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
+        let per = |i: usize| if matches!(i, W1 | W2 | W3) && self.course == Course::Rubs { per_tol } else { per_speed };
+        made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
+    }
+
+    fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        match self.course {
+            Course::Rubs => y[SIZE].exp().max(1.0),
+            _ => y[UH].abs().max(y[U2].abs()).max(y[W3].abs()).max(1.0),
+        }
+    }
+
+    fn first<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        0.05
+    }
+
+    fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        if self.course == Course::Rubs { y[SIZE].exp() / self.strength * f64::EPSILON } else { f64::EPSILON }
+    }
+
+    fn shortest<const N: usize>(&self, _: &[f64; N]) -> f64 {
+        1e-15
+    }
+
+    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
+        if self.course == Course::Rubs { LONGEST } else { f64::INFINITY }
+    }
+
+    fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
+        None
+    }
+
+    fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let mut all = *y;
+        if self.course == Course::Rubs {
+            let [v, s] = Self::speeds(y);
+            let ((sin, cos), [x, z]) = ((self.way * y[ALPHA]).sin_cos(), self.towards);
+            (all[W1], all[W2], all[W3]) = (0.0, 0.0, self.up * self.way * s / self.radius);
+            (all[UH], all[U2]) = (v * (x * cos - z * sin), v * (z * cos + x * sin));
+        }
+        all[U2] -= self.radius * all[W3];
+        all
+    }
+}

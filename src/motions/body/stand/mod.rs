@@ -1,0 +1,404 @@
+//! A body on its face: the choice of its phases, and the end of each.
+//!
+//! ```text
+//! stands        slides and spins, until it rests or topples
+//! topples       over the point of the ring where the slip points outwards: one rim, theta = c t^2/2
+//! rises         by a kick, w2 < 0, on the point from which the state is told: theta = |w2| t
+//! falls         in a plane: it stays, or rocks over the opposite point; else what turns is lost, and it stays
+//! ```
+//! theta = 0 is reached only by a motion in a plane and by losses: any turn about the vertical keeps a rim from it. `up` is
+//! cos theta, 1, or -1 on the other face of a disk.
+//!
+//! Error: the tolerance of the steps, and the square of the time after which a rising body is followed on its rim.
+
+pub(crate) mod flow;
+mod rocks;
+
+use super::body_walk::BodyWalk;
+use super::fly::Takeoff;
+use super::own::Own;
+use super::write;
+use crate::laws::contact::face::FaceFriction;
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::standstill::Standstill;
+use crate::laws::contact::{Force, Table};
+use crate::laws::loss::Losses;
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, Steps};
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, loses, lost, poses,
+};
+use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
+use crate::motions::{Ending, Kind};
+use crate::error::Error;
+use core::f64::consts::{PI, TAU};
+use flow::StandingFlow;
+
+/// Slower velocities are those of a body at rest.
+const STILL: f64 = 1e-13;
+/// The inclination from which a rising body is followed on its rim. It is above that at which a face has landed.
+const RISEN: f64 = 4e-12;
+/// A rim that rises more slowly, beside a spin, comes to nothing; so does one that falls, beside what is lost.
+const HARDLY_RISES: f64 = 1e-6;
+/// An inclination at which laws of one rim are evaluated for a face that lies: w1/sin theta is finite there.
+const ALMOST_FLAT: f64 = 1e-100;
+/// A face that comes down in less time than this does so with constant rates.
+const SOON_DOWN: f64 = 1e-5;
+
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
+    /// Whether the body is on its face.
+    pub(crate) fn is_on_face(&self) -> bool {
+        self.at[SIN] == 0.0 && self.of.body.rim() > 0.0
+    }
+
+    /// cos theta on a face.
+    pub(super) fn up(&self) -> f64 {
+        self.at[COS].signum()
+    }
+
+    /// Moves the walk onto its face, at rest but for slide and spin.
+    fn lies_on_face(&mut self) {
+        let up = self.up();
+        (self.at[SIN], self.at[COS], self.at[W1], self.at[W2]) = (0.0, up, 0.0, 0.0);
+        self.of.takeoff = Takeoff::default();
+        self.sees_face();
+    }
+
+    /// The state of a body on its face.
+    fn sees_face(&mut self) {
+        let theta = if self.at[COS] > 0.0 { 0.0 } else { PI };
+        self.of.state = State { theta, w1: self.at[W1], w2: self.at[W2], w3: self.at[W3] };
+    }
+
+    /// The friction of the face; None for a table on which the body rolls, and under laws of the user.
+    fn friction_of_face(&self) -> Option<Friction> {
+        match self.ask.table {
+            _ if self.of.own.varies() || self.of.own.has_couple() => None,
+            Table::Rubs(friction) => Some(friction),
+            Table::Smooth => Some(Friction::coulomb(0.0)),
+            Table::Rolling { .. } => None,
+        }
+    }
+
+    /// The flow of a body that stands with these numbers.
+    fn standing(&self, friction: &Friction) -> StandingFlow {
+        self.standing_with(friction, &self.ask.losses)
+    }
+
+    /// The same with these losses.
+    fn standing_with(&self, friction: &Friction, losses: &Losses) -> StandingFlow {
+        let (shape, angle) = (self.of.slide.law.shape, self.at.angle());
+        let lam = match friction {
+            Friction::Coulomb { mu, .. } => mu * shape.rim.height(angle) / shape.rim.radius(angle),
+            Friction::Viscous { .. } => 0.0,
+        };
+        let face = FaceFriction::new(self.ask.face, lam);
+        StandingFlow::new((shape, face), friction, losses, &self.at, self.of.slide.tol)
+    }
+
+    /// The phase of a motion that begins on a face: it stands, or a kick lets it rise.
+    pub(super) fn starts_on_face(&mut self) -> Result<Next, Error> {
+        let (up, at) = (self.up(), self.of.state);
+        (self.at[SIN], self.at[COS]) = (0.0, up);
+        self.sees_face();
+        let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
+        match next {
+            Next::Ends(Ending::Painleve) => Err(Phases::no_unique_force(self)),
+            Next::Ends(Ending::Face) => {
+                let expected = "a law of friction for a body that moves on its face, as in a motion without laws of the user: it cannot roll";
+                Err(Error::OutOfRange { name: "theta", value: at.theta, expected })
+            }
+            next => Ok(next),
+        }
+    }
+
+    /// Moves the walk on by the time in which its face, which has all but landed, comes down.
+    pub(super) fn falls_the_rest(&mut self, left: f64, sticks: bool) {
+        if self.of.body.rim() > 0.0 && self.at[W1] == 0.0 && left < SOON_DOWN {
+            let up = self.up();
+            let theta = if up > 0.0 { ALMOST_FLAT } else { PI };
+            let rates = self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks);
+            self.at.iter_mut().zip(rates).for_each(|(number, rate)| *number += left * rate);
+        }
+        self.at[TIME] += left;
+    }
+
+    /// The phase of a body that has come down on its face.
+    #[inline(never)]
+    pub(super) fn settles_on_face(&mut self) -> Next {
+        let (up, w) = (self.up(), self.at.w());
+        (self.at[SIN], self.at[COS]) = (0.0, up);
+        self.sees_face();
+        let falls = up * w[1];
+        if falls > 0.0 && (self.of.planar || w[0] == 0.0 && w[2] == 0.0 && self.at[U2] == 0.0) {
+            (self.at[W1], self.at[W3], self.at[U2]) = (0.0, 0.0, 0.0);
+            return self.falls_on_face(falls);
+        }
+        let shape = self.of.slide.law.shape;
+        if falls > HARDLY_RISES {
+            // What falls while it turns is lost if no friction can rock it over.
+            let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
+            let mu = self.friction_of_face().map_or(f64::INFINITY, |friction| friction.strength());
+            if a * a < shape.i1 + mu * a * z {
+                return Next::Ends(Ending::Landing);
+            }
+        }
+        let before = self.of.slide.energy(&self.at);
+        // The centre keeps its velocity, and the body its spin about the vertical.
+        let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), w, self.at.slip());
+        (self.at[UH], self.at[U2]) = (v_h, v_2 - shape.rim.radius(self.at.angle()) * w[2]);
+        self.lies_on_face();
+        self.at[HEAT] += before - self.of.slide.energy(&self.at);
+        self.stands_on_face()
+    }
+
+    /// The phase of a body on its face.
+    pub(super) fn stands_on_face(&mut self) -> Next {
+        self.sees_face();
+        let friction = self.friction_of_face();
+        let flow = self.standing(&friction.unwrap_or(Friction::coulomb(0.0)));
+        let [v_h, v_2] = flow.velocity(&self.at);
+        let moves = v_h.hypot(v_2) + (self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3]).abs();
+        if moves <= STILL {
+            self.claims(moves);
+            self.rests_on_face();
+            return Next::Ends(Ending::Stops);
+        }
+        let Some(friction) = friction else {
+            self.claims(moves);
+            // A face cannot roll.
+            if moves > HARDLY_RISES {
+                return Next::Ends(Ending::Face);
+            }
+            self.rests_on_face();
+            return Next::Ends(Ending::Stops);
+        };
+        if flow.topples(&self.at) {
+            return self.topples(&flow, &friction);
+        }
+        self.of.standing = Some(Box::new(flow));
+        Next::Own(Kind::OnItsFace)
+    }
+
+    fn rests_on_face(&mut self) {
+        (self.at[W3], self.at[UH], self.at[U2]) = (0.0, 0.0, 0.0);
+        self.sees_face();
+    }
+
+    /// Computes a phase on the face, or begins its flow.
+    #[inline(never)]
+    pub(crate) fn stands(&mut self) -> Option<WalkStep<N>> {
+        let flow = self.of.standing.as_deref()?;
+        if flow.changes() {
+            return Some(WalkStep::Flows(flow.enter(&self.at)));
+        }
+        let (flow, begin) = (*flow, self.at);
+        let [v_h, v_2] = flow.velocity(&begin);
+        while let Some(t) = self.until() {
+            let (mut y, lasts) = (begin, t - begin[TIME]);
+            y[TIME] = t;
+            if poses(N) {
+                let (sin, cos) = begin[PHI].sin_cos();
+                y[PSI] += lasts * begin[W3];
+                y[X] += lasts * (v_h * cos - v_2 * sin);
+                y[Y] += lasts * (v_h * sin + v_2 * cos);
+            }
+            self.writes_standing(&flow, &y);
+        }
+        self.of.standing = None;
+        None
+    }
+
+    /// Computes the flow of a phase on the face.
+    #[inline(never)]
+    pub(crate) fn stands_on(
+        &mut self,
+        y: [f64; N],
+        steps: Steps,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Pause<N>, Error> {
+        let Some(flow) = self.of.standing.as_deref().copied() else { return Ok(Pause::No) };
+        let (ask, first, made) = (self.ask, self.made.motion.states.len(), &mut self.made);
+        let mut write = |y: &[f64; N]| made.push(flow.row(&ask, y));
+        let flown = flow.run(flow.place(y), steps, &self.since[first..], &mut write, go_on);
+        self.has_spent(flown.spent);
+        self.claims_time_error(flown.halt, flown.steep, &flown.y);
+        if flown.halt == Halt::Pause {
+            self.at = flown.y;
+            let Some(friction) = self.friction_of_face() else { return Ok(Pause::No) };
+            let flow = self.standing(&friction);
+            self.of.standing = Some(Box::new(flow));
+            return Ok(Pause::Here(flow.enter(&flown.y), Some(flown.step)));
+        }
+        self.stops_standing(flown.y, flown.halt);
+        Ok(Pause::No)
+    }
+
+    /// Ends a phase on the face at the numbers `y`, and chooses the next one.
+    #[inline(never)]
+    pub(crate) fn stops_standing(&mut self, y: [f64; N], halt: Halt) {
+        let Some(flow) = self.of.standing.take() else { return };
+        self.at = y;
+        self.sees_face();
+        self.made.path.slipping += y[TIME] - self.began;
+        let next = match halt {
+            Halt::Time | Halt::Pause => return,
+            Halt::Rests => {
+                self.at[TIME] += flow.left(&y);
+                self.rests_on_face();
+                Next::Ends(Ending::Stops)
+            }
+            Halt::Turned => {
+                let [v_h, v_2] = flow.velocity(&y);
+                (self.at[W3], self.at[UH], self.at[U2]) = (0.0, v_h, v_2);
+                self.stands_on_face()
+            }
+            Halt::Topples => match self.friction_of_face() {
+                Some(friction) => self.topples(&flow, &friction),
+                None => Next::Ends(Ending::Face),
+            },
+            halt => Next::Ends(ending(halt)),
+        };
+        self.continues_with(next);
+    }
+
+    /// The phase of a body that topples over the point of its ring at which the slip points outwards.
+    fn topples(&mut self, flow: &StandingFlow, friction: &Friction) -> Next {
+        let (shape, up) = (self.of.slide.law.shape, self.up());
+        let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
+        let ([v_h, v_2], w) = (flow.velocity(&self.at), up * self.at[W3]);
+        let v = v_h.hypot(v_2);
+        let slip = ((v - a * w.abs()) * (v + a * w.abs())).sqrt();
+        let mu = match friction {
+            Friction::Coulomb { mu, .. } => *mu,
+            Friction::Viscous { c } => c * slip,
+        };
+        let lam = mu * z / a;
+        if !(lam > 1.0 && mu * a * z < shape.i1 + a * a) {
+            return Next::Ends(Ending::Painleve);
+        }
+        let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
+        let grows = (lam - 1.0) * a * normal / shape.i1;
+        let nu = w * (shape.i3 / shape.i1) * (lam - 1.0) / (3.0 * lam - 2.0);
+        self.tells_from(v_2.atan2(v_h) + (a * w / v).asin());
+        (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
+        self.of.planar |= w == 0.0;
+        self.sees_face();
+        self.begins_phase(Kind::Slipping);
+        self.resumes_phase();
+        // A face that just rests has no direction in which it turns.
+        let lasts = (2.0 * RISEN / grows).sqrt();
+        self.claims(lasts * lasts * lasts);
+        let (begin, heat) = (self.at, mu * normal * slip);
+        let [forth, aside] = flow.velocity(&begin);
+        self.rises_as(lasts, |t| {
+            let mut y = begin;
+            y[SIN] = 0.5 * grows * t * t;
+            (y[W1], y[W2]) = (nu * y[SIN], -up * grows * t);
+            (y[UH], y[U2]) = (up * ((mu * normal + z * grows) * t - slip), slip * nu * t);
+            y[HEAT] += t * heat;
+            if poses(N) {
+                let moved = [forth * t + 0.5 * up * mu * normal * t * t, (aside - up * a * nu) * t];
+                let (sin, cos) = begin[PHI].sin_cos();
+                (y[PHI], y[PSI]) = (y[PHI] + nu * t, y[PSI] + (begin[W3] - up * nu) * t);
+                (y[X], y[Y]) = (y[X] + moved[0] * cos - moved[1] * sin, y[Y] + moved[0] * sin + moved[1] * cos);
+            }
+            y
+        });
+        Next::Slips
+    }
+
+    /// The phase of a body that a kick lets rise on the point from which its state is told.
+    fn rises_from_face(&mut self) -> Next {
+        let (up, rises) = (self.up(), self.at[W2].abs());
+        let planar = self.at[W3] == 0.0 && self.at[U2] == 0.0;
+        if rises < HARDLY_RISES && !planar {
+            self.claims(rises);
+            return self.settles_on_face();
+        }
+        self.of.state.theta = if up > 0.0 { ALMOST_FLAT } else { PI };
+        let [u, v] = self.at.slip();
+        let mut sticks = matches!(self.ask.table, Table::Rolling { .. });
+        if self.ask.table.rubs() && self.of.slide.law.dry && u.hypot(v) <= self.of.slide.over() {
+            self.stop_slip();
+            match Phases::rests(self) {
+                Standstill::Sticks => sticks = true,
+                Standstill::Slips { alpha, growth } => {
+                    // The slip that begins is that after a moment.
+                    let (sin, cos) = alpha.sin_cos();
+                    let speed = growth * RISEN / rises;
+                    (self.at[UH], self.at[U2]) = (speed * cos, speed * sin);
+                }
+                Standstill::LiftsOff => return Next::Ends(Ending::LiftOff),
+                Standstill::Undefined => return Next::Ends(Ending::Painleve),
+            }
+        }
+        let begin = self.at;
+        // w1 = nu sin theta, with the nu with which w1 follows.
+        let follows = |nu: f64| {
+            let (mut y, theta) = (begin, self.of.state.theta);
+            y[W1] = nu * theta.sin();
+            let rates = self.rates_on_rim((theta.sin(), up), theta, &y, sticks);
+            (rates[W1] - nu * rises, rates)
+        };
+        let (here, there) = (follows(0.0).0, follows(1.0).0);
+        let nu = here / (here - there);
+        let rates = follows(nu).1;
+        self.sees_face();
+        self.begins_phase(if sticks { Kind::Rolling } else { Kind::Slipping });
+        self.resumes_phase();
+        self.rises_as(RISEN / rises, |t| {
+            let mut y: [f64; N] = core::array::from_fn(|i| begin[i] + t * rates[i]);
+            y[SIN] = rises * t + 0.5 * up * -rates[W2] * t * t;
+            (y[COS], y[W1], y[TIME]) = (up, nu * y[SIN], begin[TIME]);
+            y
+        });
+        self.touches_down()
+    }
+
+    /// Follows a rising body for the time after which it is followed on its rim; `risen` gives its numbers after a time.
+    fn rises_as(&mut self, lasts: f64, risen: impl Fn(f64) -> [f64; N]) {
+        let began = self.at[TIME];
+        let at = |t: f64| {
+            let mut y = risen(t);
+            // Laws of one rim know no face that lies.
+            y[SIN] = y[SIN].max(ALMOST_FLAT);
+            (y[COS], y[TIME]) = (y[COS].signum() * ((1.0 - y[SIN]) * (1.0 + y[SIN])).sqrt(), began + t);
+            y
+        };
+        while let Some(t) = self.until().filter(|t| *t < began + lasts) {
+            self.at = at(t - began);
+            self.of.state = write::state(&self.at);
+            Phases::write_here(self);
+        }
+        self.at = at(lasts);
+        self.of.state = write::state(&self.at);
+    }
+
+    /// Tells a body on its face from the point of its ring in this direction, an angle from e_h. Slide and spin remain.
+    fn tells_from(&mut self, direction: f64) {
+        let up = self.up();
+        let turn = direction + if up > 0.0 { PI } else { 0.0 };
+        let turn = turn - (turn / TAU).round() * TAU;
+        if !poses(N) {
+            return;
+        }
+        let lever = self.of.slide.law.shape.rim.lever(self.at.angle());
+        let [from, to] = [self.at[PHI], self.at[PHI] + turn];
+        self.at[X] += lever * (to.cos() - from.cos());
+        self.at[Y] += lever * (to.sin() - from.sin());
+        (self.at[PHI], self.at[PSI]) = (to, self.at[PSI] - up * turn);
+    }
+
+    /// Writes the current point of a body on its face to the outputs.
+    pub(super) fn writes_on_face(&mut self) {
+        let flow = self.standing(&self.friction());
+        self.writes_standing(&flow, &{ self.at });
+    }
+
+    /// Writes a body on its face to the outputs.
+    fn writes_standing(&mut self, flow: &StandingFlow, y: &[f64; N]) {
+        self.made.push(flow.row(&self.ask, y));
+    }
+}

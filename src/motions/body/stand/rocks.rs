@@ -1,0 +1,365 @@
+//! A body that falls on its face in a plane: it stays, or rocks over the opposite point of its ring, infinitely often in a
+//! finite time.
+//!
+//! ```text
+//! stays if a^2 >= I1 - Z Q/W,  else W -> r W;     a hop lasts 2 w/gamma,  gamma = -theta'' at theta = 0
+//! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
+//! ```
+//! This is a landing of two circles ([`landing`](crate::laws::contact::landing)) whose other one is the opposite point of the same
+//! ring. The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963).
+//!
+//! Error: of the sum, the square of the time that is summed.
+
+use super::STILL;
+use crate::laws::contact::impact::Hit;
+use crate::laws::contact::landing::{Fallen, falls_flat};
+use crate::laws::contact::slip::Friction;
+use crate::laws::contact::Table;
+use crate::laws::loss::{Law, Losses};
+use crate::laws::state::State;
+use crate::methods::flow::{Flow, Steps};
+use crate::motions::body::body_walk::BodyWalk;
+use crate::motions::body::fly::{Aloft, Takeoff};
+use crate::motions::body::own::Own;
+use crate::motions::body::strike::{
+    MOST_IN_TURN, PERFECTLY_ROUGH, RATTLED, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
+};
+use crate::motions::walk::Next;
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
+};
+use crate::motions::{Ending, Kind, Limit};
+use core::f64::consts::TAU;
+
+/// A rocking beside a slip is summed if the slip lasts longer than it by this factor.
+const OUTLASTS: f64 = 10.0;
+/// Bounces of a flat face that are over in less time than this are summed.
+const LAST_BOUNCES: f64 = 1e-7;
+
+impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
+    /// The friction at the points of a face that falls in a plane.
+    pub(super) fn friction_in_fall(&self) -> Friction {
+        match self.ask.table {
+            Table::Rubs(friction) => friction,
+            Table::Rolling { mu } => Friction::coulomb(mu.min(PERFECTLY_ROUGH)),
+            Table::Smooth => Friction::coulomb(0.0),
+        }
+    }
+
+    /// The phase of a body whose face falls in a plane at this rate.
+    pub(super) fn falls_on_face(&mut self, falls: f64) -> Next {
+        if falls <= ROCKED_OUT {
+            self.claims(falls);
+            self.lies_on_face();
+            return self.stands_on_face();
+        }
+        let e = self.ask.restitution.unwrap_or(0.0);
+        if e > 0.0 && falls * self.of.body.rim() > RATTLED {
+            return self.rattles_on_face(e);
+        }
+        let Some(rocks) = self.lands_flat(0.0, true) else { return Next::Ends(Ending::Landing) };
+        if !rocks {
+            self.lies_on_face();
+            return self.stands_on_face();
+        }
+        if self.at[W2].abs() < ROCKED
+            && let Some((end, error)) = self.rocks_out_flat()
+        {
+            self.claims(error);
+            let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
+            let taken = energy(&self.at) - energy(&end);
+            // The landings that are summed take what is missing.
+            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
+            self.claims(-taken);
+            self.at = end;
+            self.lies_on_face();
+            return self.stands_on_face();
+        }
+        self.rises_from_face()
+    }
+
+    /// Moves the walk to the numbers after a landing in a plane; both points bounce if both come down. Returns whether the body
+    /// leaves its face; None where there is no unique outcome.
+    fn lands_flat(&mut self, e: f64, records: bool) -> Option<bool> {
+        let (up, friction) = (self.up(), self.friction_in_fall());
+        let (body, rim, angle) = (self.of.body, self.of.slide.law.shape.rim, self.at.angle());
+        let arms = [rim.radius(angle), rim.height(angle)];
+        let moves = [up * self.at[W2], up * self.at[UH], self.of.takeoff.lift];
+        let fallen = falls_flat(&body, arms, moves, (&friction, e), &self.of.own)?;
+        let Fallen { rises, slip, lift, lost } = fallen;
+        let begin = self.at;
+        self.flips();
+        let from = self.aloft();
+        // Seen from the point that lands, which the other one may leave at another velocity.
+        let there = lift - 2.0 * arms[0] * rises;
+        (self.at[W1], self.at[W2], self.at[W3]) = (0.0, -up * rises, 0.0);
+        (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
+        self.of.takeoff.lift = if e > 0.0 { there } else { 0.0 };
+        self.claims(-lost);
+        if records {
+            let after = self.aloft();
+            let impulse = gained(&rim, [&from, &after]);
+            self.records([&from, &after], self.made.path.view.over, Hit::BothRims, (impulse, lost), e == 0.0);
+        }
+        if rises <= 0.0 && e == 0.0 {
+            // A body that stays, or turns on the same point, is told from it as before.
+            self.at[UH] = up * slip;
+            self.at[W2] = -up * rises;
+            if poses(N) {
+                self.at[PHI..PHI + 4].copy_from_slice(&begin[PHI..PHI + 4]);
+            }
+        }
+        self.sees_face();
+        Some(rises != 0.0)
+    }
+
+    /// The phase after the bounces of a face that falls in a plane: of one point of its ring in turn, or of both at once.
+    fn rattles_on_face(&mut self, e: f64) -> Next {
+        let (begin, mut turns) = (self.points_come_down(), 0);
+        let over = RATTLE_OVER * begin[0].min(begin[1]).abs().min(1.0);
+        loop {
+            let [here, there] = self.points_come_down();
+            if here.min(there) > -over {
+                break;
+            }
+            turns += 1;
+            if turns > MOST_IN_TURN {
+                return self.gives_up(Limit::Impacts);
+            }
+            if here.max(there) < -over {
+                if self.up() * self.at[W2] < 0.0 {
+                    self.flips();
+                }
+                if self.lands_flat(e, true).is_none() {
+                    return Next::Ends(Ending::Landing);
+                }
+                continue;
+            }
+            if there < here {
+                self.flips();
+            }
+            let at = self.aloft();
+            let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Slip) };
+            let after = self.struck(&at, &struck, (self.made.path.view.over, false));
+            self.sets(&after);
+            self.sees_face();
+        }
+        let [here, there] = self.points_come_down();
+        if there < here {
+            self.flips();
+        }
+        let [here, there] = self.points_come_down();
+        if there < RATTLED {
+            self.claims(there);
+            return self.comes_to_lie();
+        }
+        if here < over {
+            self.claims(here.abs());
+            self.of.takeoff = Takeoff::default();
+            return self.rises_from_face();
+        }
+        (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
+        Next::Own(Kind::Flying)
+    }
+
+    /// The vertical velocities of the point from which the state is told, and of the opposite one.
+    fn points_come_down(&self) -> [f64; 2] {
+        let at = self.aloft();
+        [at.lift, at.opposite(&self.of.slide.law.shape).lift]
+    }
+
+    /// The phase of a body on its face, whose centre keeps its velocity while the rest of a lean is lost.
+    fn comes_to_lie(&mut self) -> Next {
+        let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
+        let before = self.of.slide.energy(&self.at);
+        (self.at[UH], self.at[U2]) = (v_h, v_2 - self.of.body.rim() * self.at[W3]);
+        self.lies_on_face();
+        self.at[HEAT] += before - self.of.slide.energy(&self.at);
+        self.stands_on_face()
+    }
+
+    /// The phase after the impact of a face that comes down with all of its points at once, or in a plane almost so.
+    pub(crate) fn strikes_flat(&mut self, e: f64) -> Next {
+        let (up, w) = (self.up(), self.at.w());
+        (self.at[SIN], self.at[COS]) = (0.0, up);
+        self.sees_face();
+        if w[0] == 0.0 && w[1] == 0.0 {
+            return self.bounces_flat(e);
+        }
+        if w[0] != 0.0 || w[2] != 0.0 || self.at[U2] != 0.0 {
+            return Next::Ends(Ending::Landing);
+        }
+        if self.of.takeoff.lift > 0.0 {
+            self.flips();
+        }
+        if e > 0.0 {
+            return self.rattles_on_face(e);
+        }
+        match self.lands_flat(0.0, true) {
+            None => Next::Ends(Ending::Landing),
+            Some(false) => self.comes_to_lie(),
+            Some(true) => self.rises_from_face(),
+        }
+    }
+
+    /// The phase after the impact of a face that lies flat: slide and spin go on as on the table, by the impulse in place of time.
+    fn bounces_flat(&mut self, e: f64) -> Next {
+        let (comes, from) = (-self.of.takeoff.lift, self.aloft());
+        if comes <= 0.0 {
+            return self.comes_to_lie();
+        }
+        let left = if e < 1.0 { 2.0 * e * comes / (1.0 - e) } else { f64::INFINITY };
+        let last = left < LAST_BOUNCES;
+        let Some(friction) = self.friction_of_face() else { return Next::Ends(Ending::Face) };
+        let all = (1.0 + e) * comes / if last { 1.0 - e } else { 1.0 };
+        let (begin, mut given) = (self.at, 0.0);
+        let losses = Losses::of(Law::Drilling, self.ask.losses.coefficient(Law::Drilling));
+        while given < all {
+            let flow = self.standing_with(&friction, &losses);
+            let [v_h, v_2] = flow.velocity(&self.at);
+            if !flow.changes() || v_h.hypot(v_2) + self.at[W3].abs() <= STILL {
+                break;
+            }
+            if flow.topples(&self.at) {
+                return self.topples_in_impact(comes - given, e);
+            }
+            let (mut y, most) = (self.at, all - given);
+            y[TIME] = 0.0;
+            let steps = Steps { first: None, most: u64::MAX, patience: u64::MAX, toil: self.toil(), tired: false };
+            let flown = flow.run(flow.place(flow.enter(&y)), steps, &[most], &mut |_| (), &mut || true);
+            self.has_spent(flown.spent);
+            given = if flown.halt == Halt::Time { all } else { given + flown.y[TIME] };
+            let [v_h, v_2] = flow.velocity(&flown.y);
+            (self.at[UH], self.at[U2], self.at[W3]) = (flown.y[UH], flown.y[U2], flown.y[W3]);
+            match flown.halt {
+                Halt::Time | Halt::Topples => {}
+                Halt::Turned => (self.at[UH], self.at[U2], self.at[W3]) = (v_h, v_2, 0.0),
+                Halt::Rests => {
+                    self.rests_on_face();
+                    break;
+                }
+                _ => return self.gives_up(Limit::Rounding),
+            }
+        }
+        self.sees_face();
+        self.of.takeoff.lift = if last { 0.0 } else { e * comes };
+        let after = self.aloft();
+        let moving = |at: &Aloft| self.of.slide.energy(&{ let mut y = begin; (y[UH], y[U2], y[W3]) = (at.slip[0], at.slip[1], at.w[2]); y });
+        let lost = moving(&from) - moving(&after) + 0.5 * (comes * comes - after.lift * after.lift);
+        let hit = match () {
+            () if self.at[W3] == 0.0 && self.at.slip() == [0.0; 2] => Hit::Sticks,
+            () if friction.strength() == 0.0 => Hit::Smooth,
+            () => Hit::Slips,
+        };
+        let impulse = gained(&self.of.slide.law.shape.rim, [&from, &after]);
+        self.claims(-lost);
+        self.records([&from, &after], self.made.path.view.over, hit, (impulse, lost), last);
+        if last {
+            // What is left of the bounces is summed.
+            self.claims(LAST_BOUNCES * left);
+            return self.stands_after(left);
+        }
+        (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
+        Next::Own(Kind::Flying)
+    }
+
+    /// The phase of a body on its face whose last bounces take this time.
+    fn stands_after(&mut self, left: f64) -> Next {
+        let (begin, flow) = (self.at, self.standing(&self.friction()));
+        let [v_h, v_2] = flow.velocity(&begin);
+        let moved = |t: f64| {
+            let mut y = begin;
+            y[TIME] += t;
+            if poses(N) {
+                let (sin, cos) = begin[PHI].sin_cos();
+                y[PSI] += t * begin[W3];
+                (y[X], y[Y]) = (y[X] + t * (v_h * cos - v_2 * sin), y[Y] + t * (v_h * sin + v_2 * cos));
+            }
+            y
+        };
+        while let Some(t) = self.until().filter(|t| *t <= begin[TIME] + left) {
+            self.writes_standing(&flow, &moved(t - begin[TIME]));
+        }
+        self.at = moved(left);
+        self.stands_on_face()
+    }
+
+    /// The phase after an impact in which the body has begun to topple while its centre still comes down at this velocity.
+    fn topples_in_impact(&mut self, comes: f64, e: f64) -> Next {
+        if comes <= 0.0 {
+            return Next::Ends(Ending::Landing);
+        }
+        let (up, a) = (self.up(), self.of.body.rim());
+        let [v_h, v_2] = [self.at[UH], self.at[U2] + a * self.at[W3]];
+        let v = v_h.hypot(v_2);
+        self.tells_from(v_2.atan2(v_h) + (a * up * self.at[W3] / v).asin());
+        let slip = ((v - a * self.at[W3].abs()) * (v + a * self.at[W3].abs())).sqrt();
+        (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
+        self.of.takeoff.lift = -comes;
+        let at = self.aloft();
+        let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Landing) };
+        let after = self.struck(&at, &struck, (self.made.path.view.over, false));
+        self.sets(&after);
+        self.sees_face();
+        if after.lift > 0.0 {
+            (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
+            return Next::Own(Kind::Flying);
+        }
+        self.of.takeoff = Takeoff::default();
+        self.rises_from_face()
+    }
+
+    /// Tells a body on its face from the opposite point of its ring.
+    pub(crate) fn flips(&mut self) {
+        let over = self.aloft().opposite(&self.of.slide.law.shape);
+        self.sets(&over);
+        if poses(N) && over.pose[0] > TAU {
+            (self.at[PHI], self.at[PSI]) = (self.at[PHI] - TAU, self.at[PSI] + self.up() * TAU);
+        }
+        self.sees_face();
+    }
+
+    /// The numbers at the end of a rocking that has just begun another hop, and their error; None if it does not end.
+    #[inline(never)]
+    fn rocks_out_flat(&mut self) -> Option<([f64; N], f64)> {
+        let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let found = self.cycle_flat(&begin);
+        (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
+        found
+    }
+
+    fn cycle_flat(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
+        let up = self.up();
+        for _ in 0..2 {
+            let (rises, slip) = (self.at[W2].abs(), self.at[UH]);
+            let sticks = self.of.slide.law.dry && slip.abs() <= self.of.slide.over()
+                || matches!(self.ask.table, Table::Rolling { .. });
+            let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
+            self.at[W2] = 0.0;
+            let rates = self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks);
+            let falls = up * rates[W2];
+            if falls <= 0.0 {
+                return None;
+            }
+            let lasts = 2.0 * rises / falls;
+            if !sticks && self.of.slide.law.dry && slip.abs() < OUTLASTS * self.of.slide.law.strength * lasts {
+                return None;
+            }
+            self.at.iter_mut().zip(rates).for_each(|(number, rate)| *number += lasts * rate);
+            self.at[TIME] += lasts;
+            self.at[W2] = up * rises;
+            self.of.state = State { w2: self.at[W2], ..self.of.state };
+            if !self.lands_flat(0.0, false)? {
+                return None;
+            }
+        }
+        let share = 1.0 - self.at[W2] / begin[W2];
+        let mut end: [f64; N] = core::array::from_fn(|i| begin[i] + (self.at[i] - begin[i]) / share);
+        (end[SIN], end[COS], end[W1], end[W2], end[W3]) = (0.0, up, 0.0, 0.0, 0.0);
+        if poses(N) {
+            (end[PHI], end[PSI]) = (begin[PHI], begin[PSI]);
+        }
+        let left = end[TIME] - begin[TIME];
+        (share > 0.0).then_some((end, left * begin[W2].abs()))
+    }
+}
