@@ -14,10 +14,14 @@
 //! Error: see [`ring`] and [`disc`]; a test compares with quadrature of 30 digits.
 
 mod disc;
+mod part;
 mod ring;
 
+use crate::methods::search::crossing;
 use crate::numbers::codes::coded;
-use ring::{Arc, Pressed, WholeMeans};
+use core::f64::consts::FRAC_PI_2;
+use part::{Part, Pressed};
+use ring::WholeMeans;
 
 coded! {
     /// How the table presses on a face. Where the pressure of a rigid face is undetermined, this is the choice of a model.
@@ -51,8 +55,17 @@ pub(crate) struct FaceFriction {
 }
 
 /// Most steps of Newton's method, which double the digits, and the relative step that is the last one.
-const NEWTON_STEPS: usize = 60;
-const CLOSE: f64 = 1e-8;
+const STEPS_TO_PART: usize = 60;
+const LAST_STEP: f64 = 1e-8;
+/// The largest root of the ratio of a fold less 1, and the relative accuracy of its place, whose square is that of lam.
+const WIDEST_FOLD: f64 = 0.37;
+const FOLD_STEP: f64 = 1e-7;
+/// The last turn of a direction, and the ratio of widths in a search for the widest part.
+const TURN: f64 = 1e-12;
+const NARROWER: f64 = 0.5;
+const NARROWEST: f64 = 1e-9;
+/// A part of this width is a point.
+const POINT: f64 = 1e-24;
 
 impl FaceFriction {
     /// The friction of a face whose centre of mass is lam a/mu above it.
@@ -89,24 +102,36 @@ impl FaceFriction {
         if v >= self.fold * s {
             return None;
         }
-        let edge = |x: [f64; 2]| x.map(|x| x / (slope * centre[0].hypot(centre[1])));
         let tilted = last.filter(|x| slope * x[0].hypot(x[1]) > 1.0);
         let (arc, found) = tilted
-            .and_then(|x| self.solved(Arc::about(x), v, s))
-            .or_else(|| self.solved(Arc::about(edge(centre)), v, s))?;
+            .and_then(|x| self.solved(Part::towards(self.width_of(x[0].hypot(x[1])), x), v, s))
+            .or_else(|| self.solved(Part::towards(1.0, centre), v, s))?;
         let turned = [arc.off.sin(), arc.angle.sin()];
         let [along, across] = turned.map(|x| found.force * x);
         Some(FaceForce { along, across, couple: found.couple, centre: turned.map(|x| found.centre * x) })
     }
 
+    /// The width of the part whose centre of pressure is this far from the axis, nearly.
+    fn width_of(&self, centre: f64) -> f64 {
+        let short = 1.0 - centre;
+        let (first, last) = match self.form {
+            Face::Ring => (2.5, 1.0),
+            Face::Disc => (1.75, 5.0 / 9.0),
+        };
+        (short * (first - last * short)).clamp(1e-18, 1.0)
+    }
+
     /// The part that presses, by Newton's method from another one.
-    fn solved(&self, mut arc: Arc, v: f64, s: f64) -> Option<(Arc, Pressed)> {
+    fn solved(&self, mut arc: Part, v: f64, s: f64) -> Option<(Part, Pressed)> {
         let mut close = false;
-        for _ in 0..NEWTON_STEPS {
+        for _ in 0..STEPS_TO_PART {
             let here = self.pressed(&arc, v, s);
             let det = here.determinant();
             if close {
                 return (det < 0.0).then_some((arc, here));
+            }
+            if arc.width < POINT {
+                return Some((arc, here));
             }
             let [r, q] = here.residual;
             let width = (here.by_angle[0] * q - here.by_angle[1] * r) / det;
@@ -115,22 +140,87 @@ impl FaceFriction {
                 return None;
             }
             // The next step is below rounding, as each has the square of the one before.
-            close = width.abs() <= CLOSE * arc.width && angle.abs() <= CLOSE * arc.angle.min(arc.off).abs();
+            close = width.abs() <= LAST_STEP * arc.width && angle.abs() <= LAST_STEP * arc.angle.min(arc.off).abs();
             let bounded = (arc.width + width).clamp(0.2 * arc.width, 1.0) - arc.width;
             arc = arc.moved(bounded, angle.clamp(-0.3, 0.3));
         }
         None
     }
 
-    fn pressed(&self, arc: &Arc, v: f64, s: f64) -> Pressed {
+    fn pressed(&self, arc: &Part, v: f64, s: f64) -> Pressed {
         match self.form {
-            Face::Ring => arc.pressed(self.lam, v, s),
+            Face::Ring => ring::pressed(arc, self.lam, v, s),
             Face::Disc => disc::pressed(arc, self.lam, v, s),
         }
     }
 
-    /// The fold.
+    /// The fold: the ratio whose largest lam, over all parts that press, is this one. The largest lam is smooth in the
+    /// root of the ratio less 1.
     fn highest_ratio(&self) -> f64 {
-        f64::INFINITY
+        let miss = |y: f64| self.largest_lam(1.0 + y * y) - self.lam;
+        let near = miss(0.0);
+        if near <= 0.0 {
+            return 1.0;
+        }
+        // Beyond, lam = 1 belongs to a point.
+        let y = crossing(miss, 0.0, WIDEST_FOLD, near, 1.0 - self.lam);
+        1.0 + y * y
     }
+
+    /// The largest lam that has a centre of the pressure at the ratio `k`. At a given width the direction of X follows from
+    /// the force across, and lam from that along.
+    fn largest_lam(&self, k: f64) -> f64 {
+        let mut angle = 0.6;
+        let mut on_curve = |width: f64| {
+            let mut found = [1.0, 0.0];
+            for _ in 0..STEPS_TO_PART {
+                let part = Part { width, angle, off: FRAC_PI_2 - angle };
+                let here = Self { lam: found[0], ..*self }.pressed(&part, k, 1.0);
+                found = [here.centre / here.force, here.determinant()];
+                let turn = here.residual[1] / here.by_angle[1];
+                angle -= turn.clamp(-0.2, 0.2);
+                if turn.abs() < TURN {
+                    break;
+                }
+            }
+            (found[0], found[1])
+        };
+        // Narrower parts, until lam falls.
+        let (mut width, mut wide) = (1.0, on_curve(1.0));
+        let mut narrow = on_curve(NARROWER);
+        while narrow.1 < 0.0 {
+            (width, wide) = (NARROWER * width, narrow);
+            narrow = on_curve(NARROWER * width);
+            if width < NARROWEST {
+                return 1.0;
+            }
+        }
+        // Regula falsi, as in `crossing`, but only as far as the square needs.
+        let (mut a, mut b, mut at_a, mut at_b) = (width, NARROWER * width, wide.1, narrow.1);
+        let mut best = narrow;
+        while (a - b).abs() > FOLD_STEP * b {
+            let next = b - at_b * ((b - a) / (at_b - at_a));
+            best = on_curve(next);
+            if (best.1 < 0.0) == (at_b < 0.0) {
+                at_a *= 0.5;
+            } else {
+                (a, at_a) = (b, at_b);
+            }
+            let moved = (next - b).abs();
+            (b, at_b) = (next, best.1);
+            if moved <= FOLD_STEP * b {
+                break;
+            }
+        }
+        best.0
+    }
+}
+
+#[cfg(test)]
+pub fn bench(width: f64, angle: f64, k: f64) -> f64 {
+    ring::pressed(&Part { width, angle, off: core::f64::consts::FRAC_PI_2 - angle }, 0.8, k, 1.0).couple
+}
+#[cfg(test)]
+pub fn bench2(k: f64) -> f64 {
+    FaceFriction { form: Face::Ring, lam: 1.0, fold: 0.0 }.largest_lam(k)
 }
