@@ -1,0 +1,159 @@
+//! The part of a face that presses, and the integrals over it from which X and the friction follow.
+//!
+//! ```text
+//! p = x.n_X - cos b where that is positive,   width = sin^2(b/2),   angle c of n_X = X/|X|,   d the angle of u from n_X
+//! residual   X - lam G in the frame of X = (|X| - lam <cos d>, -lam <sin d>),   <sin t> = 0 across X
+//! d<f>/d width = 2 (int f - <f> int 1)/int p,   dG/dc = int (across) u/|u|/int p,   dX/dc = |X| across
+//! couple   gg = <(1 - cos d) across> - <(1 - along) sin d>,   as <sin d> = 0 of a solution
+//! ```
+//! All of these are integrals over the same nodes, so that Newton's method has exact derivatives. In this frame the
+//! sums are of terms as small as themselves for a slow spin and for a small part.
+
+use crate::numbers::here;
+use crate::numbers::side_by_side::SideBySide;
+
+/// The nodes of Gauss's rule of 24 nodes, and their weights.
+#[rustfmt::skip]
+pub(super) const GAUSS_PLACES: [f64; 24] = [
+    -0.9951872199970213, -0.9747285559713095, -0.9382745520027328, -0.8864155270044011, -0.820001985973903, -0.7401241915785544,
+    -0.6480936519369755, -0.5454214713888396, -0.4337935076260451, -0.3150426796961634, -0.1911188674736163, -0.06405689286260563,
+    0.06405689286260563, 0.1911188674736163, 0.3150426796961634, 0.4337935076260451, 0.5454214713888396, 0.6480936519369755,
+    0.7401241915785544, 0.820001985973903, 0.8864155270044011, 0.9382745520027328, 0.9747285559713095, 0.9951872199970213,
+];
+#[rustfmt::skip]
+pub(super) const GAUSS_WEIGHTS: [f64; 24] = [
+    0.0123412297999872, 0.028531388628933663, 0.04427743881741981, 0.05929858491543678, 0.0733464814110803, 0.08619016153195327,
+    0.09761865210411388, 0.10744427011596563, 0.1155056680537256, 0.12167047292780339, 0.1258374563468283, 0.12793819534675216,
+    0.12793819534675216, 0.1258374563468283, 0.12167047292780339, 0.1155056680537256, 0.10744427011596563, 0.09761865210411388,
+    0.08619016153195327, 0.0733464814110803, 0.05929858491543678, 0.04427743881741981, 0.028531388628933663, 0.0123412297999872,
+];
+
+/// A part of the face that presses: `width` = sin^2(b/2), and the angle c of its middle from v, with pi/2 - c.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub width: f64,
+    pub angle: f64,
+    pub off: f64,
+}
+
+impl Part {
+    /// The part turned and widened by these amounts.
+    pub fn moved(&self, width: f64, angle: f64) -> Self {
+        Self { width: self.width + width, angle: self.angle + angle, off: self.off - angle }
+    }
+
+    /// The part in the direction of this vector.
+    pub fn towards(width: f64, centre: [f64; 2]) -> Self {
+        Self { width, angle: centre[1].atan2(centre[0]), off: centre[0].atan2(centre[1]) }
+    }
+}
+
+const INTEGRALS: usize = 11;
+/// Numbers that are summed side by side, so that every machine adds in the same order.
+const SIDES: usize = 8;
+
+/// Integrals over a part, of numbers in lanes.
+pub(super) struct Integrals<T> {
+    sums: [[T; INTEGRALS]; SIDES],
+}
+
+/// A node: its weight, the pressure, 1 - along and across of its place, and sin d and 1 - cos d of its slip. Along and
+/// across are the directions of X.
+#[derive(Clone, Copy)]
+pub(super) struct Rubbing<T> {
+    pub weight: T,
+    pub pressed: T,
+    pub short: T,
+    pub across: T,
+    pub aside: T,
+    pub back: T,
+}
+
+/// 1 - cos d, without loss where it is small.
+#[inline(always)]
+pub(super) fn one_less<T: SideBySide>(sine: T, cosine: T) -> T {
+    let size = sine.splat(1.0) + cosine.abs();
+    sine.splat(0.0).select_lt(cosine, sine * sine / size, size)
+}
+
+impl<T: SideBySide> Integrals<T> {
+    #[inline(always)]
+    pub fn new(like: T) -> Self {
+        Self { sums: [[like.splat(0.0); INTEGRALS]; SIDES] }
+    }
+
+    /// Adds integrals of a chord or of nodes; the `group` is that of their place among the nodes.
+    #[inline(always)]
+    pub fn add(&mut self, group: usize, terms: [T; INTEGRALS]) {
+        let sums = &mut self.sums[group % (SIDES / T::COUNT)];
+        for (sum, term) in sums.iter_mut().zip(terms) {
+            *sum = *sum + term;
+        }
+    }
+
+    /// Adds a node.
+    #[inline(always)]
+    pub fn rub(&mut self, group: usize, of: Rubbing<T>) {
+        let Rubbing { weight, pressed, short, across, aside, back } = of;
+        let terms = [
+            pressed,
+            pressed * short,
+            pressed * aside,
+            pressed * back,
+            pressed * (back * across - aside * short),
+            weight,
+            weight * short,
+            weight * aside,
+            weight * back,
+            weight * across * aside,
+            weight * across * back,
+        ];
+        self.add(group, terms);
+    }
+
+    /// The integrals, and what follows from them for a height lam.
+    #[inline(always)]
+    pub fn pressed(&self, lam: f64) -> Pressed {
+        let total = here(#[inline(always)] |i: usize| {
+            let mut sides = [0.0; SIDES];
+            for group in 0..SIDES / T::COUNT {
+                self.sums[group][i].spill(&mut sides[group * T::COUNT..]);
+            }
+            let [a, b, c, d, e, f, g, h] = sides;
+            ((a + b) + (c + d)) + ((e + f) + (g + h))
+        });
+        let of: [f64; INTEGRALS] = core::array::from_fn(total);
+        let over = 1.0 / of[0];
+        let [short, aside, back, couple] = [1, 2, 3, 4].map(|i| of[i] * over);
+        let by_width = |plain: f64, mean: f64| 2.0 * over * (plain - mean * of[5]);
+        let centre = 1.0 - short;
+        Pressed {
+            residual: [(1.0 - lam) - short + lam * back, -lam * aside],
+            by_width: [lam * by_width(of[8], back) - by_width(of[6], short), -lam * by_width(of[7], aside)],
+            by_angle: [lam * over * of[10], centre - lam * over * of[9]],
+            centre,
+            force: 1.0 - back,
+            couple,
+        }
+    }
+}
+
+/// What a part gives: the residual X - lam G in the frame of X, its derivatives by width and angle, and the means.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pressed {
+    pub residual: [f64; 2],
+    pub by_width: [f64; 2],
+    pub by_angle: [f64; 2],
+    /// |X|.
+    pub centre: f64,
+    /// G along X, and gg.
+    pub force: f64,
+    pub couple: f64,
+}
+
+impl Pressed {
+    /// The determinant of the derivatives, which is negative where the centre of the pressure is the nearest one.
+    pub fn determinant(&self) -> f64 {
+        self.by_width[0] * self.by_angle[1] - self.by_width[1] * self.by_angle[0]
+    }
+}
