@@ -18,6 +18,7 @@
 //! | | [`custom`] | user-defined laws, and motions under them | P = -m.w >= 0, F = mu(u) N |
 //! | | [`contact`] | the contact force: [`rolling`], [`smooth`], slip; the landing of a rim | F = v' + Wf x v + z |
 //! | | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
+//! | | [`topple`] | a body on its face that topples, or that a kerb stops | mu Z > a, w2 = -v Z/J |
 //! | | [`pose`] | the orientation, the contact path and the centre of the body | P' = A psi' e2 - rho theta' e_h |
 //! | `states` | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
 //! | | [`stability`] | stability of steady states: smooth, rolling | kappa = -dtheta''/dtheta along the lines |
@@ -50,7 +51,7 @@ mod numbers;
 mod python;
 mod states;
 
-pub use laws::{body, contact, loss, newton, pose, scale, state, throw};
+pub use laws::{body, contact, loss, newton, pose, scale, state, throw, topple};
 #[cfg(feature = "many")]
 pub use many::{maps as sweep, motions as ensemble};
 pub use methods::rk4;

@@ -204,6 +204,7 @@ def nouns():
         "Body.growth_rate": (body.growth_rate, {"at": 1.3, "contact": "rolling"}),
         "Body.standing_spin": (body.standing_spin, {"contact": "rolling"}),
         "Body.painleve": (body.painleve, {"theta": 1.3}),
+        "Body.topples": (body.topples, {"mu": 0.3, "theta": 0.0}),
         "Body.boundaries": (body.boundaries, {"contact": "rolling"}),
         "Body.energy": (body.energy, {"state": state, "contact": "rolling"}),
         "Body.centre_velocity": (body.centre_velocity, {"state": state}),
@@ -218,7 +219,7 @@ def nouns():
             sc.State.from_si, {"theta": 1.0, "w1": 1.0, "w2": 0.0, "w3": 1.0, "slip": None, "scale": sc.Scale(0.01)},
         ),
         "State.kicked": (state.kicked, {"thetadot": 0.1}),
-        "Coulomb": (sc.Coulomb, {"mu": 0.3, "static": None}),
+        "Coulomb": (sc.Coulomb, {"mu": 0.3, "static": None, "face": "ring"}),
         "Viscous": (sc.Viscous, {"c": 0.3}),
         "Scale": (sc.Scale, {"radius": 0.01, "mass": 1.0, "gravity": 9.8}),
         "Scale.metres": (sc.Scale(0.01).metres, {"length": 1.0}),
@@ -251,6 +252,8 @@ def nouns():
         "dropped": (
             sc.dropped, {"body": TUBE, "height": 0.05, "theta": 1.2, "w1": 1.0, "w2": 0.5, "w3": 2.0, "velocity": (0.1, 0.0, 0.2), "scale": None},
         ),
+        "spun": (sc.spun, {"body": TUBE, "w": 2.0, "velocity": (0.1, 0.2), "theta": 0.0, "scale": None}),
+        "tripped": (sc.tripped, {"body": TUBE, "velocity": 0.1, "scale": None}),
         "flicked": (
             sc.flicked, {"body": TUBE, "hertz": 17.0, "w1": None, "launch": 1.3, "spin_hertz": None, "centre": None, "scale": None},
         ),

@@ -32,6 +32,7 @@ from spincyl._motion import Motion
 from spincyl._phases import Impact, Phase
 from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
+from spincyl._stand import spun, tripped
 from spincyl._state import State
 from spincyl._swing import Swing, swing
 from spincyl._throw import dropped, flicked, launch_number, pressed, thrown
@@ -96,9 +97,11 @@ __all__ = [
     "rising_spin",
     "roll",
     "scene",
+    "spun",
     "sweep",
     "swing",
     "thrown",
+    "tripped",
     "turning_spin",
     "view",
 ]

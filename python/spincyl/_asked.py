@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from spincyl._contact import AnyContact, code_of, table_for_core
+from spincyl._contact import FACES, AnyContact, Coulomb, code_of, table_for_core
 from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals, whole
 from spincyl._phases import check_contact, has_friction
 from spincyl._state import State
@@ -58,6 +58,8 @@ def options_for_core(
         options["table"], options["coefficients"] = table_for_core(contact, mu, own=True)
         if not isinstance(contact, str) and contact._function is not None:
             options["friction"] = contact._function
+        if isinstance(contact, Coulomb) and contact.face != "ring":
+            options["face"] = FACES[contact.face]
     if asked.step is not None or asked.tol is not None:
         options |= {"step": asked.step, "tol": asked.tol}
     if asked.want:

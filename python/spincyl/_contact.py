@@ -7,7 +7,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
-from spincyl._input.numbers import Reals, is_scalar, read_only_copy, reals, refuse_bad_value, si
+from spincyl._input.numbers import Reals, is_scalar, one_of, read_only_copy, reals, refuse_bad_value, si
 from spincyl._input.reprs import is_lazy, repr_of_call
 from spincyl._scale import Scale, refuse_other_scale, scale_of
 
@@ -17,10 +17,15 @@ if TYPE_CHECKING:
 #: Contacts without a law of friction: rolling without slip, or no friction.
 Contact: TypeAlias = Literal["rolling", "smooth"]
 
+#: How the table presses on a face.
+Face: TypeAlias = Literal["ring", "disc"]
+
 #: Names and codes of the enumerations of the core.
 CODES = {name: dict(values) for name, values in _core.codes()}
 #: Code of each kind of contact, including the laws of friction.
 TABLES = CODES["Table"]
+#: Code of each way in which the table presses on a face.
+FACES = CODES["Face"]
 
 
 class _Law:
@@ -65,12 +70,16 @@ class Coulomb(_Law):
         point. The pressure in the patch is that of a Hertz contact. Slip and drilling (the rotation about the
         vertical) share the friction of the patch (Contensou), so the contact does not stick while the body
         drills. For a measured body, make the law with `from_si`.
+    face : {"ring", "disc"}
+        How the table presses on a face on which the body stands, slides or spins. "ring": on its rim, as
+        under a tube, a can or a coin. "disc": on the whole face, as under a puck. The patch does not act
+        there.
 
     Raises
     ------
     ValueError
-        If a coefficient is negative or NaN, `mu` is infinite, `static` is less than `mu`, or `patch` is 1 or
-        more.
+        If a coefficient is negative or NaN, `mu` is infinite, `static` is less than `mu`, `patch` is 1 or
+        more, or `face` is another word.
     TypeError
         If a coefficient is not real-valued; the message names it.
 
@@ -84,15 +93,25 @@ class Coulomb(_Law):
     mu: Reals
     static: Reals = None
     patch: Reals = 0.0
+    face: Face = "ring"
 
     @classmethod
-    def from_si(cls, mu: Reals, static: Reals = None, *, patch: Reals, scale: "Scale | Body") -> Self:
+    def from_si(
+        cls,
+        mu: Reals,
+        static: Reals = None,
+        *,
+        patch: Reals,
+        face: Face = "ring",
+        scale: "Scale | Body",
+    ) -> Self:
         """Coulomb friction for a measured body: `patch` is in metres, or a text such as "0.3mm".
 
         `scale` is the measured body, or its `Scale`.
         """
         of = scale_of(scale)
-        return cls(mu, static, reals("patch", si("patch", patch, "metre")) / of._units[0])._known(of)
+        radius = reals("patch", si("patch", patch, "metre")) / of._units[0]
+        return cls(mu, static, radius, face)._known(of)
 
     def __post_init__(self) -> None:
         mu = _coefficient("mu", self.mu)
@@ -105,6 +124,7 @@ class Coulomb(_Law):
         object.__setattr__(self, "mu", mu)
         object.__setattr__(self, "static", static)
         object.__setattr__(self, "patch", patch)
+        one_of("face", self.face, tuple(FACES))
 
     @property
     def _numbers(self) -> tuple[Reals, Reals, Reals]:
@@ -115,7 +135,8 @@ class Coulomb(_Law):
         same = self.static is self.mu or (not lazy and np.array_equal(self.static, self.mu))
         more = {} if same else {"static": self.static}
         point = is_scalar(self.patch) and self.patch == 0
-        return repr_of_call("Coulomb", self.mu, **more | ({} if point else {"patch": self.patch}))
+        more |= ({} if point else {"patch": self.patch}) | ({} if self.face == "ring" else {"face": self.face})
+        return repr_of_call("Coulomb", self.mu, **more)
 
 
 @compared_by_value
@@ -232,7 +253,9 @@ def without_coefficient(contact: AnyContact) -> AnyContact:
 
     A law that the user wrote stays the same.
     """
-    return contact if isinstance(contact, str) or contact._function is not None else type(contact)(0.0)
+    if isinstance(contact, str) or contact._function is not None:
+        return contact
+    return Coulomb(0.0, face=contact.face) if isinstance(contact, Coulomb) else Viscous(0.0)
 
 
 def check_contact_scale(contact: AnyContact, scale: Scale | None) -> None:

@@ -121,6 +121,8 @@ __all__ = [
     "thrown",
     "thrown_slip",
     "thrown_w3",
+    "topples",
+    "tripped_w2",
     "turning_spin",
     "two_rims",
     "unequal_balls",
@@ -182,6 +184,8 @@ pressed_w3: np.ufunc
 pressed_slip: np.ufunc
 launch_number: np.ufunc
 launch_spin: np.ufunc
+topples: np.ufunc
+tripped_w2: np.ufunc
 loss_power: np.ufunc
 loss_couple: np.ufunc
 nutation: np.ufunc

@@ -23,6 +23,7 @@ AXES: Components = {
     "contact_force_other": ("space", ["x", "y", "z"], [f"force_other_{axis}" for axis in "xyz"]),
     "orientation": ("quaternion", ["x", "y", "z", "w"], [f"orientation_{axis}" for axis in "xyzw"]),
     "slip": ("direction", ["along the lean", "across"], ["slip_along", "slip_across"]),
+    "pressure": ("direction", ["along the lean", "across"], ["pressure_along", "pressure_across"]),
     "slip_other": ("direction", ["along the lean", "across"], ["slip_other_along", "slip_other_across"]),
 }
 

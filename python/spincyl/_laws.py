@@ -14,9 +14,11 @@ from spincyl._input.numbers import (
     Reals,
     Result,
     elementwise,
+    is_scalar,
     keywords,
     radians,
     reals,
+    refuse_bad_value,
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._slip import slip_of, velocity_of
@@ -182,6 +184,36 @@ class Laws(Circles):
         at least sqrt(5)/2 = 1.118 for uniform tubes.
         """
         return _core.painleve(*self._at(radians("theta", theta, self._leans)))
+
+    @elementwise
+    def topples(self, mu: Reals, theta: Reals = 0.0) -> Result:
+        """Whether the body topples as it slides straight on its face: mu Z > a.
+
+        Z is the height of the centre of mass, a the radius of the face. A body that also spins may stay up.
+
+        Parameters
+        ----------
+        mu : array_like
+            Coefficient of friction, 0 or more.
+        theta : array_like, optional
+            0 for the first face, pi for the one at the other end of a body of several circles.
+
+        Returns
+        -------
+        bool or array
+            False for impossible numbers in an array.
+
+        Raises
+        ------
+        ValueError
+            If the body is a single ball, which has no face, or if a single `mu` is negative or not finite.
+        """
+        given = reals("mu", mu)
+        found = _core.topples(given, *self._at(radians("theta", theta, "0 or pi"))[1:])
+        if is_scalar(found) and np.isnan(found):
+            refuse_bad_value("mu", given, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
+            raise ValueError("body: expected a body with a face; a ball has none")
+        return found > 0
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""

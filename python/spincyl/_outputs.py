@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 # what an output that was not computed needs; `missing_output` says how to get it
 POSE, FORCE, BOTH = '"pose"', '"force"', '("pose", "force")'
 FRICTION, PATCH, COUPLE, ALOFT, LOSSES = "friction", "patch", "couple", "restitution", "losses"
+FACE = "face"
 #: Settings of `roll` that another argument excludes.
 _EXCLUDES = {
     FRICTION: ("step", "method", "mu", "beyond"),
@@ -67,6 +68,8 @@ def _how_to_get(m: "Motion", needs: str) -> str:
         made = f'{law}.from_si("0.05mm", scale=body)' if measured else f"{law}({amount})"
         made = "custom.Couple(function)" if own else f"loss.{made}"
         why, how = "losses=", f"losses=sc.{made}"
+    elif needs == FACE:
+        return 'needs a body that stands on its face, as from sc.spun, a contact in sc.roll, and want="force"'
     elif needs == FRICTION:
         why, how = (
             f"a law of friction, not contact = {contact_in_words(m.contact)!r}",
@@ -144,7 +147,7 @@ class Outputs:
         """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
 
         0 rolling, 1 slipping, 2 flying; on both rims or two circles 3 lying and slipping, 4 pivoting, 5
-        rolling on its side, 6 rolling round its apex.
+        rolling on its side, 6 rolling round its apex; 7 on its face.
         """,
     )
     drilling = Number(
@@ -155,9 +158,18 @@ class Outputs:
     )
     couple = Number(
         COUPLE,
-        """(n,) couple of the patch about the vertical, M g R or J. Needs a patch and want="force".
+        """(n,) couple of the table about the vertical, M g R or J. Needs want="force", and a patch or a face.
 
-        NaN in rolling, where static friction prevents drilling.
+        On a patch NaN in rolling, where static friction prevents drilling. Without a patch NaN unless the
+        body is on its face, where it is the couple about its axis.
+        """,
+    )
+    pressure = Number(
+        FACE,
+        """(n, 2) centre of the pressure on the face, in units of the radius of the face; NaN off the face.
+
+        Its distance from the axis along e_h and e2: -Z F/(a N). At the distance 1 the body topples. Needs
+        want="force", and a motion of which some phase is "on its face".
         """,
     )
     lift = Number(

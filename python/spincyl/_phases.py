@@ -16,7 +16,14 @@ if TYPE_CHECKING:
     from spincyl._body import Body
 
 Kind: TypeAlias = Literal[
-    "rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side", "rolling round its apex"
+    "rolling",
+    "slipping",
+    "flying",
+    "lying",
+    "pivoting",
+    "rolling on its side",
+    "rolling round its apex",
+    "on its face",
 ]
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -40,7 +47,7 @@ class Phase(NamedTuple):
     kind : str
         "rolling", "slipping" or "flying". For a body on both rims, or on two circles: "lying" (both slip),
         "pivoting" (one slips), "rolling on its side", or "rolling round its apex" (the point where its axis
-        meets the table, if the circles have unequal radii).
+        meets the table, if the circles have unequal radii). "on its face": it stands, slides or spins on it.
     state : State
         State at that time, with its slip, in natural units; in the air also with its `height` and `lift`.
         A motion that starts from it continues this one.

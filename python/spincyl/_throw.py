@@ -69,7 +69,7 @@ def thrown(body: Body, velocity: Reals, backspin: Reals, *, scale: Scale | None 
     >>> bool(v + hoop.i3 * state.w3 < 0)
     True
     """
-    scale = _scale_of_body(body, scale)
+    scale = scale_of_body(body, scale)
     if scale is not None:
         velocity = si("velocity", velocity, "metre/second")
         backspin = radians_per_second("backspin", backspin)
@@ -144,7 +144,7 @@ def dropped(
     >>> m.phases[0].kind, round(m.impacts[0].time, 12)
     ('flying', 2.0)
     """
-    scale = _scale_of_body(body, scale)
+    scale = scale_of_body(body, scale)
     if not isinstance(velocity, tuple | list) or len(velocity) != 3:
         raise TypeError(f"velocity: expected three components (e_h, e2, upward), not {velocity!r}")
     metre, second = (1.0, 1.0) if scale is None else scale._units[:2]
@@ -223,7 +223,7 @@ def pressed(
     >>> bool(sc.launch_number(pipe, state) > 1)
     True
     """
-    scale = _scale_of_body(body, scale)
+    scale = scale_of_body(body, scale)
     if scale is not None:
         impulse = si("impulse", impulse, "newton*second")
     impulse, angle = reals("impulse", impulse), radians("angle", angle, "0 < angle <= pi/2")
@@ -294,7 +294,7 @@ def flicked(
     >>> m.phases
     ((0, 'slipping'), (0.830076293024, 'rolling'))
     """
-    scale = _scale_of_body(body, scale)
+    scale = scale_of_body(body, scale)
     if (hertz is None) == (w1 is None) or (launch is None) == (spin_hertz is None):
         why = "give exactly one of hertz and w1, and exactly one of launch and spin_hertz"
         raise TypeError(f"hertz, w1, launch, spin_hertz: {why}")
@@ -347,7 +347,7 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
     return State(level + np.pi / 2, w1, level, w3, slip=(level, across))
 
 
-def _scale_of_body(body: object, scale: Scale | None) -> Scale | None:
+def scale_of_body(body: object, scale: Scale | None) -> Scale | None:
     """The given scale, or that of a measured body."""
     return scale_of(scale, instance_of("body", body, Body))
 

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spincyl._contact import Coulomb
 from spincyl._ending import MESSAGES, Ending
 from spincyl._phases import has_two_rims, methods_in_words, phases_in_words
 
@@ -32,8 +33,18 @@ def message(m: "Motion") -> str:
         errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
         phases = "" if m._phases is None else phases_in_words(m.phases, _unit_of_times(m))
-        return "; ".join(filter(None, (why, phases, _method_in_words(m), errors, m._doubt)))
+        return "; ".join(filter(None, (why, phases, _method_in_words(m), errors, m._doubt, _near_toppling(m))))
     return f"{why}; found {_method_in_words(m)}, {errors}"
+
+
+def _near_toppling(m: "Motion") -> str:
+    """A remark on a tall body on its face; empty for others."""
+    if not any(phase.kind == "on its face" for phase in m.phases or ()) or not isinstance(m.contact, Coulomb):
+        return ""
+    theta = next(phase.state.theta for phase in m.phases if phase.kind == "on its face")
+    if m.body.topples(m.contact.mu, theta):
+        return "mu Z > a: without its spin the body topples, and a real one may chatter"
+    return "close to toppling: mu Z > 0.9 a" if m.body.topples(m.contact.mu / 0.9, theta) else ""
 
 
 def given_up(m: "Motion") -> str:

@@ -10,3 +10,4 @@ pub mod scale;
 pub mod state;
 pub mod stone;
 pub mod throw;
+pub mod topple;

@@ -1,6 +1,6 @@
 //! Names and codes of the enumerations whose codes appear in arrays.
 
-use crate::laws::contact::TableKind;
+use crate::laws::contact::{Face, TableKind};
 use crate::laws::loss::Law;
 use crate::many::motions::Answer;
 use crate::motions::drift::End;
@@ -27,7 +27,7 @@ fn constant(value: &impl Debug) -> String {
 /// Names and codes of every enumeration, in the order of the codes. Tables and ends of drifts have their own names; a
 /// loss law has the name of its class.
 #[pyfunction]
-pub fn codes() -> [(&'static str, Codes); 9] {
+pub fn codes() -> [(&'static str, Codes); 10] {
     let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();
     let endings = status.iter().filter(|(_, code)| *code != Ending::Invalid as u8).cloned();
     [
@@ -38,6 +38,7 @@ pub fn codes() -> [(&'static str, Codes); 9] {
         ("RestsOn", RestsOn::ALL.iter().map(|x| (constant(x), *x as u8)).collect()),
         ("Phase", Kind::ALL.iter().map(|x| (format!("{x:?}").to_lowercase(), *x as u8)).collect()),
         ("Table", TableKind::ALL.iter().map(|x| (x.name().to_owned(), *x as u8)).collect()),
+        ("Face", Face::ALL.iter().map(|x| (x.to_string(), *x as u8)).collect()),
         ("Law", Law::ALL.iter().map(|x| (format!("{x:?}"), *x as u8)).collect()),
         ("Drift", End::ALL.iter().map(|x| (x.name().to_owned(), *x as u8)).collect()),
     ]

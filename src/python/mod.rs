@@ -18,7 +18,7 @@ mod watch;
 use crate::laws::body::Circle;
 use crate::laws::contact::landing::two_rims;
 use crate::laws::contact::slip::{self, centre_velocity};
-use crate::laws::throw;
+use crate::laws::{throw, topple};
 use crate::motions::turning::jellett_spin;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
@@ -324,6 +324,18 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction { name: "pressed_w1", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w1)) },
     ArrayFunction { name: "pressed_w3", inputs: 10, value: Value::One(|x| of_press(x, |y, _| y.w3)) },
     ArrayFunction { name: "pressed_slip", inputs: 10, value: Value::One(|x| of_press(x, |_, slip| slip[1])) },
+    ArrayFunction {
+        name: "topples",
+        inputs: 7,
+        value: Value::One(|x| {
+            of_body(&x[1..], |b| or_nan(topple::topples(b, x[0]).map(|yes| f64::from(u8::from(yes)))))
+        }),
+    },
+    ArrayFunction {
+        name: "tripped_w2",
+        inputs: 7,
+        value: Value::One(|x| of_body(&x[1..], |b| or_nan(topple::tripped(b, x[0]).map(|y| y.w2)))),
+    },
     ArrayFunction {
         name: "launch_spin",
         inputs: 8,

@@ -8,14 +8,16 @@ use super::watch::Watch;
 use crate::error::{copied, room};
 use crate::laws::contact::patch;
 use crate::laws::custom::Custom;
+use crate::laws::newton::Force;
 use crate::laws::state::drilling_of;
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::laws::topple;
 use crate::motions::custom;
 use crate::motions::exact::Swing;
 use crate::motions::motion;
 use crate::motions::stone;
 use crate::motions::turning;
-use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, RestsOn, Sample, Start};
+use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, Path, RestsOn, Sample, Start};
 use crate::{Body, Error, State};
 use nalgebra::Vector3;
 use numpy::ndarray::ArrayView2;
@@ -100,6 +102,13 @@ impl StateArrays for State {
             rows.add("normal", 0, &|i, to| to.push(forces[i].normal))?;
             rows.add("friction", 0, &|i, to| to.push(forces[i].friction()))?;
             rows.add("friction_coefficient", 0, &|i, to| to.push(forces[i].friction_coefficient()))?;
+            if let Some(path) = &m.path
+                && path.phases.iter().any(|phase| phase.kind == Kind::OnItsFace)
+            {
+                rows.add("pressure", 2, &|i, to| {
+                    to.extend(pressure_at(body, path, (m.states[i], forces[i]), i))
+                })?;
+            }
             if m.poses.is_some() {
                 let told = |force: Option<Vector3<f64>>| force.map_or([f64::NAN; 3], <[f64; 3]>::from);
                 let (whole, other) = (Sample::force_in_laboratory, Sample::force_on_other_rim);
@@ -217,6 +226,14 @@ fn motion_columns<S: StateArrays>(
         rows.add("work_lost", 0, &|i, to| to.push(path.work_lost[i]))?;
     }
     Ok(rows.goes_on.then_some(rows.columns))
+}
+
+/// The centre of the pressure on the face at the time of an index; NaN while the body is not on its face.
+fn pressure_at(body: &Body, path: &Path, (y, force): (State, Force), i: usize) -> [f64; 2] {
+    if path.kinds[i] != Kind::OnItsFace {
+        return [f64::NAN; 2];
+    }
+    topple::pressure_centre(&body.told_at(y.theta), y.theta, &force)
 }
 
 /// The numbers of a body of revolution, or of a stone.

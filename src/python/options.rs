@@ -1,7 +1,7 @@
 //! The options of a motion, as Python gives them.
 
 use super::pointer::{GivenLaw, PointedLaws};
-use crate::laws::contact::{Contact, TableKind};
+use crate::laws::contact::{Contact, Face, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
 use pyo3::exceptions::PyValueError;
@@ -60,6 +60,7 @@ options! {
         table: u8 = TableKind::Rolling as u8,
         /// Mu or c, the static coefficient, and the radius of the patch.
         coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],
+        face: u8 = Face::Ring as u8,
         losses: Option<[f64; COUNT]> = None,
         step: Option<f64> = None,
         tol: Option<f64> = None,
@@ -115,6 +116,7 @@ impl MotionAsked {
             },
             beyond: self.beyond,
             restitution: self.restitution,
+            face: Face::from_code(self.face).ok_or_else(|| PyValueError::new_err("face: an unknown kind"))?,
             stop_at_rolling: self.stop_at_rolling,
             max_evaluations: self.max_nfev,
             pose: self.pose,

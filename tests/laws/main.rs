@@ -52,6 +52,7 @@ mod stone_claims;
 mod sweep;
 mod thin_disk;
 mod throw;
+mod topple;
 mod turning_points;
 mod twists;
 mod uniform;

@@ -254,20 +254,26 @@ def _start(args: Namespace, body: Body) -> State:
 
 
 def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
-    """Coulomb friction from --mu, --static and --patch, in natural units."""
+    """Coulomb friction from --mu, --static, --patch and --face, in natural units."""
     patch = 0.0 if args.patch is None else args.patch
     if isinstance(patch, Metres):
         if scale is None:
             raise ValueError(f"--patch {float(patch):g}m needs --radius, or --outer and --length in metres")
         patch = float(patch) / scale.metres(1.0)
     with _errors_name_option("patch", "--patch"):
-        return Coulomb(args.mu, args.static, patch)._known()  # in natural units here
+        face = getattr(args, "face", None) or "ring"
+        return Coulomb(args.mu, args.static, patch, face)._known()  # in natural units here
 
 
 def contact_of(args: Namespace, scale: Scale | None) -> AnyContact:
     """The contact given by the options, with its coefficients."""
-    for name, law in (("static", "coulomb"), ("patch", "coulomb"), ("viscosity", "viscous")):
-        if getattr(args, name) is not None and args.contact != law:
+    for name, law in (
+        ("static", "coulomb"),
+        ("patch", "coulomb"),
+        ("face", "coulomb"),
+        ("viscosity", "viscous"),
+    ):
+        if getattr(args, name, None) is not None and args.contact != law:
             raise ValueError(f"--{name} needs --contact {law}")
     if args.contact == "coulomb":
         if args.mu is None:

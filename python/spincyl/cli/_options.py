@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from spincyl import __version__
+from spincyl._contact import FACES
 from spincyl._input.units import angle, part, quantity, time, whole_text
 from spincyl.cli import _commands, _drift, _flick, _losses, _play
 
@@ -311,6 +312,11 @@ def _roll_options(sub: ArgumentParser) -> None:
         type=part,
         metavar="RADIUS",
         help="coulomb: radius of the contact patch, in R or as in 0.3mm",
+    )
+    how.add_argument(
+        "--face",
+        choices=tuple(FACES),
+        help="coulomb: whether a face on which the body stands presses on its rim or as a whole (default ring)",
     )
     how.add_argument(
         "--viscosity", type=float, metavar="C", help="viscous: friction is C times normal force times slip"

@@ -187,7 +187,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
         found["contact"] = Viscous(given["contact_c"])._known(known)
     elif "contact_mu" in given:
         numbers = (given.get(f"contact_{name}") for name in ("mu", "static", "patch"))
-        found["contact"] = Coulomb(*numbers)._known(known)
+        found["contact"] = Coulomb(*numbers, at.get("face", "ring"))._known(known)
     else:
         found["contact"] = at["contact"]
     laws = [

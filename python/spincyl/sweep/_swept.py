@@ -65,6 +65,7 @@ def swept(
     }
     if not has_friction(asked.contact):
         attrs["mu"] = asked.mu
+    attrs |= {"face": asked.contact.face} if getattr(asked.contact, "face", "ring") != "ring" else {}
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
     attrs |= {} if asked.errors else {"errors": 0}
     more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
