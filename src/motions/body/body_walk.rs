@@ -19,6 +19,7 @@ use super::write::state;
 use super::{check_walk, on_face, without_friction};
 use crate::error::{Error, room};
 use crate::laws::body::Body;
+use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::Couples;
 use crate::laws::state::{State, drilling_of, rolling_of};
@@ -27,6 +28,7 @@ use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, leans_ove
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
+use core::cell::Cell;
 use core::f64::consts::PI;
 
 /// The walk of a body of revolution.
@@ -68,6 +70,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(crate) lying: Option<Box<LyingPhase<G>>>,
     /// The current phase, if the body is on its face.
     pub(crate) standing: Option<Box<StandingFlow>>,
+    /// The friction of the face on which it has stood last, and the number lam on which it depends.
+    pub(super) face: Cell<Option<(f64, FaceFriction)>>,
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub(super) takeoff: Takeoff,
     /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
@@ -214,6 +218,7 @@ impl<G: Own> BodyPhases<G> {
             rocked: Vec::new(),
             lying: None,
             standing: None,
+            face: Cell::default(),
             takeoff: Takeoff::default(),
             struck: 0.0,
             energy: None,

@@ -10,6 +10,7 @@
 //! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
 use super::body_walk::{BodyWalk, LONGER};
+use super::stand::ALMOST_FLAT;
 use super::fly::{Aloft, Takeoff};
 use super::own::Own;
 use crate::laws::body::Rim;
@@ -101,10 +102,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The phase after an impact.
     fn leaves_impact(&mut self, after: &Aloft) -> Next {
         if after.lift > 0.0 {
+            if self.is_on_face() {
+                self.at[SIN] = 0.0;
+            }
             self.of.takeoff.leaves = Some(1);
             return Next::Own(Kind::Flying);
         }
-        self.touches_down()
+        if self.is_on_face() { self.leaves_face() } else { self.touches_down() }
     }
 
     /// The next phase after a landing.
@@ -113,7 +117,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
-            return self.strikes_flat(e);
+            if let Some(next) = self.strikes_flat(e) {
+                return next;
+            }
+            // Laws of one rim know no face that lies.
+            from = Aloft { angle: (ALMOST_FLAT, from.angle.1), ..self.aloft() };
         }
         let theta = from.angle.0.atan2(from.angle.1);
         if self.of.body.carries()[0] > 0.0 {

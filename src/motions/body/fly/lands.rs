@@ -190,9 +190,7 @@ impl Flight {
     /// The time up to which the series of a rim that touches at the start is used.
     pub(super) fn near(&self, k: usize) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
-        // On a pole, where the axis leaves in a plane, the sine is that of the angle itself.
-        let upright = s == 0.0 && (self.planar || self.transverse == 0.0);
-        let near = if !upright && sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
+        let near = if s > 0.0 && sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
             (0.4 * s / sine).ln_1p() / (3.0 * self.rate)
         } else {
             1.0 / (1.0 + self.rate)
@@ -263,10 +261,13 @@ impl Flight {
         // The height of a ball does not depend on s, which may be zero.
         let terms = if self.landings.rims.iter().any(|rim| rim.a > 0.0) { terms } else { 0 };
         if s == 0.0 {
-            let mut power = 1.0;
-            for (k, sine) in sines.iter_mut().enumerate().take(terms) {
-                *sine = [0.0, 1.0, 0.0, -1.0][k % 4] * power;
-                power *= self.transverse * near / (k + 1) as f64;
+            // At a pole s^2 begins with its second power.
+            let squares: [f64; RIM_TERMS] =
+                core::array::from_fn(|k| -(0..=k).map(|i| cosines[i] * cosines[k - i]).sum::<f64>());
+            sines[1] = squares[2].max(0.0).sqrt();
+            for k in 2..if sines[1] > 0.0 { terms - 1 } else { 0 } {
+                let known: f64 = (2..k).map(|i| sines[i] * sines[k + 1 - i]).sum();
+                sines[k] = (squares[k + 1] - known) / (2.0 * sines[1]);
             }
             return [sines, cosines];
         }

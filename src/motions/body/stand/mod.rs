@@ -32,7 +32,7 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};
 use crate::error::Error;
-use core::f64::consts::{PI, TAU};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use flow::StandingFlow;
 
 /// Slower velocities are those of a body at rest.
@@ -42,14 +42,14 @@ const RISEN: f64 = 4e-12;
 /// A rim that rises more slowly, beside a spin, comes to nothing; so does one that falls, beside what is lost.
 const HARDLY_RISES: f64 = 1e-6;
 /// An inclination at which laws of one rim are evaluated for a face that lies: w1/sin theta is finite there.
-const ALMOST_FLAT: f64 = 1e-100;
+pub(super) const ALMOST_FLAT: f64 = 1e-100;
 /// A face that comes down in less time than this does so with constant rates.
 const SOON_DOWN: f64 = 1e-5;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether the body is on its face.
     pub(crate) fn is_on_face(&self) -> bool {
-        self.at[SIN] == 0.0 && self.of.body.rim() > 0.0
+        self.at[SIN].abs() <= ALMOST_FLAT && self.of.body.rim() > 0.0
     }
 
     /// cos theta on a face.
@@ -93,7 +93,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Friction::Coulomb { mu, .. } => mu * shape.rim.height(angle) / shape.rim.radius(angle),
             Friction::Viscous { .. } => 0.0,
         };
-        let face = FaceFriction::new(self.ask.face, lam);
+        // The fold of a tall face takes some work.
+        let known = self.of.face.get().filter(|(of, _)| *of == lam);
+        let face = known.map_or_else(|| FaceFriction::new(self.ask.face, lam), |(_, face)| face);
+        self.of.face.set(Some((lam, face)));
         StandingFlow::new((shape, face), friction, losses, &self.at, self.of.slide.tol)
     }
 
@@ -157,9 +160,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(super) fn stands_on_face(&mut self) -> Next {
         self.sees_face();
         let friction = self.friction_of_face();
-        let flow = self.standing(&friction.unwrap_or(Friction::coulomb(0.0)));
-        let [v_h, v_2] = flow.velocity(&self.at);
-        let moves = v_h.hypot(v_2) + (self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3]).abs();
+        let spins = self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3];
+        let moves = self.at[UH].hypot(self.at[U2] + spins) + spins.abs();
         if moves <= STILL {
             self.claims(moves);
             self.rests_on_face();
@@ -174,6 +176,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.rests_on_face();
             return Next::Ends(Ending::Stops);
         };
+        let flow = self.standing(&friction);
         if flow.topples(&self.at) {
             return self.topples(&flow, &friction);
         }
@@ -376,10 +379,31 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = write::state(&self.at);
     }
 
+    /// Tells a body on its face from the point of its ring that its lean will bring down, with its slip and lift.
+    fn tells_from_lean(&mut self) {
+        let (up, [w1, w2, w3], shape) = (self.up(), self.at.w(), self.of.slide.law.shape);
+        let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
+        let rises = self.of.takeoff.lift + shape.rim.lever(self.at.angle()) * w2;
+        let turn = w2.atan2(up * w1) + if up > 0.0 { FRAC_PI_2 } else { -FRAC_PI_2 };
+        self.turns_by(turn);
+        let (sin, cos) = turn.sin_cos();
+        (self.at[W1], self.at[W2]) = (0.0, -up * w1.hypot(w2));
+        (self.at[UH], self.at[U2]) = (
+            v_h * cos + v_2 * sin - shape.rim.height(self.at.angle()) * self.at[W2],
+            v_2 * cos - v_h * sin - shape.rim.radius(self.at.angle()) * w3,
+        );
+        self.of.takeoff.lift = rises - shape.rim.lever(self.at.angle()) * self.at[W2];
+        self.sees_face();
+    }
+
     /// Tells a body on its face from the point of its ring in this direction, an angle from e_h. Slide and spin remain.
     fn tells_from(&mut self, direction: f64) {
+        self.turns_by(direction + if self.up() > 0.0 { PI } else { 0.0 });
+    }
+
+    /// Turns e_h by this angle, and psi back.
+    fn turns_by(&mut self, turn: f64) {
         let up = self.up();
-        let turn = direction + if up > 0.0 { PI } else { 0.0 };
         let turn = turn - (turn / TAU).round() * TAU;
         if !poses(N) {
             return;

@@ -155,11 +155,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         if here < over {
             self.claims(here.abs());
-            self.of.takeoff = Takeoff::default();
-            return self.rises_from_face();
+            return self.leaves_face();
         }
         (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
         Next::Own(Kind::Flying)
+    }
+
+    /// The phase of a body that rises from its face on the point that has landed, or that stays.
+    pub(crate) fn leaves_face(&mut self) -> Next {
+        self.of.takeoff = Takeoff::default();
+        self.sees_face();
+        if self.up() * self.at[W2] < 0.0 { self.rises_from_face() } else { self.comes_to_lie() }
     }
 
     /// The vertical velocities of the point from which the state is told, and of the opposite one.
@@ -178,18 +184,32 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.stands_on_face()
     }
 
-    /// The phase after the impact of a face that comes down with all of its points at once, or in a plane almost so.
-    pub(crate) fn strikes_flat(&mut self, e: f64) -> Next {
+    /// The phase after the impact of a face that comes down with all of its points at once, or in a plane almost so. None if
+    /// only the point from which the state is told comes down.
+    pub(crate) fn strikes_flat(&mut self, e: f64) -> Option<Next> {
         let (up, w) = (self.up(), self.at.w());
+        self.claims(self.at[SIN]);
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
         if w[0] == 0.0 && w[1] == 0.0 {
-            return self.bounces_flat(e);
+            return Some(self.bounces_flat(e));
         }
-        if w[0] != 0.0 || w[2] != 0.0 || self.at[U2] != 0.0 {
+        if self.up() * w[1] > 0.0 {
+            self.flips();
+        }
+        let [here, there] = self.points_come_down();
+        if here < 0.0 && there > 0.0 {
+            return None;
+        }
+        Some(self.strikes_twice(e))
+    }
+
+    /// The phase after an impact of a face whose points both come down.
+    fn strikes_twice(&mut self, e: f64) -> Next {
+        if self.at[W1] != 0.0 || self.at[W3] != 0.0 || self.at[U2] != 0.0 {
             return Next::Ends(Ending::Landing);
         }
-        if self.of.takeoff.lift > 0.0 {
+        if self.up() * self.at[W2] < 0.0 {
             self.flips();
         }
         if e > 0.0 {
@@ -300,13 +320,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Landing) };
         let after = self.struck(&at, &struck, (self.made.path.view.over, false));
         self.sets(&after);
-        self.sees_face();
-        if after.lift > 0.0 {
+        self.tells_from_lean();
+        if self.of.takeoff.lift > 0.0 {
             (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
             return Next::Own(Kind::Flying);
         }
-        self.of.takeoff = Takeoff::default();
-        self.rises_from_face()
+        if self.of.takeoff.lift < 0.0 {
+            // The point that the lean brings down strikes next.
+            return self.strikes();
+        }
+        self.leaves_face()
     }
 
     /// Tells a body on its face from the opposite point of its ring.
