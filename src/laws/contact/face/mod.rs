@@ -224,3 +224,5 @@ pub fn bench(width: f64, angle: f64, k: f64) -> f64 {
 pub fn bench2(k: f64) -> f64 {
     FaceFriction { form: Face::Ring, lam: 1.0, fold: 0.0 }.largest_lam(k)
 }
+#[cfg(test)]
+pub fn tall(f: FaceFriction, lam: f64) -> FaceFriction { FaceFriction { lam, fold: f64::INFINITY, ..f } }
