@@ -57,6 +57,9 @@ pub(crate) struct FaceFriction {
 /// Most steps of Newton's method, which double the digits, and the relative step that is the last one.
 const STEPS_TO_PART: usize = 60;
 const LAST_STEP: f64 = 1e-8;
+/// The ratios between which an end ratio is sought.
+const SLOW_END: f64 = 1e-5;
+const FAST_END: f64 = 1e6;
 /// The largest root of the ratio of a fold less 1, and the relative accuracy of its place, whose square is that of lam.
 const WIDEST_FOLD: f64 = 0.37;
 const FOLD_STEP: f64 = 1e-7;
@@ -216,11 +219,52 @@ impl FaceFriction {
     }
 }
 
-#[cfg(test)]
-pub fn bench(width: f64, angle: f64, k: f64) -> f64 {
-    ring::pressed(&Part { width, angle, off: core::f64::consts::FRAC_PI_2 - angle }, 0.8, k, 1.0).couple
+/// The friction of viscous film below a ring, F = -c u over its length: F over -1 and its couple over -1, for the speed
+/// `v` of the centre and the rate `w` of a body of radius `a` whose centre of mass is `height` above the face. It topples
+/// where the centre of the pressure is outside of the ring.
+pub(crate) fn viscous(c: f64, [a, height]: [f64; 2], v: f64, w: f64) -> FaceForce {
+    let tilt = c * height * w;
+    let along = c * v / (1.0 + tilt * tilt);
+    let across = along * tilt;
+    let lever = height * along.hypot(across);
+    FaceForce {
+        along,
+        across,
+        couple: c * w * (a - lever) * (a + lever),
+        centre: [height * along / a, height * across / a],
+    }
 }
-#[cfg(test)]
-pub fn bench2(k: f64) -> f64 {
-    FaceFriction { form: Face::Ring, lam: 1.0, fold: 0.0 }.largest_lam(k)
+
+/// The ratio of the speed of the centre to the speed a |w| of the rim with which a body comes to rest that slides and
+/// spins on its face: 0 or infinity if one of them ends before the other in proportion. None if the body topples on the
+/// way there. `lam` is the coefficient of friction times the height of the centre of mass over the radius of the face,
+/// `i3` the axial moment over the square of this radius.
+pub fn end_ratio(form: Face, lam: f64, i3: f64) -> Option<f64> {
+    let friction = FaceFriction::new(form, lam);
+    // The growth of the ratio, over the speed of the centre where that is small.
+    let mut last = None;
+    let mut growth = |k: f64| {
+        let force = friction.at(k.min(1.0), if k > 1.0 { 1.0 / k } else { 1.0 }, last)?;
+        last = Some(force.centre);
+        Some(k * force.couple / i3 - force.along)
+    };
+    let mut k = SLOW_END;
+    let mut before = growth(k)?;
+    if before <= 0.0 {
+        return Some(0.0);
+    }
+    while k < FAST_END {
+        let next = 1.1 * k;
+        let Some(after) = growth(next) else {
+            // Up to the fold.
+            let fold = friction.fold() * (1.0 - 1e-12);
+            let after = growth(fold).filter(|x| *x < 0.0)?;
+            return Some(crossing(|k| growth(k).unwrap_or(f64::NAN), k, fold, before, after));
+        };
+        if after <= 0.0 {
+            return Some(crossing(|k| growth(k).unwrap_or(f64::NAN), k, next, before, after));
+        }
+        (k, before) = (next, after);
+    }
+    Some(f64::INFINITY)
 }
