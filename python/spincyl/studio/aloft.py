@@ -54,7 +54,7 @@ def force_beside(m: "Motion") -> Floats:
 
 
 def pressed(centre: Floats, force: Floats) -> Floats:
-    """(n, 3) centre of the pressure on a face, below the centre of mass but for the moment of the friction."""
+    """(n, 3) centre of the pressure on a face, off the place below the centre of mass by the friction."""
     with np.errstate(divide="ignore", invalid="ignore"):
         off = np.nan_to_num(centre[:, 2:] * force[:, :2] / force[:, 2:])
     return np.column_stack([centre[:, :2] - off, np.zeros(len(centre))])
