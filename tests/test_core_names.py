@@ -22,6 +22,7 @@ def test_phases_tables_and_laws_have_the_names_of_the_core_in_its_order():
     assert {name.replace(" ", ""): code for code, name in enumerate(_phases.KINDS)} == CODES["Phase"]
     assert get_args(_phases.Kind) == _phases.KINDS
     assert CODES["Table"] == _contact.TABLES and {*get_args(_contact.Contact)} < {*CODES["Table"]}
+    assert CODES["Face"] == _contact.FACES and {*get_args(_contact.Face)} == {*CODES["Face"]}
     laws = {x.__name__: x for x in loss.Law.__subclasses__()}
     assert sorted(laws) == sorted(CODES["Law"])
     for name, code in CODES["Law"].items():
@@ -36,6 +37,7 @@ def test_every_enumeration_of_the_core_is_one_of_these():
         "Answer",
         "Drift",
         "Ending",
+        "Face",
         "Law",
         "Phase",
         "Region",

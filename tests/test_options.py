@@ -38,8 +38,8 @@ OPTIONS = {
     "tol": Row("tol", "tol", "tol", "tol", "method tol", "--tol", _PAGE),
     "method": Row("method", _STONE, "none: step= says it", "none: step and tol say it", "method", "none: --step", _PAGE),
     "contact": Row(
-        "contact", "contact", "contact", "table coefficients friction", "table",
-        "--contact --static --patch --viscosity", "contact: contact mu patch c",
+        "contact", "contact", "contact", "table coefficients friction face", "table face",
+        "--contact --static --patch --face --viscosity", "contact: contact mu patch c",
     ),
     "mu": Row("mu", "mu", "mu", "coefficients", "table", "--mu", "none: a page shows the friction that rolling needs"),
     "want": Row(

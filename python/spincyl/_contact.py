@@ -135,7 +135,9 @@ class Coulomb(_Law):
         same = self.static is self.mu or (not lazy and np.array_equal(self.static, self.mu))
         more = {} if same else {"static": self.static}
         point = is_scalar(self.patch) and self.patch == 0
-        more |= ({} if point else {"patch": self.patch}) | ({} if self.face == "ring" else {"face": self.face})
+        more |= ({} if point else {"patch": self.patch}) | (
+            {} if self.face == "ring" else {"face": self.face}
+        )
         return repr_of_call("Coulomb", self.mu, **more)
 
 

@@ -4,7 +4,16 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._body import Body
-from spincyl._input.numbers import Reals, elementwise, radians, radians_per_second, reals, refuse_bad_value, si
+from spincyl._input.numbers import (
+    Reals,
+    elementwise,
+    is_scalar,
+    radians,
+    radians_per_second,
+    reals,
+    refuse_bad_value,
+    si,
+)
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._throw import scale_of_body
@@ -69,7 +78,7 @@ def spun(
     theta = radians("theta", theta, _ENDS)
     refuse_bad_value("theta", theta, lambda x: ~((x == 0) | (x == np.pi)), f"expected {_ENDS}")
     up = 1.0 - theta * (2 / np.pi)  # 1 or -1: e3 points up or down
-    level = 0.0 * (up * spin)
+    level = 0.0 * (up * spin) + 0.0
     return body.with_centre_velocity(State(theta + level, level, level, up * spin), along, across)
 
 
@@ -112,8 +121,11 @@ def tripped(body: Body, velocity: Reals, *, scale: Scale | None = None) -> State
     speed = reals("velocity", velocity if scale is None else si("velocity", velocity, "metre/second"))
     if scale is not None:
         speed = speed / scale.metres_per_second(1.0)
-    refuse_bad_value("velocity", speed, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= velocity, finite")
+    refuse_bad_value(
+        "velocity", speed, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= velocity, finite"
+    )
     w2 = _core.tripped_w2(speed, *body._at(0.0)[1:])
-    refuse_bad_value("body", w2, np.isnan, "expected a body with a face; a ball has none")
-    level = 0.0 * w2
+    if is_scalar(w2) and np.isnan(w2):
+        raise ValueError("body: expected a body with a face; a ball has none")
+    level = 0.0 * w2 + 0.0
     return State(level, level, w2, level)

@@ -33,7 +33,9 @@ def message(m: "Motion") -> str:
         errors += f"; {m.t.size} of {m._asked.times.size} times reached: plot against m.t"
     if m._by_steps or m._phases is not None:
         phases = "" if m._phases is None else phases_in_words(m.phases, _unit_of_times(m))
-        return "; ".join(filter(None, (why, phases, _method_in_words(m), errors, m._doubt, _near_toppling(m))))
+        return "; ".join(
+            filter(None, (why, phases, _method_in_words(m), errors, m._doubt, _near_toppling(m)))
+        )
     return f"{why}; found {_method_in_words(m)}, {errors}"
 
 

@@ -9,9 +9,10 @@ from spincyl._input.numbers import Reals, is_scalar
 _FEW = 6
 
 
-def repr_of_call(name: str, *plain: Reals, **named: Reals) -> str:
+def repr_of_call(name: str, *plain: Reals, **named: Reals | str) -> str:
     """A call of a constructor, which Python can evaluate unless an array was abridged."""
-    words = [repr_of_numbers(x) for x in plain] + [f"{key}={repr_of_numbers(x)}" for key, x in named.items()]
+    words = [repr_of_numbers(x) for x in plain]
+    words += [f"{key}={repr(x) if isinstance(x, str) else repr_of_numbers(x)}" for key, x in named.items()]
     line = f"{name}({', '.join(words)})"
     return line if len(line) <= 110 else f"{name}({(',' + chr(10) + ' ' * (len(name) + 1)).join(words)})"
 

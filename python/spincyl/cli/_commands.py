@@ -261,7 +261,7 @@ def coulomb(args: Namespace, scale: Scale | None) -> Coulomb:
             raise ValueError(f"--patch {float(patch):g}m needs --radius, or --outer and --length in metres")
         patch = float(patch) / scale.metres(1.0)
     with _errors_name_option("patch", "--patch"):
-        face = getattr(args, "face", None) or "ring"
+        face: Any = getattr(args, "face", None) or "ring"
         return Coulomb(args.mu, args.static, patch, face)._known()  # in natural units here
 
 

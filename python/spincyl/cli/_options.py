@@ -316,7 +316,7 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--face",
         choices=tuple(FACES),
-        help="coulomb: whether a face on which the body stands presses on its rim or as a whole (default ring)",
+        help="coulomb: pressure on a face on which the body stands, on its rim or all of it (default ring)",
     )
     how.add_argument(
         "--viscosity", type=float, metavar="C", help="viscous: friction is C times normal force times slip"

@@ -1,8 +1,9 @@
-"""Motions that leave the table or lie on both rims: their kinks, and angles that refer to one rim throughout.
+"""Motions in the air, on both rims or on a face: their kinks, and angles that refer to one rim throughout.
 
 An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim takes
 over, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi changes its sign.
-Angles that refer to the first rim throughout are continuous.
+Angles that refer to the first rim throughout are continuous, except where a body stands on its face: there
+only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples.
 """
 
 from contextlib import suppress
@@ -13,7 +14,7 @@ import numpy as np
 
 from spincyl._contact import Contact
 from spincyl._input.numbers import Floats
-from spincyl._phases import KINDS, RIMS, Phase
+from spincyl._phases import KINDS, RIMS, Impact, Phase
 from spincyl._state import State
 from spincyl._swing import swing_on
 from spincyl.studio.shape import rotations
@@ -31,14 +32,32 @@ _BRIEF = 1e-3
 _PLANAR = 1e-12
 #: Kinds of phases on one rim, and on both.
 _ON_RIM, _ON_BOTH = ("rolling", "slipping"), KINDS[3:]
-#: Codes of phases in which a point of contact slips.
-SLIPS = (1, 3, 4)
-FLIES = 2
+#: Codes of phases in which a point of contact slips, in the air, and on the face.
+SLIPS = (1, 3, 4, 7)
+FLIES, ON_FACE = 2, 7
 
 
 def goes_up(m: "Motion") -> bool:
-    """Whether the motion leaves the table or lies on both rims at any time."""
-    return m._impacts is not None and any(phase.kind not in _ON_RIM for phase in m.phases)
+    """Whether the motion leaves the table, lies on both rims or stands on its face at any time."""
+    return m._phases is not None and any(phase.kind not in _ON_RIM for phase in m.phases)
+
+
+def strikes(m: "Motion") -> "tuple[Impact, ...]":
+    """The impacts of a motion; none if it ends where the body leaves the table."""
+    return () if m._impacts is None else m.impacts
+
+
+def force_beside(m: "Motion") -> Floats:
+    """(n, 3) force on the other rim along the axes of the laboratory; 0 where it does not touch."""
+    found: Floats = np.nan_to_num(m._extra.get("contact_force_other", np.zeros((m.t.size, 3))))
+    return found
+
+
+def pressed(centre: Floats, force: Floats) -> Floats:
+    """(n, 3) centre of the pressure on a face, off the place below the centre of mass by the friction."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = np.nan_to_num(centre[:, 2:] * force[:, :2] / force[:, 2:])
+    return np.column_stack([centre[:, :2] - off, np.zeros(len(centre))])
 
 
 class Aloft(NamedTuple):
@@ -72,7 +91,7 @@ class Aloft(NamedTuple):
 
 def aloft(m: "Motion", first: float, last: float) -> Aloft:
     """Kinks of a motion between two times, and the reference of its angles."""
-    kinks = {x.time for x in m.natural.impacts}
+    kinks = {x.time for x in strikes(m.natural)}
     kinds = ["", *(phase.kind for phase in m.phases)]
     kinks |= {
         phase.time
@@ -139,6 +158,10 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
     sides = sides[sides[:, 1] <= there.t[-1]]
     place = np.searchsorted(there.t, sides)
     by_phi, by_psi = (np.round(np.diff(x[place])[:, 0] / np.pi).astype(int) for x in (there.phi, there.psi))
+    # a face topples over any point of its rim: phi jumps there, but the rim is the same
+    other_rim = np.diff(there.rim[place].astype(int))[:, 0] % 2 if m.body.rims is None else 0 * by_phi
+    same = ~_has_pole(sides, poles) & (by_phi % 2 != other_rim)
+    by_phi[same] = by_psi[same] = 0
     # at first: the end of the axis to which the angles refer
     theta, phi = there.theta[:1], there.phi[:1]
     axis = np.stack([-np.sin(theta) * np.cos(phi), -np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
@@ -146,7 +169,7 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
     told = [(at_first, at_first, 0, 0, 1)]
     for (before, after), across, about, k in zip(sides, by_phi, by_psi, place[:, 0], strict=True):
         rims, halves, spins, turns, sign = told[-1]
-        if ((before < poles) & (poles < after)).any():
+        if _has_pole(np.array([[before, after]]), poles)[0]:
             other = rims % 2 == 1
             below = (there.theta[k] > np.pi / 2) != other  # the pole at pi, with respect to the first rim
             spins += -about if other else about
@@ -154,6 +177,12 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
         else:
             told.append((rims + across, halves + across, spins, turns, sign))
     return sides.mean(axis=1), np.array(told)
+
+
+def _has_pole(sides: Floats, poles: Floats) -> np.ndarray:
+    """Whether there is a pole between both times of each row."""
+    found = (sides[:, :1] < poles) & (poles < sides[:, 1:])
+    return np.asarray(found.any(axis=1))
 
 
 def parts_of_flight(m: "Motion", first: float, last: float) -> list[tuple[float, float, float, Phase]]:

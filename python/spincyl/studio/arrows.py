@@ -11,7 +11,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
-from spincyl.studio.aloft import goes_up
+from spincyl.studio.aloft import ON_FACE, goes_up, pressed
 from spincyl.studio.look import Camera
 from spincyl.studio.painted import Painted, Piece, painted, whole
 from spincyl.studio.poses import seen, span
@@ -66,9 +66,13 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
     omega = np.stack([turning[:, i, j] - turning[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], -1) / 2
     momentum = np.einsum("nij,jk,nlk,nl->ni", turned[1], tensor(m.body), turned[1], omega)
     found = {"omega": omega, "momentum": momentum, "velocity": (centre[2] - centre[0]) / long}
+    up = goes_up(m)
+    if up and (stands := seen(m, t, "phase")[0] == ON_FACE).any():
+        (force,) = seen(m, t, "contact_force")
+        contact[stands] = pressed(centre[1], force)[stands]
     if "force" in drawn:
         (force,) = seen(m, t, "contact_force")
-        if goes_up(m):  # the arrow stands on one rim
+        if up and m._impacts is not None:  # the arrow stands on one rim
             force = force - np.nan_to_num(seen(m, t, "contact_force_other", "contact_force")[0])
         found |= {"normal": force * [0, 0, 1], "friction": force * [1, 1, 0]}
     return Vectors(found, contact, centre[1])

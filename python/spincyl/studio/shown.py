@@ -8,7 +8,7 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import has_friction
-from spincyl.studio.aloft import FLIES, SLIPS, aloft, goes_up, tops
+from spincyl.studio.aloft import FLIES, ON_FACE, SLIPS, aloft, goes_up, tops
 from spincyl.studio.arrows import Vectors, usual, vectors
 from spincyl.studio.look import held
 from spincyl.studio.poses import seen, span
@@ -55,7 +55,10 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
     if up:
         (phase,), other = seen(m, along, "phase"), aloft(m, first, last).on_other(along)
         slips = np.isin(phase, SLIPS)
-        gaps = (phase == FLIES) | np.append(False, other[1:] != other[:-1])
+        stands = phase == ON_FACE
+        jumps = (other[1:] != other[:-1]) | (stands[1:] != stands[:-1])
+        gaps = (phase == FLIES) | np.append(False, jumps)
+        contact = np.where(stands[:, np.newaxis], way[:, :2], contact)
     low, high = way[:, :2].min(axis=0), way[:, :2].max(axis=0)
     body = max(size(m.body), farthest(m.body))
     reach, top = math.hypot(*(high - low)) / 2 + body, 2 * float(way[:, 2].max())

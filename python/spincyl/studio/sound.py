@@ -8,8 +8,8 @@ are roughly those of a steel disk; their pitch has no meaning. Towards the end o
 bound: a contact point faster than the ringing makes it no louder, and beats faster than the samples resolve
 are replaced by their mean.
 
-A body in the air is silent. An impact excites the same resonances, with a loudness proportional to its
-impulse, and equally loud on all sides.
+A body in the air or on its face is silent. An impact excites the same resonances, with a loudness
+proportional to its impulse, and equally loud on all sides.
 """
 
 import math
@@ -24,7 +24,7 @@ from spincyl._circles import circle_of
 from spincyl._input.files import path_of, writing_whole
 from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
-from spincyl.studio.aloft import FLIES, goes_up
+from spincyl.studio.aloft import FLIES, ON_FACE, goes_up, strikes
 from spincyl.studio.poses import seen, span
 from spincyl.studio.shape import kind
 
@@ -83,9 +83,9 @@ def sound(
 def _pressure(m: "Motion", first: float, unit: float, lasting: float, rate: int) -> Floats:
     """The pressure at each sample, between -1 and 1, with some ringing after the end."""
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_POSES_PER_SECOND * lasting)))
-    strikes = [x for x in m.impacts if x.time <= first + lasting / unit] if goes_up(m) else []
-    phi, speed = _contact(m, first + looks / unit, bool(strikes))
-    if not (speed.max() > _SPEED_ROUNDING or strikes):
+    heard = [x for x in strikes(m) if x.time <= first + lasting / unit] if goes_up(m) else []
+    phi, speed = _contact(m, first + looks / unit, bool(heard))
+    if not (speed.max() > _SPEED_ROUNDING or heard):
         why = "the contact point does not move along the body"
         raise ValueError(f"motion: there is nothing to hear, since {why}")
     speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
@@ -94,23 +94,23 @@ def _pressure(m: "Motion", first: float, unit: float, lasting: float, rate: int)
     scrape *= np.sqrt(np.interp(t, looks, speed)) * (t <= lasting)
     ring: Floats = _ringing(scrape, rate)
     ring *= _loudness(np.interp(t, looks, phi))
-    if strikes:
-        ring += _ringing(_impulses(strikes, first, unit, t.size, rate), rate)
+    if heard:
+        ring += _ringing(_impulses(heard, first, unit, t.size, rate), rate)
     most = float(np.abs(ring).max())
     return ring * (0.9 / most) if most > 0 else ring
 
 
-def _impulses(strikes: "list[Impact]", first: float, unit: float, count: int, rate: int) -> Floats:
+def _impulses(hits: "list[Impact]", first: float, unit: float, count: int, rate: int) -> Floats:
     """The impulses of impacts on the resonances, each in the sample nearest to its time."""
     found = np.zeros(count)
-    at = np.array([round((x.time - first) * unit * rate) for x in strikes])
-    size = np.linalg.norm([x.impulse for x in strikes], axis=1)
+    at = np.array([round((x.time - first) * unit * rate) for x in hits])
+    size = np.linalg.norm([x.impulse for x in hits], axis=1)
     heard = (at >= 0) & (at < count)
     np.add.at(found, at[heard], _STRIKE * math.sqrt(rate) * size[heard])
     return found
 
 
-def _contact(m: "Motion", times: Floats, strikes: bool = False) -> tuple[Floats, Floats]:
+def _contact(m: "Motion", times: Floats, any_hit: bool = False) -> tuple[Floats, Floats]:
     """The azimuth of the contact point and its speed along the body at times; the speed is 0 in the air."""
     phi, theta, w, rim = seen(m, times, "phi", "theta", "w", "rim")
     s, c, (radius, fillet) = np.sin(theta), np.cos(theta), circle_of(m.body, rim)
@@ -118,11 +118,13 @@ def _contact(m: "Motion", times: Floats, strikes: bool = False) -> tuple[Floats,
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         round_the_rim = np.where(radius > 0, radius * (w[:, 2] - w[:, 0] * c / s), 0.0)
         speed = np.hypot(round_the_rim + fillet * (s * w[:, 2] - c * w[:, 0]), fillet * w[:, 1])
-    if goes_up(m):
-        speed = np.where(seen(m, times, "phase")[0] == FLIES, 0.0, speed)
-    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & ((s > 0) | (radius == 0)))
+    silent = np.zeros(times.size, bool)
+    if goes_up(m):  # on its face no point of contact runs round the rim
+        silent = np.isin(seen(m, times, "phase")[0], (FLIES, ON_FACE))
+        speed[silent] = 0.0
+    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(phi) & ((s > 0) | (radius == 0) | silent))
     if known.size == 0:
-        if strikes:
+        if any_hit:
             return np.zeros(times.size), np.zeros(times.size)
         raise ValueError("motion: there is nothing to hear, since the body lies on its face")
     nearest = known[np.clip(np.searchsorted(known, np.arange(speed.size), "right") - 1, 0, None)]

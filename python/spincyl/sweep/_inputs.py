@@ -186,8 +186,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     if "contact_c" in given:
         found["contact"] = Viscous(given["contact_c"])._known(known)
     elif "contact_mu" in given:
-        numbers = (given.get(f"contact_{name}") for name in ("mu", "static", "patch"))
-        found["contact"] = Coulomb(*numbers, at.get("face", "ring"))._known(known)
+        mu, static, patch = (given.get(f"contact_{name}") for name in ("mu", "static", "patch"))
+        found["contact"] = Coulomb(mu, static, patch, at.get("face", "ring"))._known(known)
     else:
         found["contact"] = at["contact"]
     laws = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from spincyl._asked import Asked, options_for_core
-from spincyl._contact import contact_in_words, without_coefficient
+from spincyl._contact import Coulomb, contact_in_words, without_coefficient
 from spincyl._input.numbers import Floats, Reals, floats, in_columns, optional_library
 from spincyl._input.progress import Progress, reporting_progress
 from spincyl._input.threads import thread_count
@@ -65,7 +65,8 @@ def swept(
     }
     if not has_friction(asked.contact):
         attrs["mu"] = asked.mu
-    attrs |= {"face": asked.contact.face} if getattr(asked.contact, "face", "ring") != "ring" else {}
+    if isinstance(asked.contact, Coulomb) and asked.contact.face != "ring":
+        attrs["face"] = asked.contact.face
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
     attrs |= {} if asked.errors else {"errors": 0}
     more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}

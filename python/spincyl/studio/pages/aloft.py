@@ -7,7 +7,7 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, has_two_rims
-from spincyl.studio.aloft import FLIES, aloft
+from spincyl.studio.aloft import FLIES, ON_FACE, aloft, force_beside, strikes
 from spincyl.studio.poses import span
 
 #: In the description, phases shorter than this share of the time shown belong to the bounces around them.
@@ -44,7 +44,7 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
             until = k + 1
         flies = FLIES in codes[k:until]
         end = ends[until - 1]
-        many = sum(bool(begins[k] < x.time <= end) for x in m.impacts) if flies else 0
+        many = sum(bool(begins[k] < x.time <= end) for x in strikes(m)) if flies else 0
         told = FLIES if flies else codes[k]
         if found and found[-1][1] == told:
             found[-1][2] += many
@@ -57,12 +57,12 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
 def beside(m: Motion, t: Floats) -> dict[str, Any]:
     """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N."""
     there = m.wanting("pose", "force", t=t)
-    on_both = there.phase > FLIES
+    on_both = (there.phase > FLIES) & (there.phase != ON_FACE)
     if not on_both.any():
         return {}
     up = aloft(m, *span(m))
     told = np.where(up.on_other(there.t), -1.0, 1.0)  # sign by the rim to which theta refers
-    force = np.where(on_both[:, np.newaxis], there.contact_force_other, 0.0)
+    force = np.where(on_both[:, np.newaxis], force_beside(there), 0.0)
     push = told * (force[:, :2] @ [1, 1j]) * np.exp(-1j * there.phi)
     found = np.zeros((t.size, 3))  # no force after the end, which may come a little earlier
     found[: there.t.size] = np.column_stack([push.real, push.imag, force[:, 2]])

@@ -7,7 +7,7 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._phases import KINDS
-from spincyl.studio.aloft import aloft, goes_up
+from spincyl.studio.aloft import aloft, force_beside, goes_up
 from spincyl.studio.pages.aloft import beside, flying
 from spincyl.studio.poses import pace, span
 
@@ -37,7 +37,7 @@ def forces(m: Motion, t: Floats) -> Floats:
     there = m.wanting("pose", "force", t=t)
     force = there.contact_force
     if goes_up(m):  # that on the other rim is drawn apart
-        force = force - np.nan_to_num(there.contact_force_other)
+        force = force - force_beside(there)
     push = force[:, :2] @ [1, 1j]
     slip = np.zeros(push.shape, complex) if m._phases is None else there.slip @ [1, 1j]
     if not there._nods:

@@ -1,14 +1,14 @@
-"""Additions to the drawing of a motion that flies, bounces or lies on both rims."""
+"""Additions to the drawing of a motion that flies, bounces, lies on both rims or stands on its face."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from spincyl._input.numbers import Floats, optional_library
 from spincyl._phases import Phase
 from spincyl.studio.aloft import aloft
-from spincyl.studio.plot._style import BLACK, ORANGE, RED, SKY
+from spincyl.studio.plot._style import BLACK, GREEN, ORANGE, RED, SKY
 from spincyl.studio.poses import span
 
 if TYPE_CHECKING:
@@ -16,17 +16,27 @@ if TYPE_CHECKING:
 
     from spincyl._motion import Motion
 
+
+class PlotUnits(NamedTuple):
+    """Units of time and of length of a plot, and the name of the unit of length."""
+
+    second: float
+    metre: float
+    said: str
+
+
 #: Colour, opacity and words for the times of each kind of phase.
 _SHADES = {
     "slipping": (RED, 0.10, "slips"),
     "flying": (SKY, 0.28, "in the air"),
     "lying": ("#888888", 0.28, "lies on both rims"),
+    "on its face": (GREEN, 0.14, "on its face"),
 }
 
 
 def _shade_of(phase: Phase) -> str:
     """The key of `_SHADES` for a phase; empty if the phase is not shaded."""
-    return {"rolling": "", "slipping": "slipping", "flying": "flying"}.get(phase.kind, "lying")
+    return "" if phase.kind == "rolling" else phase.kind if phase.kind in _SHADES else "lying"
 
 
 def breaks(m: "Motion") -> np.ndarray:
@@ -58,13 +68,17 @@ def shades(axes: "Sequence[Axes]", m: "Motion", second: float) -> None:
             ax.axvspan(begin * second, end * second, color=colour, alpha=opacity, lw=0, zorder=0)
 
 
-def height(
-    ax: "Axes", m: "Motion", t: Floats, units: tuple[float, float, str], style: dict[str, Any]
-) -> None:
-    """Draw the height of the lowest point, marks for the impacts, and a legend of the tints.
+def height_and_legend(ax: "Axes", m: "Motion", t: Floats, units: PlotUnits, style: dict[str, Any]) -> None:
+    """Draw the height of the lowest point, if it is known, the impacts, and a legend of the tints."""
+    patch: Any = optional_library("matplotlib.patches", "plot").Patch
+    there = dict.fromkeys(filter(None, map(_shade_of, m.phases)))
+    shown = [patch(facecolor=_SHADES[x][0], alpha=_SHADES[x][1], label=_SHADES[x][2]) for x in there]
+    shown += [] if m._impacts is None else _height(ax, m, t, units, style)
+    ax.legend(handles=shown, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
 
-    `units`: the units of time and of length, and the name of the unit of length.
-    """
+
+def _height(ax: "Axes", m: "Motion", t: Floats, units: PlotUnits, style: dict[str, Any]) -> list[Any]:
+    """Draw the height of the lowest point and the impacts; returns what the legend shows of them."""
     second, metre, said = units
     right = ax.twinx()
     high = m.natural.height * metre
@@ -75,11 +89,7 @@ def height(
     if not high.any():
         right.set_axis_off()  # the body only rolls on its side
     right.set_ylabel(f"height of its lowest point ({said})", color=ORANGE)
-    patch: Any = optional_library("matplotlib.patches", "plot").Patch
-    there = dict.fromkeys(filter(None, map(_shade_of, m.phases)))
-    shown = [patch(facecolor=_SHADES[x][0], alpha=_SHADES[x][1], label=_SHADES[x][2]) for x in there]
-    shown += [marks] if times.size else []
-    ax.legend(handles=shown, loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+    return [marks] if times.size else []
 
 
 def strikes(m: "Motion") -> Floats:

@@ -12,7 +12,7 @@ from spincyl._motion import Motion
 from spincyl._phases import has_friction
 from spincyl._scale import unit_of_output as unit_of
 from spincyl._told import end_in_words
-from spincyl.studio.aloft import FLIES, SLIPS, aloft, goes_up
+from spincyl.studio.aloft import FLIES, ON_FACE, SLIPS, aloft, goes_up, strikes
 from spincyl.studio.exposure import exposure as photograph
 from spincyl.studio.exposure import frame
 from spincyl.studio.plot import _aloft
@@ -100,7 +100,8 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         "ncols": 2,
         "markerscale": 1 if close else 8,
     }
-    jumps = _aloft.breaks(m) if up else np.zeros(m.t.size, bool)
+    jumps, stands = (_aloft.breaks(m), m.phase == ON_FACE) if up else np.zeros((2, m.t.size), bool)
+    x, y = np.where(stands, centre.T[:2], (x, y))
     far = _straight_distance(m)
     if far is None:
         tilt.plot(*_aloft.parted(jumps, t, np.degrees(m.theta)), color=BLUE, **thick)
@@ -120,12 +121,12 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         fillet = rf", $\rho = {m.body.fillet:.4g}$" if m.body.fillet else ""
         tilt.set_title(rf"{how}, $\ell = {m.body.ell:.4g}${fillet}")
     if up:
-        units = (
+        units = _aloft.PlotUnits(
             float(_in_plot_units(scale, "t", 1.0)),
             float(_in_plot_units(scale, "centre", 1.0)),
             _unit_label("centre", scale),
         )
-        _aloft.height(tilt, m, t, units, thin)
+        _aloft.height_and_legend(tilt, m, t, units, thin)
         tilt.yaxis.label.set_color(BLUE)
     # at least one radian high, so that a constant theta does not show rounding
     low, high = tilt.get_ylim()
@@ -143,7 +144,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     else:
         path.plot(x, y, color=BLUE, label="contact point", **thin)
     path.plot(centre[:, 0], centre[:, 1], color=ORANGE, label="centre, from above", **thin)
-    if up and m.impacts:
+    if up and strikes(m):
         where = _in_plot_units(scale, "contact_point", _aloft.strikes(m))
         path.plot(*where, "x", color=BLACK, ms=6, label="impact")
     path.plot(x[0], y[0], "o", color=BLACK, ms=6)
@@ -159,7 +160,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     dashed = thick | {"ls": "--"} if close else thick
     name = "friction" if has_friction(m.contact) else "friction demand"
     force.plot(t, friction, color=ORANGE, label=name, **dashed)
-    if up and (on_both := m.phase > FLIES).any():
+    if up and (on_both := (m.phase > FLIES) & (m.phase != ON_FACE)).any():
         other = np.where(on_both, _in_plot_units(scale, "normal", m.normal_other), np.nan)
         dotted = thick | {"ls": ":"} if close else thick
         force.plot(t, other, color=BLACK, label="$N$, other rim", **dotted)

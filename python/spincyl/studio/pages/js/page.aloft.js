@@ -1,14 +1,14 @@
-// Bodies that leave the table or lie on both rims: their height, the lower rim and its path, the forces on the other
+// Bodies that leave the table, lie on both rims or stand on a face: their height, the lower rim and its path, the forces on the other
 // rim, names of phases. Pages without them omit this file. It comes after page.slip.js and replaces some of its functions.
 
-const KINDS = ["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side", "rolling round its apex"], FLIES = 2;
-const rubbed = kind => kind % 2 === 1 && kind < 5 || kind === 4;
+const KINDS = ["rolling", "slipping", "flying", "lying", "pivoting", "rolling on its side", "rolling round its apex", "on its face"], FLIES = 2, ON_FACE = 7;
+const rubbed = kind => [1, 3, 4, ON_FACE].includes(kind);
 for (const m of motions) if (m.aloft) {
   m.now = t => m.phases.findLast(([begin], i) => begin <= t || i === 0);
   // only times on the table have a path, and the paths of the two rims are not connected
   m.runs = times => {
     const runs = m.phases.map(([begin, kind, rim], i, all) => [
-      begin > m.first ? knot(begin, times) + (i && (all[i - 1][1] === FLIES || all[i - 1][2] !== rim)) : 0,
+      begin > m.first ? knot(begin, times) + (i && (all[i - 1][1] === FLIES || all[i - 1][2] !== rim || (all[i - 1][1] === ON_FACE) !== (kind === ON_FACE))) : 0,
       rubbed(kind) ? "friction" : "trace", all[i + 1] ? knot(all[i + 1][0], times) : times.length, kind,
     ]).filter(run => run[3] !== FLIES);
     return { forEach: f => runs.forEach(([from, colour, to]) => f([from, colour], 0, [0, [to]])) };
@@ -35,7 +35,9 @@ pose = (m, t) => {
   p.centre[2] = p.matrix[14] = low + height;
   Object.assign(p, { kind, height, theta: Math.acos(other ? -c : c), contact: below(other ? -1 : 1), top: low + height + m.ell * Math.abs(c) + s });
   if (kind === FLIES) p.normal = p.friction = none;
-  if (kind > FLIES && m.beside) {
+  // the path is that of the centre, and the force stands where the pressure has its centre
+  if (kind === ON_FACE) Object.assign(p, { stands: true, contact: [x, y, 0] });
+  if (kind > FLIES && kind !== ON_FACE && m.beside) {
     const [f, g, n] = m.beside(t);
     Object.assign(p, { normal2: [0, 0, n], friction2: [cp * f - sp * g, sp * f + cp * g, 0], contact2: below(other ? 1 : -1) });
   }

@@ -16,7 +16,7 @@ pose = (m, t) => {
   const [radius, above, fillet] = m.circles[k], low = radius * s - above * c + fillet;
   const height = p.kind === 2 ? Math.max(0, z - low) : 0;
   p.centre[2] = p.matrix[14] = low + height;
-  Object.assign(p, { height, contact: below(m.circles[k]), top: low + height + Math.hypot(1, m.ell) });
+  Object.assign(p, { height, contact: p.stands ? p.contact : below(m.circles[k]), top: low + height + Math.hypot(1, m.ell) });
   if (p.contact2) p.contact2 = below(m.circles[k + 1]);
   return p;
 };

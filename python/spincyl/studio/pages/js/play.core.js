@@ -20,8 +20,9 @@ const OF_STEADY = ["region", "rate", "rolling", "smooth", "energy", "w1", "w2", 
 const OF_START = ["integrated", "ending", "ends", "period", "low", "high", "phi", "psi", "error", "poseError", "evaluations", "phases", "slipTime", "heat", "lost", "lasts", "impacts", "knocked"];
 const OF_ROW = { t: 0, theta: 1, phi: 5, psi: 6, x: 7, y: 8, normal: 9, demand: 10, along: 11, across: 12, energy: 13, kind: 14, lost: 15, height: 16, turned: 17 }, WIDE = 18;
 // kinds of a phase in the order of the core, in words; with a law of friction a contact rubs in some of them
-const KINDS = ["", "slipping", "flying", "lies on its side, slipping", "lies on its side, pivoting", "rolls on its side", "rolls round its apex"], SLIPS = 1, FLIES = 2;
-const rubbed = kind => [1, 3, 4].includes(kind);
+const KINDS = ["", "slipping", "flying", "lies on its side, slipping", "lies on its side, pivoting", "rolls on its side", "rolls round its apex", "on its face"], SLIPS = 1, FLIES = 2, ON_FACE = 7;
+const onBoth = kind => kind > FLIES && kind !== ON_FACE;
+const rubbed = kind => [1, 3, 4, ON_FACE].includes(kind);
 const labelled = (names, numbers) => Object.fromEntries(names.map((name, i) => [name, numbers[i]]));
 
 // reasons for a code without results

@@ -17,7 +17,7 @@ function band() {
 }
 // text about a free body that leaves the table or lies on both rims; nothing for any other
 function aloft() {
-  const last = tracked.rows.at(-1)?.[OF_ROW.kind], lies = last > FLIES, rolls = last > FLIES + 2 && (body.circles ? "rolls round in a circle" : "rolls straight on");
+  const last = tracked.rows.at(-1)?.[OF_ROW.kind], lies = onBoth(last), rolls = lies && last > FLIES + 2 && (body.circles ? "rolls round in a circle" : "rolls straight on");
   if (known() && head.impacts) return ["Set free, it hops", `it leaves the table and comes down again${lies ? `; at last it lies on its side${rolls ? ", and " + rolls : ""}` : ""}. Each impact takes energy.`];
   return lies && ["It lies on its side", `nothing lifts it off its two rims${rolls ? ": friction stops their slip, and it " + rolls : ""}.`];
 }

@@ -14,7 +14,7 @@ function placed(row) {
   if (row[OF_ROW.turned] && !body.circles) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
   // for a body on both rims the sum of the forces is shown, in the middle
   const contact = lies ? [p.centre[0], p.centre[1], 0] : [x, y, 0];
-  return Object.assign(p, { high, lies, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
+  return Object.assign(p, { high, lies, stands: row[OF_ROW.kind] === ON_FACE, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
 }
 let latest = null;
 const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest;
