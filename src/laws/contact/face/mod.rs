@@ -54,12 +54,38 @@ pub(crate) struct FaceFriction {
     fold: f64,
 }
 
+impl FaceForce {
+    fn of(part: &Part, found: &Pressed) -> Self {
+        let turned = [part.off.sin(), part.angle.sin()];
+        let [along, across] = turned.map(|x| found.force * x);
+        let centre = turned.map(|x| found.centre * x);
+        Self { along, across, couple: found.couple, centre }
+    }
+
+    /// At the point of the rim where the slip is outward, for s/v.
+    fn at_a_point(q: f64, lam: f64) -> Self {
+        let [along, across] = [((1.0 - q) * (1.0 + q)).sqrt(), q];
+        let centre = [lam * along, lam * across];
+        Self { along, across, couple: 0.0, centre }
+    }
+}
+
+/// A part whose friction is along X, and the lam of which that is a solution.
+#[derive(Debug, Clone, Copy)]
+struct OnCurve {
+    part: Part,
+    lam: f64,
+    determinant: f64,
+}
+
 /// Most steps of Newton's method, which double the digits, and the relative step that is the last one.
 const STEPS_TO_PART: usize = 60;
 const LAST_STEP: f64 = 1e-8;
 /// The ratios between which an end ratio is sought.
 const SLOW_END: f64 = 1e-5;
 const FAST_END: f64 = 1e6;
+/// How far the centre of the pressure moves in a step along a branch.
+const SAME_BRANCH: f64 = 0.02;
 /// The largest root of the ratio of a fold less 1, and the relative accuracy of its place, whose square is that of lam.
 const WIDEST_FOLD: f64 = 0.37;
 const FOLD_STEP: f64 = 1e-7;
@@ -105,13 +131,20 @@ impl FaceFriction {
         if v >= self.fold * s {
             return None;
         }
-        let tilted = last.filter(|x| slope * x[0].hypot(x[1]) > 1.0);
-        let (arc, found) = tilted
-            .and_then(|x| self.solved(Part::towards(self.width_of(x[0].hypot(x[1])), x), v, s))
-            .or_else(|| self.solved(Part::towards(1.0, centre), v, s))?;
-        let turned = [arc.off.sin(), arc.angle.sin()];
-        let [along, across] = turned.map(|x| found.force * x);
-        Some(FaceForce { along, across, couple: found.couple, centre: turned.map(|x| found.centre * x) })
+        let first = || self.solved(Part::towards(1.0, centre), v, s).or_else(|| self.narrowed(v, s));
+        let found = match last.filter(|x| slope * x[0].hypot(x[1]) > 1.0) {
+            None => first(),
+            Some(x) => {
+                let apart = |of: &FaceForce| (of.centre[0] - x[0]).hypot(of.centre[1] - x[1]);
+                let near = self.solved(Part::towards(self.width_of(x[0].hypot(x[1])), x), v, s);
+                match near {
+                    Some(near) if apart(&near) < SAME_BRANCH => Some(near),
+                    _ => near.into_iter().chain(first()).min_by(|a, b| apart(a).total_cmp(&apart(b))),
+                }
+            }
+        };
+        // A slide with lam = 1 presses a point, where the slip is outward.
+        found.or_else(|| (lam <= 1.0 && s <= v).then(|| FaceForce::at_a_point(s / v, lam)))
     }
 
     /// The width of the part whose centre of pressure is this far from the axis, nearly.
@@ -125,16 +158,16 @@ impl FaceFriction {
     }
 
     /// The part that presses, by Newton's method from another one.
-    fn solved(&self, mut arc: Part, v: f64, s: f64) -> Option<(Part, Pressed)> {
+    fn solved(&self, mut arc: Part, v: f64, s: f64) -> Option<FaceForce> {
         let mut close = false;
         for _ in 0..STEPS_TO_PART {
             let here = self.pressed(&arc, v, s);
             let det = here.determinant();
             if close {
-                return (det < 0.0).then_some((arc, here));
+                return (det < 0.0).then(|| FaceForce::of(&arc, &here));
             }
             if arc.width < POINT {
-                return Some((arc, here));
+                return Some(FaceForce::of(&arc, &here));
             }
             let [r, q] = here.residual;
             let width = (here.by_angle[0] * q - here.by_angle[1] * r) / det;
@@ -148,6 +181,43 @@ impl FaceFriction {
             arc = arc.moved(bounded, angle.clamp(-0.3, 0.3));
         }
         None
+    }
+
+    /// The same, from the first of ever narrower parts whose lam is not smaller. It is negative beyond infinity.
+    fn narrowed(&self, v: f64, s: f64) -> Option<FaceForce> {
+        let mut wide = self.on_curve(Part::towards(1.0, [1.0, 0.7]), v, s);
+        let mut step = 0.2;
+        while wide.part.width > POINT && step > TURN * wide.part.width {
+            let next = self.on_curve(wide.part.moved(-step, 0.0), v, s);
+            if next.lam > 0.0 && next.lam < self.lam {
+                wide = next;
+                step = step.min(0.2 * wide.part.width);
+                continue;
+            }
+            if next.lam > 0.0 && next.determinant < 0.0 {
+                if let Some(found) = self.solved(next.part, v, s) {
+                    return Some(found);
+                }
+            }
+            step *= 0.5;
+        }
+        None
+    }
+
+    /// The direction of a part of this width whose friction is along X, and the lam that belongs to it.
+    fn on_curve(&self, part: Part, v: f64, s: f64) -> OnCurve {
+        let mut found = OnCurve { part, lam: 1.0, determinant: 0.0 };
+        for _ in 0..STEPS_TO_PART {
+            let here = Self { lam: found.lam, ..*self }.pressed(&found.part, v, s);
+            found.lam = here.centre / here.force;
+            found.determinant = here.determinant();
+            let turn = here.residual[1] / here.by_angle[1];
+            found.part = found.part.moved(0.0, -turn.clamp(-0.2, 0.2));
+            if turn.abs() < TURN {
+                break;
+            }
+        }
+        found
     }
 
     fn pressed(&self, arc: &Part, v: f64, s: f64) -> Pressed {
@@ -173,20 +243,12 @@ impl FaceFriction {
     /// The largest lam that has a centre of the pressure at the ratio `k`. At a given width the direction of X follows from
     /// the force across, and lam from that along.
     fn largest_lam(&self, k: f64) -> f64 {
-        let mut angle = 0.6;
+        let mut part = Part::towards(1.0, [1.0, 0.7]);
         let mut on_curve = |width: f64| {
-            let mut found = [1.0, 0.0];
-            for _ in 0..STEPS_TO_PART {
-                let part = Part { width, angle, off: FRAC_PI_2 - angle };
-                let here = Self { lam: found[0], ..*self }.pressed(&part, k, 1.0);
-                found = [here.centre / here.force, here.determinant()];
-                let turn = here.residual[1] / here.by_angle[1];
-                angle -= turn.clamp(-0.2, 0.2);
-                if turn.abs() < TURN {
-                    break;
-                }
-            }
-            (found[0], found[1])
+            part.width = width;
+            let found = self.on_curve(part, k, 1.0);
+            part = found.part;
+            (found.lam, found.determinant)
         };
         // Narrower parts, until lam falls.
         let (mut width, mut wide) = (1.0, on_curve(1.0));
@@ -267,4 +329,122 @@ pub fn end_ratio(form: Face, lam: f64, i3: f64) -> Option<f64> {
         (k, before) = (next, after);
     }
     Some(f64::INFINITY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use part::Pressed;
+
+    const FORMS: [Face; 2] = [Face::Ring, Face::Disc];
+
+    /// Numbers in [0, 1) that look random.
+    fn drawn(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    fn friction_of(form: Face, lam: f64) -> FaceFriction {
+        FaceFriction { form, lam, fold: f64::INFINITY }
+    }
+
+    /// G and gg in the frame of X for given parts, and |X|.
+    fn means(form: Face, k: f64, width: f64, angle: f64) -> [f64; 4] {
+        let (v, s) = (k, 1.0);
+        if width < 1.5 {
+            let part = Part { width, angle, off: FRAC_PI_2 - angle };
+            let of: Pressed = friction_of(form, 1.0).pressed(&part, v, s);
+            // The couple is told for a part that is its own X: without the mean of sin d.
+            let aside = -of.residual[1];
+            return [of.centre, of.force, aside, of.couple + aside];
+        }
+        let (centre, slope, of) = match form {
+            Face::Ring => (0.5 / width, 2.0, WholeMeans::of_ring(v, s)),
+            Face::Disc => (0.25 / (width - 0.5), 4.0, disc::whole(v, s)),
+        };
+        let [x, y] = [angle.cos(), angle.sin()].map(|n| slope * centre * n);
+        let [along, across] = [of.along + y * of.y_along, x * of.x_across];
+        let turned = [along * angle.cos() + across * angle.sin(), across * angle.cos() - along * angle.sin()];
+        [centre, turned[0], turned[1], of.couple + y * of.y_couple]
+    }
+
+    #[test]
+    fn means_over_every_part_are_those_of_thirty_digits() {
+        let table = include_str!("../../../../tests/reference/face_means.csv");
+        let mut worst = [[0f64; 2]; 2];
+        for line in table.lines().skip(1) {
+            let cells: Vec<&str> = line.split(',').collect();
+            let form = if cells[0] == "ring" { Face::Ring } else { Face::Disc };
+            let [k, width, angle] = [1, 2, 3].map(|i| hexadecimal(cells[i]));
+            let found = means(form, k, width, angle);
+            for (i, found) in found.into_iter().enumerate() {
+                let known: f64 = cells[4 + i].parse().unwrap();
+                let error = (found - known).abs();
+                let most = &mut worst[form as usize][usize::from(width < 1.5)];
+                if error > 1e-13 { println!("{line} {i} {error:e}"); }
+                *most = most.max(error);
+            }
+        }
+        println!("worst {worst:?}");
+        let [[whole_ring, arc], [whole_disc, segment]] = worst;
+        assert!(whole_ring < 2e-15 && whole_disc < 2e-14, "{whole_ring:e} {whole_disc:e}");
+        assert!(arc < 1e-13 && segment < 1e-12, "{arc:e} {segment:e}");
+    }
+
+    /// A double of the form -0x1.8p+3.
+    fn hexadecimal(text: &str) -> f64 {
+        let (digits, power) = text.trim_start_matches("0x").split_once('p').unwrap();
+        let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+        let value = u64::from_str_radix(&format!("{whole}{part}"), 16).unwrap() as f64;
+        value * 2f64.powi(power.parse::<i32>().unwrap() - 4 * part.len() as i32)
+    }
+
+    #[test]
+    fn the_centre_of_the_pressure_is_where_the_moment_of_friction_puts_it() {
+        let mut r = drawn(3);
+        for form in FORMS {
+            let mut worst = 0f64;
+            for i in 0..1000 {
+                let lam = if i % 4 == 0 { 1.0 + 3.0 * r() * r() } else { 1.2 * r() };
+                let friction = friction_of(form, lam);
+                let k = if lam > 1.0 { r() } else { 10f64.powf(6.0 * r() - 3.0) };
+                let Some(force) = friction.at(k, 1.0, None) else { panic!("{form:?} {lam} {k}") };
+                let x = force.centre;
+                let off = (x[0] - lam * force.along).hypot(x[1] - lam * force.across);
+                worst = worst.max(off);
+                assert!(x[0].hypot(x[1]) <= 1.0 && force.couple > 0.0, "{form:?} {lam} {k}: {force:?}");
+                // The same from the last place, and from one near.
+                let near = x.map(|x| x * (1.0 + 1e-3 * r()));
+                let again = friction.at(k, 1.0, Some(near)).unwrap();
+                assert!((again.along - force.along).abs() < 1e-12, "{form:?} {lam} {k} {again:?} {force:?}");
+            }
+            println!("worst {form:?} {worst:e}");
+            assert!(worst < 1e-13, "{worst:e}");
+        }
+    }
+
+    #[test]
+    fn slow_slides_and_slow_spins_keep_their_digits() {
+        for power in [1, 3, 10, 100, 300] {
+            let small = 10f64.powi(-power);
+            let near = |x: f64, y: f64| (x / y - 1.0).abs() < 1e-14 + small;
+            for lam in [0.1, 0.3, 0.7, 0.95, 1.0, 3.0] {
+                let ring = friction_of(Face::Ring, lam).at(small, 1.0, None).unwrap();
+                let [x, y] = [ring.along, ring.across].map(|g| 2.0 * g / small * (1.0 + lam * lam));
+                assert!(near(x, 1.0) && near(y, lam) && near(ring.couple, 1.0), "{lam} {small:e}");
+                let disc = friction_of(Face::Disc, lam).at(small, 1.0, None).unwrap();
+                let pull = 4.0 / 3.0 * lam;
+                let [x, y] = [disc.along, disc.across].map(|g| g / small * (1.0 + pull * pull));
+                assert!(near(x, 1.0) && near(y, pull) && near(disc.couple, 2.0 / 3.0), "{lam} {small:e}");
+            }
+            for lam in [0.1, 0.3, 0.7, 0.95, 0.9999] {
+                // The couple is the variance of the place along v, and the force across lam, of the slow spin.
+                let ring = friction_of(Face::Ring, lam).at(1.0, small, None).unwrap();
+                println!("{lam} {small:e} {:?} {:?}", ring.across / small/lam, ring.couple / small);
+            }
+        }
+    }
 }
