@@ -123,7 +123,10 @@ fn panel_end(left: f64, last: f64, singular: &[Singular]) -> f64 {
 /// The integrals over the part of the disc.
 #[inline(always)]
 fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T> {
-    let number = here(#[inline(always)] |x: f64| like.splat(x));
+    let number = here(
+        #[inline(always)]
+        |x: f64| like.splat(x),
+    );
     let (k, q) = (v / s, s / v);
     let inside = v <= s;
     let (sine, cosine) = (part.angle.sin(), part.off.sin());
@@ -209,14 +212,26 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
                         first * second * (high * high + low * low) * number(0.25),
                     ];
                     // Of 1, r and r^2 over the area, and of the same over the pressure.
-                    let plain = [0, 1, 2].map(#[inline(always)] |i| area[0] * power[i] + area[1] * power[i + 1]);
-                    let under = [0, 1].map(#[inline(always)] |i| base * plain[i] + aside * plain[i + 1]);
+                    let plain = [0, 1, 2].map(
+                        #[inline(always)]
+                        |i| area[0] * power[i] + area[1] * power[i + 1],
+                    );
+                    let under = [0, 1].map(
+                        #[inline(always)]
+                        |i| base * plain[i] + aside * plain[i + 1],
+                    );
                     let back = one_less(aside, forward);
                     // 1 - along X = short + - aside r, across X = away aside - forward r.
                     let short = one - away * forward;
                     let level = away * aside;
-                    let short_of = here(#[inline(always)] |of: [T; 2]| short * of[0] - aside * of[1]);
-                    let across_of = here(#[inline(always)] |of: [T; 2]| level * of[0] - forward * of[1]);
+                    let short_of = here(
+                        #[inline(always)]
+                        |of: [T; 2]| short * of[0] - aside * of[1],
+                    );
+                    let across_of = here(
+                        #[inline(always)]
+                        |of: [T; 2]| level * of[0] - forward * of[1],
+                    );
                     let by_place = [plain[0], plain[1]];
                     let [shorts, turns] = [short_of(under), across_of(under)];
                     let plain_turns = across_of(by_place);

@@ -114,14 +114,17 @@ impl<T: SideBySide> Integrals<T> {
     /// The integrals, and what follows from them for a height lam.
     #[inline(always)]
     pub fn pressed(&self, lam: f64) -> Pressed {
-        let total = here(#[inline(always)] |i: usize| {
-            let mut sides = [0.0; SIDES];
-            for group in 0..SIDES / T::COUNT {
-                self.sums[group][i].spill(&mut sides[group * T::COUNT..]);
-            }
-            let [a, b, c, d, e, f, g, h] = sides;
-            ((a + b) + (c + d)) + ((e + f) + (g + h))
-        });
+        let total = here(
+            #[inline(always)]
+            |i: usize| {
+                let mut sides = [0.0; SIDES];
+                for group in 0..SIDES / T::COUNT {
+                    self.sums[group][i].spill(&mut sides[group * T::COUNT..]);
+                }
+                let [a, b, c, d, e, f, g, h] = sides;
+                ((a + b) + (c + d)) + ((e + f) + (g + h))
+            },
+        );
         let of: [f64; INTEGRALS] = core::array::from_fn(total);
         let over = 1.0 / of[0];
         let [short, aside, back, couple] = [1, 2, 3, 4].map(|i| of[i] * over);

@@ -16,7 +16,7 @@
 //!
 //! Error: 1e-15 of the whole ring, 1e-14 of a part.
 
-use super::part::{Integrals, GAUSS_PLACES, GAUSS_WEIGHTS, Part, Pressed, Rubbing, one_less};
+use super::part::{GAUSS_PLACES, GAUSS_WEIGHTS, Integrals, Part, Pressed, Rubbing, one_less};
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{here, in_lanes, level};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4};
@@ -161,26 +161,41 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
     if ellipse > SMOOTH {
         let end = (0.25 * b).tan();
         let [four, near, twice] = [4.0, least * least, 4.0 * v * s].map(number);
-        nodes(like, -end, end, #[inline(always)] |group, x, weight| {
-            let over = one / (one + x * x);
-            let half = [(x + x) * over, (one - x * x) * over];
-            let side = half[0] * cosine - half[1] * sine;
-            let size = (near + twice * side * side).sqrt();
-            sums.rub(group, rubs.at(four * over * weight, half, one / size));
-        });
+        nodes(
+            like,
+            -end,
+            end,
+            #[inline(always)]
+            |group, x, weight| {
+                let over = one / (one + x * x);
+                let half = [(x + x) * over, (one - x * x) * over];
+                let side = half[0] * cosine - half[1] * sine;
+                let size = (near + twice * side * side).sqrt();
+                sums.rub(group, rubs.at(four * over * weight, half, one / size));
+            },
+        );
         return sums;
     }
-    let mut far = here(#[inline(always)] |left: f64, right: f64, sign: f64| {
-        let [sine, cosine] = [sign * so, sign * co].map(number);
-        let [near, twice] = [least * least, most * most].map(number);
-        nodes(like, left, right, #[inline(always)] |group, x, weight| {
-            let root = (one + x * x).sqrt();
-            let over = one / root;
-            let half = [over * (x * sine - cosine), over * (x * cosine + sine)];
-            let size = (near * x * x + twice).sqrt();
-            sums.rub(group, rubs.at((weight + weight) * over * over, half, root / size));
-        });
-    });
+    let mut far = here(
+        #[inline(always)]
+        |left: f64, right: f64, sign: f64| {
+            let [sine, cosine] = [sign * so, sign * co].map(number);
+            let [near, twice] = [least * least, most * most].map(number);
+            nodes(
+                like,
+                left,
+                right,
+                #[inline(always)]
+                |group, x, weight| {
+                    let root = (one + x * x).sqrt();
+                    let over = one / root;
+                    let half = [over * (x * sine - cosine), over * (x * cosine + sine)];
+                    let size = (near * x * x + twice).sqrt();
+                    sums.rub(group, rubs.at((weight + weight) * over * over, half, root / size));
+                },
+            );
+        },
+    );
     // The near side of the ring, in tan t/2 between these angles.
     let (mut first, mut last) = (0.5 * (-b - off), 0.5 * (b - off));
     if first < -FAR {
@@ -204,17 +219,23 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
     let mut left = from;
     for i in 1..=panels as usize {
         let right = if i as f64 == panels { to } else { left * ratio };
-        nodes(like, left, right, #[inline(always)] |group, x, weight| {
-            let square = x * x + one;
-            let both = one / (x * square);
-            let inverse = both * square;
-            let t = half_share * (x - inverse);
-            let root = (one + t * t).sqrt();
-            let over = one / root;
-            let half = [over * cosine * (t + tilt), over * cosine * (one - t * tilt)];
-            let dt = share * (one + inverse * inverse) * over * over * weight;
-            sums.rub(group, rubs.at(dt, half, size * root * x * x * both));
-        });
+        nodes(
+            like,
+            left,
+            right,
+            #[inline(always)]
+            |group, x, weight| {
+                let square = x * x + one;
+                let both = one / (x * square);
+                let inverse = both * square;
+                let t = half_share * (x - inverse);
+                let root = (one + t * t).sqrt();
+                let over = one / root;
+                let half = [over * cosine * (t + tilt), over * cosine * (one - t * tilt)];
+                let dt = share * (one + inverse * inverse) * over * over * weight;
+                sums.rub(group, rubs.at(dt, half, size * root * x * x * both));
+            },
+        );
         left = right;
     }
     sums
