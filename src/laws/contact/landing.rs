@@ -187,30 +187,33 @@ pub(crate) fn bounced(
     Ok((after.y, after.slips[0], after.lift, lost))
 }
 
-/// A face after its fall in a plane.
-pub(crate) struct Fallen {
-    /// The rate at which it rises on the point that has landed; negative on the other one, and 0 on both.
-    pub rises: f64,
-    /// The slip of the point that has landed, in its direction, and the vertical velocity of the other one.
-    pub slip: f64,
+/// A face that falls on the opposite point of its ring, or after it has. All directions are seen from above: to that point, and
+/// to the left of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FallingFace {
+    /// The rate at which it leans towards that point, and the rates about the direction to it and about the vertical.
+    pub leans: f64,
+    pub turns: f64,
+    pub spins: f64,
+    /// The slip and the vertical velocity of the point on which it turns before; after the landing, of the one that has landed.
+    pub slip: [f64; 2],
     pub lift: f64,
-    pub lost: f64,
 }
 
-/// The landing of a face of radius a, the centre of mass Z above it, that falls in a plane: its inclination at the rate `falls`
-/// > 0, while the point on which it turns moves towards the other one at `along` and comes down at `lift` <= 0. Both points
-/// bounce with the restitution `e` if both come down. None where there is no unique outcome.
+/// The landing of a face of radius a, the centre of mass Z above it, and the energy lost. It then leans on beyond the point that
+/// has landed, back, or not at all. Both points bounce with the restitution `e` if both come down. None where there is no
+/// unique outcome.
 pub(crate) fn falls_flat(
     body: &Body,
     [radius, height]: [f64; 2],
-    [falls, along, lift]: [f64; 3],
+    FallingFace { leans, turns, spins, slip: [along, across], lift }: FallingFace,
     (friction, e): (&Friction, f64),
     own: &impl SpeedLaw,
-) -> Option<Fallen> {
+) -> Option<(FallingFace, f64)> {
     let circle = |lever: f64| CircleDown { radius: -lever, depth: height, lever };
     let border = Border { angle: (0.0, 1.0), height, circles: [circle(radius), circle(-radius)], even: false };
     // Seen as another circle that lands, which lies at smaller levers.
-    let (y, slip) = (State { theta: 0.0, w1: 0.0, w2: -falls, w3: 0.0 }, [-along, 0.0]);
+    let (y, slip) = (State { theta: 0.0, w1: -turns, w2: -leans, w3: spins }, [-along, -across]);
     let landing = Landing { body, border, y, slip, lift, friction, own };
     let Compressed { here, there, mut end } = landing.compressed().ok()?;
     if e > 0.0 && lift < 0.0 {
@@ -220,7 +223,9 @@ pub(crate) fn falls_flat(
         end.y.w2 = 0.0;
     }
     let lost = energy(&border, body, &y, slip, lift) - energy(&border, body, &end.y, end.slips[0], end.lift);
-    Some(Fallen { rises: -end.y.w2, slip: -end.slips[1][0], lift: end.lift, lost })
+    let State { w1, w2, w3, .. } = end.y;
+    let lift = end.lift + border.span() * w2;
+    Some((FallingFace { leans: -w2, turns: -w1, spins: w3, slip: end.slips[1].map(|u| -u), lift }, lost))
 }
 
 /// The end of a compression, and which circles remain on the table: the one that carried, and the one that landed.

@@ -48,7 +48,7 @@ pub(super) const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
 const SUMMED: f64 = 1e2;
 /// Time of the rest of a rattle, in units of its velocities.
-const LASTS: f64 = 10.0;
+pub(super) const LASTS: f64 = 10.0;
 /// A rocking with a larger w2 is computed hop by hop.
 pub(super) const ROCKED: f64 = 1e-5;
 /// A smaller w2 after a landing is a rounding error.
@@ -167,6 +167,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let level = || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
+        }
+        if e > 0.0 && self.hardly_rattles(&after) {
+            return self.ends_rattle_on_face();
         }
         self.leaves_impact(&after)
     }

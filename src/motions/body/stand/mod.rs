@@ -17,6 +17,7 @@ mod rocks;
 use super::body_walk::BodyWalk;
 use super::fly::Takeoff;
 use super::own::Own;
+use super::strike::ROCKED;
 use super::write;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::slip::Friction;
@@ -139,13 +140,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return self.falls_on_face(falls);
         }
         let shape = self.of.slide.law.shape;
-        if falls > HARDLY_RISES {
-            // What falls while it turns is lost if no friction can rock it over.
-            let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
-            let mu = self.friction_of_face().map_or(f64::INFINITY, |friction| friction.strength());
-            if a * a < shape.i1 + mu * a * z {
-                return Next::Ends(Ending::Landing);
-            }
+        if falls > HARDLY_RISES && self.at[W1].abs() < falls {
+            return self.falls_on_face(falls);
         }
         let before = self.of.slide.energy(&self.at);
         // The centre keeps its velocity, and the body its spin about the vertical.
@@ -319,6 +315,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if rises < HARDLY_RISES && !planar {
             self.claims(rises);
             return self.settles_on_face();
+        }
+        if rises < ROCKED
+            && planar
+            && let Some(next) = self.rocks_to_rest()
+        {
+            return next;
         }
         self.of.state.theta = if up > 0.0 { ALMOST_FLAT } else { PI };
         let [u, v] = self.at.slip();

@@ -12,7 +12,7 @@
 
 use super::STILL;
 use crate::laws::contact::impact::Hit;
-use crate::laws::contact::landing::{Fallen, falls_flat};
+use crate::laws::contact::landing::{FallingFace, falls_flat};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::Table;
 use crate::laws::loss::{Law, Losses};
@@ -22,7 +22,7 @@ use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::fly::{Aloft, Takeoff};
 use crate::motions::body::own::Own;
 use crate::motions::body::strike::{
-    MOST_IN_TURN, PERFECTLY_ROUGH, RATTLED, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
+    LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLED, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
 };
 use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{
@@ -54,7 +54,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return self.stands_on_face();
         }
         let e = self.ask.restitution.unwrap_or(0.0);
-        if e > 0.0 && falls * self.of.body.rim() > RATTLED {
+        let planar = self.at[W1] == 0.0 && self.at[W3] == 0.0 && self.at[U2] == 0.0;
+        if e > 0.0 && planar && falls * self.of.body.rim() > RATTLED {
             return self.rattles_on_face(e);
         }
         let Some(rocks) = self.lands_flat(0.0, true) else { return Next::Ends(Ending::Landing) };
@@ -62,18 +63,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.lies_on_face();
             return self.stands_on_face();
         }
-        if self.at[W2].abs() < ROCKED
-            && let Some((end, error)) = self.rocks_out_flat()
-        {
-            self.claims(error);
-            let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
-            let taken = energy(&self.at) - energy(&end);
-            // The landings that are summed take what is missing.
-            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
-            self.claims(-taken);
-            self.at = end;
-            self.lies_on_face();
-            return self.stands_on_face();
+        if self.at[W1] != 0.0 {
+            return self.leaves_impact_on_face();
         }
         self.rises_from_face()
     }
@@ -84,33 +75,46 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (up, friction) = (self.up(), self.friction_in_fall());
         let (body, rim, angle) = (self.of.body, self.of.slide.law.shape.rim, self.at.angle());
         let arms = [rim.radius(angle), rim.height(angle)];
-        let moves = [up * self.at[W2], up * self.at[UH], self.of.takeoff.lift];
-        let fallen = falls_flat(&body, arms, moves, (&friction, e), &self.of.own)?;
-        let Fallen { rises, slip, lift, lost } = fallen;
+        let [w1, w2, w3] = self.at.w();
+        let falling = FallingFace {
+            leans: up * w2,
+            turns: w1,
+            spins: up * w3,
+            slip: self.at.slip().map(|u| up * u),
+            lift: self.of.takeoff.lift,
+        };
+        let (after, mut lost) = falls_flat(&body, arms, falling, (&friction, e), &self.of.own)?;
         let begin = self.at;
         self.flips();
         let from = self.aloft();
-        // Seen from the point that lands, which the other one may leave at another velocity.
-        let there = lift - 2.0 * arms[0] * rises;
-        (self.at[W1], self.at[W2], self.at[W3]) = (0.0, -up * rises, 0.0);
-        (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
-        self.of.takeoff.lift = if e > 0.0 { there } else { 0.0 };
+        let stays = after.leans <= 0.0 && e == 0.0;
+        (self.at[W1], self.at[W2], self.at[W3]) = (-after.turns, -up * after.leans, up * after.spins);
+        [self.at[UH], self.at[U2]] = after.slip.map(|u| -up * u);
+        self.of.takeoff.lift = if e > 0.0 { after.lift } else { 0.0 };
+        if after.leans == 0.0 && e == 0.0 {
+            // The other points of the ring take what would turn the body about the line between these two.
+            let before = self.of.slide.energy(&self.at);
+            let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
+            (self.at[W1], self.at[UH], self.at[U2]) = (0.0, v_h, v_2 - arms[0] * self.at[W3]);
+            lost += before - self.of.slide.energy(&self.at);
+        }
         self.claims(-lost);
         if records {
-            let after = self.aloft();
-            let impulse = gained(&rim, [&from, &after]);
-            self.records([&from, &after], self.made.path.view.over, Hit::BothRims, (impulse, lost), e == 0.0);
+            let there = self.aloft();
+            let impulse = gained(&rim, [&from, &there]);
+            self.records([&from, &there], self.made.path.view.over, Hit::BothRims, (impulse, lost), e == 0.0);
         }
-        if rises <= 0.0 && e == 0.0 {
-            // A body that stays, or turns on the same point, is told from it as before.
-            self.at[UH] = up * slip;
-            self.at[W2] = -up * rises;
+        if stays && after.leans == 0.0 {
+            // A body that stays is told from the same point as before.
+            (self.at[UH], self.at[U2]) = (-self.at[UH], -2.0 * arms[0] * self.at[W3] - self.at[U2]);
             if poses(N) {
                 self.at[PHI..PHI + 4].copy_from_slice(&begin[PHI..PHI + 4]);
             }
+        } else if stays {
+            self.flips();
         }
         self.sees_face();
-        Some(rises != 0.0)
+        Some(after.leans != 0.0)
     }
 
     /// The phase after the bounces of a face that falls in a plane: of one point of its ring in turn, or of both at once.
@@ -150,8 +154,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let [here, there] = self.points_come_down();
         if there < RATTLED {
-            self.claims(there);
-            return self.comes_to_lie();
+            return self.ends_rattle_on_face();
         }
         if here < over {
             self.claims(here.abs());
@@ -166,6 +169,24 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.takeoff = Takeoff::default();
         self.sees_face();
         if self.up() * self.at[W2] < 0.0 { self.rises_from_face() } else { self.comes_to_lie() }
+    }
+
+    /// Whether what is left of a rattle in a plane, above a face that has all but landed, is a rounding error.
+    pub(crate) fn hardly_rattles(&self, at: &Aloft) -> bool {
+        let [w1, w2, w3] = at.w;
+        let flat = at.angle.0.abs().max(at.lift).max(w2.abs()) < RATTLED && self.of.body.rim() > 0.0;
+        flat && w1 == 0.0 && w3 == 0.0 && at.slip[1] == 0.0
+    }
+
+    /// The phase of a body on its face after such a rattle.
+    pub(crate) fn ends_rattle_on_face(&mut self) -> Next {
+        let (up, shape) = (self.up(), self.of.slide.law.shape);
+        let [a, z] = [shape.rim.radius((0.0, up)), shape.rim.height((0.0, up))];
+        let inertia = shape.i1 + z * z + a * a;
+        self.claims(self.at[SIN].abs());
+        self.claims(LASTS * RATTLED * inertia * inertia / (a * a * a));
+        (self.at[SIN], self.at[COS]) = (0.0, up);
+        self.comes_to_lie()
     }
 
     /// The vertical velocities of the point from which the state is told, and of the opposite one.
@@ -206,19 +227,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The phase after an impact of a face whose points both come down.
     fn strikes_twice(&mut self, e: f64) -> Next {
-        if self.at[W1] != 0.0 || self.at[W3] != 0.0 || self.at[U2] != 0.0 {
-            return Next::Ends(Ending::Landing);
-        }
+        let planar = self.at[W1] == 0.0 && self.at[W3] == 0.0 && self.at[U2] == 0.0;
         if self.up() * self.at[W2] < 0.0 {
             self.flips();
         }
-        if e > 0.0 {
+        if e > 0.0 && planar {
             return self.rattles_on_face(e);
         }
         match self.lands_flat(0.0, true) {
             None => Next::Ends(Ending::Landing),
             Some(false) => self.comes_to_lie(),
-            Some(true) => self.rises_from_face(),
+            Some(true) => self.leaves_impact_on_face(),
         }
     }
 
@@ -245,14 +264,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             let (mut y, most) = (self.at, all - given);
             y[TIME] = 0.0;
-            let steps = Steps { first: None, most: u64::MAX, patience: u64::MAX, toil: self.toil(), tired: false };
+            let steps = Steps { first: None, most: u64::MAX, patience: self.spent.patience, toil: self.toil(), tired: false };
             let flown = flow.run(flow.place(flow.enter(&y)), steps, &[most], &mut |_| (), &mut || true);
             self.has_spent(flown.spent);
             given = if flown.halt == Halt::Time { all } else { given + flown.y[TIME] };
             let [v_h, v_2] = flow.velocity(&flown.y);
             (self.at[UH], self.at[U2], self.at[W3]) = (flown.y[UH], flown.y[U2], flown.y[W3]);
             match flown.halt {
-                Halt::Time | Halt::Topples => {}
+                Halt::Time => {}
+                Halt::Topples => return self.topples_in_impact(comes - given, e),
                 Halt::Turned => (self.at[UH], self.at[U2], self.at[W3]) = (v_h, v_2, 0.0),
                 Halt::Rests => {
                     self.rests_on_face();
@@ -320,13 +340,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Landing) };
         let after = self.struck(&at, &struck, (self.made.path.view.over, false));
         self.sets(&after);
+        self.leaves_impact_on_face()
+    }
+
+    /// The phase after an impact at a point of the ring, beside which the lean may bring down another one.
+    fn leaves_impact_on_face(&mut self) -> Next {
         self.tells_from_lean();
         if self.of.takeoff.lift > 0.0 {
             (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
             return Next::Own(Kind::Flying);
         }
-        if self.of.takeoff.lift < 0.0 {
-            // The point that the lean brings down strikes next.
+        if self.of.takeoff.lift < -STILL {
             return self.strikes();
         }
         self.leaves_face()
@@ -340,6 +364,33 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (self.at[PHI], self.at[PSI]) = (self.at[PHI] - TAU, self.at[PSI] + self.up() * TAU);
         }
         self.sees_face();
+    }
+
+    /// The phase at the end of a rocking in a plane that is all but over; None if it goes on, as a body does that topples.
+    pub(super) fn rocks_to_rest(&mut self) -> Option<Next> {
+        let (rises, began) = (self.at[W2].abs(), self.at[TIME]);
+        let bounces = self.ask.restitution.is_some_and(|e| e > 0.0);
+        if let Some((end, error)) = self.rocks_out_flat() {
+            // Hops between bounces are as short.
+            self.claims(if bounces { end[TIME] - began } else { error });
+            let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
+            let taken = energy(&self.at) - energy(&end);
+            // The landings that are summed take what is missing.
+            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
+            self.claims(-taken);
+            self.at = end;
+            self.lies_on_face();
+            return Some(self.stands_on_face());
+        }
+        let up = self.up();
+        let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
+        let falls = up * self.rates_on_rim((theta.sin(), up), theta, &self.at, false)[W2];
+        if falls <= 0.0 {
+            return None;
+        }
+        // The slip turns round within the next hops.
+        self.claims(LASTS * rises / falls);
+        Some(self.comes_to_lie())
     }
 
     /// The numbers at the end of a rocking that has just begun another hop, and their error; None if it does not end.
