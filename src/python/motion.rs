@@ -12,6 +12,7 @@ use crate::laws::newton::Force;
 use crate::laws::state::drilling_of;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::laws::topple;
+use crate::motions::body::stand::flow::couple_on_face;
 use crate::motions::custom;
 use crate::motions::exact::Swing;
 use crate::motions::motion;
@@ -76,6 +77,10 @@ trait StateArrays: Moving + Sized {
     fn drilling(&self) -> f64;
     /// The normal component of a force.
     fn normal(force: &Self::Force) -> f64;
+    /// The couple of friction on a body on its face, from a state and its slip.
+    fn couple_on_face(_: &Self::Body, _: &Ask) -> Box<dyn Fn(&Self, [f64; 2]) -> f64> {
+        Box::new(|_, _| f64::NAN)
+    }
     /// What a body of revolution rests on.
     fn rests_on(_: &Motion<Self>, _: &Self::Body) -> RestsOn {
         RestsOn::None
@@ -119,6 +124,10 @@ impl StateArrays for State {
             }
         }
         Ok(())
+    }
+
+    fn couple_on_face(body: &Body, ask: &Ask) -> Box<dyn Fn(&Self, [f64; 2]) -> f64> {
+        Box::new(couple_on_face(body, ask))
     }
 
     fn rests_on(m: &Motion, body: &Body) -> RestsOn {
@@ -203,6 +212,7 @@ fn motion_columns<S: StateArrays>(
     let friction = ask.table.friction();
     if let Some(path) = &m.path
         && friction.patch() > 0.0
+        && path.phases.iter().all(|phase| phase.kind != Kind::OnItsFace)
     {
         let drilling = |i: usize| m.states[i].drilling();
         let creep = |i: usize| {
@@ -219,6 +229,17 @@ fn motion_columns<S: StateArrays>(
             };
             rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
         }
+    }
+    if let Some(path) = &m.path
+        && m.forces.is_some()
+        && path.phases.iter().any(|phase| phase.kind == Kind::OnItsFace)
+    {
+        let couple = S::couple_on_face(body, ask);
+        let of = |i: usize| match path.kinds[i] {
+            Kind::OnItsFace => couple(&m.states[i], path.slip[i]),
+            _ => f64::NAN,
+        };
+        rows.add("couple", 0, &|i, to| to.push(of(i)))?;
     }
     if let Some(path) = &m.path
         && loses

@@ -11,7 +11,8 @@
 //!
 //! Error: the tolerance of the steps.
 
-use crate::laws::body::Shape;
+use crate::laws::body::rim::Rim;
+use crate::laws::body::{Body, Shape};
 use crate::laws::contact::Force;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::slip::Friction;
@@ -22,10 +23,11 @@ use crate::methods::rk8;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::body::write;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, TIME, U2, UH, W1, W2, W3, loses, lost, pose_rates, poses,
+    BodyNumbers, COS, HEAT, Halt, MARGINS, PHI, TIME, U2, UH, W1, W2, W3, Y, loses, lost, pose_rates, poses,
 };
 use crate::motions::{Ask, Kind};
 use crate::numbers::Dual;
+use core::f64::consts::PI;
 
 /// The numbers of a flow in tau, in place of w1, w2 and w3.
 const ALPHA: usize = W1;
@@ -39,8 +41,7 @@ const SHORT_OF_FOLD: f64 = 1.0 - 1e-12;
 /// The longest step in tau.
 const LONGEST: f64 = 4.0;
 
-const ENDS: [Halt; MARGINS] =
-    [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Time, Halt::Time, Halt::Time];
+const ENDS: [Halt; MARGINS] = [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Time, Halt::Time, Halt::Time];
 
 /// How the velocities change.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -216,13 +217,35 @@ impl StandingFlow {
 
     /// The outputs at these numbers of a walk.
     pub fn row<const N: usize>(&self, ask: &Ask, y: &[f64; N]) -> OutputRow<State> {
-        let [along, across, _] = self.pushed(self.velocity(y), self.up * y[W3]);
+        let [across, along, _] = self.pushed(self.velocity(y), self.up * y[W3]);
         let state = State { theta: 0f64.atan2(y[COS]), w1: 0.0, w2: 0.0, w3: y[W3] };
         OutputRow {
             pose: poses(N).then(|| write::pose(y)),
             force: ask.force.then_some((Force { normal: 1.0, along, across }, self.tol)),
             ..OutputRow::on_table(state, y.slip(), [y[HEAT], lost(y)], Kind::OnItsFace)
         }
+    }
+}
+
+/// The couple of friction about the vertical on a body on its face, from a state and its slip.
+pub(crate) fn couple_on_face(body: &Body, ask: &Ask) -> impl Fn(&State, [f64; 2]) -> f64 + use<> {
+    let friction = ask.table.friction();
+    let [first, other] = [(0.0, 1.0), (PI, -1.0)].map(|(theta, up)| {
+        let shape = body.told_at(theta).shape();
+        let rim = Rim { ell: up * shape.rim.ell, ..shape.rim };
+        let lam = match friction {
+            Friction::Coulomb { mu, .. } => mu * rim.height((0.0, 1.0)) / rim.radius((0.0, 1.0)),
+            Friction::Viscous { .. } => 0.0,
+        };
+        (Shape { rim, ..shape }, FaceFriction::new(ask.face, lam))
+    });
+    move |at, slip| {
+        // As seen from the face that is down.
+        let up = at.theta.cos().signum();
+        let mut y = [0.0; Y + 1];
+        (y[COS], y[W3], y[UH], y[U2]) = (1.0, up * at.w3, up * slip[0], up * slip[1]);
+        let flow = StandingFlow::new(if up > 0.0 { first } else { other }, &friction, &Losses::NONE, &y, 0.0);
+        flow.pushed(flow.velocity(&y), y[W3])[2]
     }
 }
 
@@ -302,7 +325,8 @@ impl Flow<MARGINS> for StandingFlow {
             }
             Course::Soft => {
                 let by = 1e-6 / (1.0 + place.rate.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
-                let aside = |by: f64| self.margin(&core::array::from_fn::<f64, N, _>(|i| y[i] + by * rate[i]), 2);
+                let aside =
+                    |by: f64| self.margin(&core::array::from_fn::<f64, N, _>(|i| y[i] + by * rate[i]), 2);
                 if self.strength > 0.0 {
                     all[2].slope = (aside(by) - aside(-by)) / (2.0 * by);
                 }
@@ -340,7 +364,9 @@ impl Flow<MARGINS> for StandingFlow {
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
-        let per = |i: usize| if matches!(i, W1 | W2 | W3) && self.course == Course::Rubs { per_tol } else { per_speed };
+        let per = |i: usize| {
+            if matches!(i, W1 | W2 | W3) && self.course == Course::Rubs { per_tol } else { per_speed }
+        };
         made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
     }
 
