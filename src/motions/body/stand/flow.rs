@@ -37,7 +37,7 @@ const SHARE: usize = W3;
 /// A slide is over where both speeds are below this share of those at its start.
 const OVER: f64 = 1e-14;
 /// At the fold itself there is no centre of the pressure any more.
-const SHORT_OF_FOLD: f64 = 1.0 - 1e-12;
+const SHORT_OF_FOLD: f64 = 1.0 - 1e-9;
 /// The longest step in tau.
 const LONGEST: f64 = 4.0;
 
@@ -158,6 +158,9 @@ impl StandingFlow {
     /// The friction -F/(mu N) along v, across it and about the axis at these speeds, which may have turned round.
     fn rubs(&self, [v, s]: [f64; 2]) -> [f64; 3] {
         // Steps may look a little beyond the fold at which they end.
+        if !(v + s).is_finite() {
+            return [f64::NAN; 3];
+        }
         let most = SHORT_OF_FOLD * self.face.fold() * s.abs();
         let at = self.face.at(if v.abs() > most { most } else { v.abs() }, s.abs(), None);
         at.map_or([f64::NAN; 3], |at| {
