@@ -22,7 +22,7 @@ use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::fly::{Aloft, Takeoff};
 use crate::motions::body::own::Own;
 use crate::motions::body::strike::{
-    LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLED, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
+    LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
 };
 use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{
@@ -33,6 +33,8 @@ use core::f64::consts::TAU;
 
 /// A rocking beside a slip is summed if the slip lasts longer than it by this factor.
 const OUTLASTS: f64 = 10.0;
+/// A rattle in a plane is over where all of its velocities are below this: its next hops are as low as roundings of theta.
+const LAST_RATTLE: f64 = 3e-6;
 /// Bounces of a flat face that are over in less time than this are summed.
 const LAST_BOUNCES: f64 = 1e-7;
 
@@ -55,7 +57,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let e = self.ask.restitution.unwrap_or(0.0);
         let planar = self.at[W1] == 0.0 && self.at[W3] == 0.0 && self.at[U2] == 0.0;
-        if e > 0.0 && planar && falls * self.of.body.rim() > RATTLED {
+        if e > 0.0 && planar && falls * self.of.body.rim() > LAST_RATTLE {
             return self.rattles_on_face(e);
         }
         let Some(rocks) = self.lands_flat(0.0, true) else { return Next::Ends(Ending::Landing) };
@@ -153,7 +155,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.flips();
         }
         let [here, there] = self.points_come_down();
-        if there < RATTLED {
+        if there.max(here) < LAST_RATTLE {
             return self.ends_rattle_on_face();
         }
         if here < over {
@@ -174,7 +176,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether what is left of a rattle in a plane, above a face that has all but landed, is a rounding error.
     pub(crate) fn hardly_rattles(&self, at: &Aloft) -> bool {
         let [w1, w2, w3] = at.w;
-        let flat = at.angle.0.abs().max(at.lift).max(w2.abs()) < RATTLED && self.of.body.rim() > 0.0;
+        let flat = at.angle.0.abs().max(at.lift).max(w2.abs()) < LAST_RATTLE && self.of.body.rim() > 0.0;
         flat && w1 == 0.0 && w3 == 0.0 && at.slip[1] == 0.0
     }
 
@@ -184,7 +186,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let [a, z] = [shape.rim.radius((0.0, up)), shape.rim.height((0.0, up))];
         let inertia = shape.i1 + z * z + a * a;
         self.claims(self.at[SIN].abs());
-        self.claims(LASTS * RATTLED * inertia * inertia / (a * a * a));
+        self.claims(LASTS * LAST_RATTLE * inertia * inertia / (a * a * a));
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.comes_to_lie()
     }
