@@ -211,7 +211,8 @@ pub(crate) fn falls_flat(
     own: &impl SpeedLaw,
 ) -> Option<(FallingFace, f64)> {
     let circle = |lever: f64| CircleDown { radius: -lever, depth: height, lever };
-    let border = Border { angle: (0.0, 1.0), height, circles: [circle(radius), circle(-radius)], even: false };
+    let border =
+        Border { angle: (0.0, 1.0), height, circles: [circle(radius), circle(-radius)], even: false };
     // Seen as another circle that lands, which lies at smaller levers.
     let (y, slip) = (State { theta: 0.0, w1: -turns, w2: -leans, w3: spins }, [-along, -across]);
     let landing = Landing { body, border, y, slip, lift, friction, own };

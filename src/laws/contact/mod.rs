@@ -30,8 +30,8 @@ use super::body::Body;
 pub use super::newton::Force;
 use super::state::State;
 use crate::numbers::Real;
-use reduced::{Rates, Reduced};
 pub use face::Face;
+use reduced::{Rates, Reduced};
 pub use slip::Friction;
 pub use table::{Table, TableKind};
 

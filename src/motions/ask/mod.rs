@@ -9,8 +9,8 @@ pub(crate) mod sample;
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;
-use crate::laws::contact::{Face, Table};
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
+use crate::laws::contact::{Face, Table};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;

@@ -13,8 +13,8 @@
 
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
-use crate::motions::body::face::FLAT;
 use crate::laws::state::State;
+use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::REST;
 #[cfg(feature = "many")]
 use crate::motions::walk::two_runs::Followed;

@@ -42,8 +42,8 @@ pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
 use crate::motions::walk::two_runs::{Followed, judged};
-use core::f64::consts::PI;
 pub(crate) use body_walk::BodyWalk;
+use core::f64::consts::PI;
 
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
 const AXIS_ERROR_SHARE: f64 = 0.25;
@@ -159,7 +159,11 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             within("height", value, (0.0, 1e6), "all rims above the table")?;
         }
     }
-    if ask.table.rubs() || start.aloft.is_some() || on_face(body, &start.state) { Ok(fine) } else { refuse_slip(start.slip).map(|()| fine) }
+    if ask.table.rubs() || start.aloft.is_some() || on_face(body, &start.state) {
+        Ok(fine)
+    } else {
+        refuse_slip(start.slip).map(|()| fine)
+    }
 }
 
 /// Whether a body with a face stands on it.

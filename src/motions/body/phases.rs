@@ -349,7 +349,9 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn first(walk: &BodyWalk<'_, N, G>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),
-            _ if walk.of.standing.is_some() => return STANDING * if walk.perturbation > 0.0 { LONGER } else { 1.0 },
+            _ if walk.of.standing.is_some() => {
+                return STANDING * if walk.perturbation > 0.0 { LONGER } else { 1.0 };
+            }
             (_, Some(flow)) => flow.first(y).max((LATELY * walk.of.lately[1]).min(flow.calm(y))),
             _ => {
                 let slide = &walk.of.slide;

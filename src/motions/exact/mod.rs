@@ -165,7 +165,8 @@ pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
     check_body(body)?;
     check_speeds(y)?;
     within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: a kick that lets the body rise is a w2")?;
-    let expected = "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point from which its state is told";
+    let expected =
+        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point from which its state is told";
     within("w2", y.theta.cos() * y.w2, (f64::MIN, 0.0), expected).map(drop)
 }
 

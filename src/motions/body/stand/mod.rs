@@ -19,6 +19,7 @@ use super::fly::Takeoff;
 use super::own::Own;
 use super::strike::ROCKED;
 use super::write;
+use crate::error::Error;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
@@ -32,7 +33,6 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};
-use crate::error::Error;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use flow::StandingFlow;
 
@@ -301,7 +301,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let moved = [forth * t + 0.5 * up * mu * normal * t * t, (aside - up * a * nu) * t];
                 let (sin, cos) = begin[PHI].sin_cos();
                 (y[PHI], y[PSI]) = (y[PHI] + nu * t, y[PSI] + (begin[W3] - up * nu) * t);
-                (y[X], y[Y]) = (y[X] + moved[0] * cos - moved[1] * sin, y[Y] + moved[0] * sin + moved[1] * cos);
+                (y[X], y[Y]) =
+                    (y[X] + moved[0] * cos - moved[1] * sin, y[Y] + moved[0] * sin + moved[1] * cos);
             }
             y
         });

@@ -11,10 +11,10 @@
 //! Error: of the sum, the square of the time that is summed.
 
 use super::STILL;
+use crate::laws::contact::Table;
 use crate::laws::contact::impact::Hit;
 use crate::laws::contact::landing::{FallingFace, falls_flat};
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::Table;
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
@@ -266,7 +266,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             let (mut y, most) = (self.at, all - given);
             y[TIME] = 0.0;
-            let steps = Steps { first: None, most: u64::MAX, patience: self.spent.patience, toil: self.toil(), tired: false };
+            let steps = Steps {
+                first: None,
+                most: u64::MAX,
+                patience: self.spent.patience,
+                toil: self.toil(),
+                tired: false,
+            };
             let flown = flow.run(flow.place(flow.enter(&y)), steps, &[most], &mut |_| (), &mut || true);
             self.has_spent(flown.spent);
             given = if flown.halt == Halt::Time { all } else { given + flown.y[TIME] };
@@ -286,7 +292,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
         self.of.takeoff.lift = if last { 0.0 } else { e * comes };
         let after = self.aloft();
-        let moving = |at: &Aloft| self.of.slide.energy(&{ let mut y = begin; (y[UH], y[U2], y[W3]) = (at.slip[0], at.slip[1], at.w[2]); y });
+        let moving = |at: &Aloft| {
+            self.of.slide.energy(&{
+                let mut y = begin;
+                (y[UH], y[U2], y[W3]) = (at.slip[0], at.slip[1], at.w[2]);
+                y
+            })
+        };
         let lost = moving(&from) - moving(&after) + 0.5 * (comes * comes - after.lift * after.lift);
         let hit = match () {
             () if self.at[W3] == 0.0 && self.at.slip() == [0.0; 2] => Hit::Sticks,
@@ -418,7 +430,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 return None;
             }
             let lasts = 2.0 * rises / falls;
-            if !sticks && self.of.slide.law.dry && slip.abs() < OUTLASTS * self.of.slide.law.strength * lasts {
+            if !sticks && self.of.slide.law.dry && slip.abs() < OUTLASTS * self.of.slide.law.strength * lasts
+            {
                 return None;
             }
             self.at.iter_mut().zip(rates).for_each(|(number, rate)| *number += lasts * rate);
