@@ -114,9 +114,9 @@ fn a_cup_rests_on_its_face_on_its_other_face_or_on_two_circles() {
         (m.rests_on(body), m.ending())
     };
     let [cup, cone, bottle, over, ..] = &bodies()[..] else { unreachable!() };
-    assert_eq!(falls(cup, 0.2), (RestsOn::Face, Ending::Face));
-    assert_eq!(falls(cup, 2.9), (RestsOn::OtherFace, Ending::Face));
-    assert_eq!(falls(cone, 2.9), (RestsOn::OtherFace, Ending::Face));
+    assert_eq!(falls(cup, 0.2), (RestsOn::Face, Ending::Stops));
+    assert_eq!(falls(cup, 2.9), (RestsOn::OtherFace, Ending::Stops));
+    assert_eq!(falls(cone, 2.9), (RestsOn::OtherFace, Ending::Stops));
     // A bottle lies on the border of its first two circles, and upside down on that of the last two.
     for body in [cup, cone, bottle, over] {
         assert_eq!(falls(body, 1.5).0, RestsOn::Side, "{body:?}");

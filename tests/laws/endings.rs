@@ -263,9 +263,10 @@ fn d12_what_makes_no_sense_is_refused_by_name_before_any_work() {
             Err(Error::OutOfRange { name, .. }) => name,
             other => panic!("{other:?}"),
         };
-        for theta in [0.0, -0.1, PI, 4.0, f64::NAN, f64::INFINITY, 1e-9] {
+        for theta in [-0.1, PI, 4.0, f64::NAN, f64::INFINITY, 1e-9] {
             assert_eq!(name(State { theta, ..good }, &[1.0], Ask::default()), "theta");
         }
+        assert_eq!(name(State { theta: 0.0, ..good }, &[1.0], Ask::default()), "w1");
         for x in [1e308, f64::NAN, f64::INFINITY, -1e7] {
             assert_eq!(name(State { w1: x, ..good }, &[1.0], Ask::default()), "w1");
             assert_eq!(name(State { w2: x, ..good }, &[1.0], Ask::default()), "w2");

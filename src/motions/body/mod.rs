@@ -168,7 +168,7 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
 
 /// Whether a body with a face stands on it.
 pub(crate) fn on_face(body: &Body, y: &State) -> bool {
-    (y.theta == 0.0 || y.theta == PI) && body.rim() > 0.0
+    (y.theta == 0.0 || y.theta == PI && body.theta_end() == PI) && body.rim() > 0.0
 }
 
 /// Returns an error for a slip without a law of friction.
