@@ -36,13 +36,15 @@ static COLLOCATION: LazyLock<Collocation> = LazyLock::new(|| {
     let chebyshev = |k: usize, x: f64| (k as f64 * x.clamp(-1.0, 1.0).acos()).cos();
     // The coefficients of a series by the values: c_k = (2 or 1)/n sum T_k(x_j) f_j.
     let weight = |k: usize, j: usize| if k == 0 { 1.0 } else { 2.0 } / n as f64 * chebyshev(k, places[j]);
-    let row = |of: &dyn Fn(usize) -> f64| core::array::from_fn(|j| (0..n).map(|k| of(k) * weight(k, j)).sum());
+    let row =
+        |of: &dyn Fn(usize) -> f64| core::array::from_fn(|j| (0..n).map(|k| of(k) * weight(k, j)).sum());
     let integral = |k: usize, x: f64| match k {
         0 => x + 1.0,
         1 => 0.5 * (x * x - 1.0),
         _ => {
             let at = |x: f64| {
-                chebyshev(k + 1, x) / (2.0 * (k as f64 + 1.0)) - chebyshev(k - 1, x) / (2.0 * (k as f64 - 1.0))
+                chebyshev(k + 1, x) / (2.0 * (k as f64 + 1.0))
+                    - chebyshev(k - 1, x) / (2.0 * (k as f64 - 1.0))
             };
             at(x) - at(-1.0)
         }
@@ -52,9 +54,7 @@ static COLLOCATION: LazyLock<Collocation> = LazyLock::new(|| {
         k as f64 * (k as f64 * t).sin() / t.sin()
     };
     Collocation {
-        integrals: core::array::from_fn(|i| {
-            row(&|k| integral(k, if i < n { places[i] } else { 1.0 }))
-        }),
+        integrals: core::array::from_fn(|i| row(&|k| integral(k, if i < n { places[i] } else { 1.0 }))),
         derivatives: core::array::from_fn(|i| row(&|k| slope(k, places[i]))),
         ends: [-1.0, 0.0, 1.0].map(|x| row(&|k| chebyshev(k, x))),
         places,
@@ -188,7 +188,13 @@ impl QuickSlide {
     }
 
     /// What is left at `to`, from what is left at `from`.
-    fn panel(&self, from: f64, to: f64, left: LeftOfSlide, last: &mut Option<[f64; 2]>) -> Option<LeftOfSlide> {
+    fn panel(
+        &self,
+        from: f64,
+        to: f64,
+        left: LeftOfSlide,
+        last: &mut Option<[f64; 2]>,
+    ) -> Option<LeftOfSlide> {
         let of = &*COLLOCATION;
         let half = 0.5 * (to - from);
         let middle = 0.5 * (to + from);
