@@ -119,10 +119,10 @@ impl QuickSlide {
         let rough = [FRAC_PI_4, self.lifts[0], self.lifts[1]];
         let nearest = rough.iter().map(|x| (x - self.end).abs()).fold(f64::INFINITY, f64::min);
         let edge = if way > 0.0 { FRAC_PI_2 - self.end } else { self.end };
-        let on_edge = nearest < ROUGH;
-        let first = if on_edge { ROUGH } else { (0.5 * nearest).min(0.3).min(0.6 * edge.max(1e-3)) };
+        let on_edge = nearest < ROUGH_END;
+        let first = if on_edge { ROUGH_END } else { (0.5 * nearest).min(0.3).min(0.6 * edge.max(1e-3)) };
         let mut last = None;
-        let (mut here, mut left) = self.first_panel(way, first.min(distance).max(1e-9), &mut last)?;
+        let (mut here, mut left) = self.first_panel(way, first.min(distance).max(1e-10), &mut last)?;
         if distance <= first {
             return Some(left);
         }
@@ -132,13 +132,13 @@ impl QuickSlide {
             for place in rough {
                 let gap = way * (place - here);
                 if gap > 1e-13 {
-                    reach = reach.min(if gap < 4.0 * ROUGH { gap } else { (0.75 * gap).max(ROUGH) });
+                    reach = reach.min(if gap < 4.0 * ROUGH { gap } else { (0.6 * gap).max(ROUGH) });
                 } else {
-                    reach = reach.min((3.0 * -gap).max(ROUGH));
+                    reach = reach.min((2.0 * -gap).max(ROUGH));
                 }
             }
             let edge = if way > 0.0 { FRAC_PI_2 - here } else { here };
-            reach = reach.min((0.75 * edge).max(1e-300)).min(0.5);
+            reach = reach.min((0.5 * edge).max(1e-300)).min(0.5);
             let done = reach >= start_gap(start, here);
             let next = if done { start } else { here + way * reach };
             left = self.panel(here, next, left, &mut last)?;
@@ -233,7 +233,9 @@ impl QuickSlide {
 /// The length below which a place where the law is not smooth is not resolved, and the length of a panel over that from
 /// the end of the slide.
 const ROUGH: f64 = 1e-4;
-const WIDER: f64 = 2.0;
+const WIDER: f64 = 1.0;
+/// The first panel of a slide that ends at such a place.
+const ROUGH_END: f64 = 1e-8;
 
 fn start_gap(start: f64, here: f64) -> f64 {
     (start - here).abs()
