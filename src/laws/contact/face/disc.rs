@@ -15,7 +15,7 @@
 //!
 //! Error: 1e-15 of the whole disc, 1e-12 of a part.
 
-use super::part::{Integrals, Part, Pressed, one_less};
+use super::part::{Integrals, Part, Pressed, ZEROS, one_less};
 use super::ring::{WholeMeans, nodes, quarter_integrals};
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{here, in_lanes, level};
@@ -86,7 +86,7 @@ pub(super) fn pressed(part: &Part, lam: f64, v: f64, s: f64) -> Pressed {
     in_lanes!(
         level(),
         simd => integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
-        else integrals(0.0, part, v, s).pressed(lam)
+        else integrals(ZEROS, part, v, s).pressed(lam)
     )
 }
 
@@ -178,7 +178,7 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
                 -end,
                 end,
                 #[inline(always)]
-                |group, x, weight| {
+                |x, weight| {
                     let square = one / (one + x * x);
                     let [turn, ahead] = [(x + x) * square, (one - x * x) * square];
                     let [place_sine, place_cosine] = [ms * ahead + mc * turn, mc * ahead - ms * turn];
@@ -235,22 +235,19 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
                     let by_place = [plain[0], plain[1]];
                     let [shorts, turns] = [short_of(under), across_of(under)];
                     let plain_turns = across_of(by_place);
-                    sums.add(
-                        group,
-                        [
-                            under[0],
-                            shorts,
-                            aside * under[0],
-                            back * under[0],
-                            back * turns - aside * shorts,
-                            plain[0],
-                            short_of(by_place),
-                            aside * plain[0],
-                            back * plain[0],
-                            aside * plain_turns,
-                            back * plain_turns,
-                        ],
-                    );
+                    sums.add([
+                        under[0],
+                        shorts,
+                        aside * under[0],
+                        back * under[0],
+                        back * turns - aside * shorts,
+                        plain[0],
+                        short_of(by_place),
+                        aside * plain[0],
+                        back * plain[0],
+                        aside * plain_turns,
+                        back * plain_turns,
+                    ]);
                 },
             );
         },

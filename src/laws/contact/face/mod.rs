@@ -84,6 +84,8 @@ const LAST_STEP: f64 = 1e-8;
 /// The ratios between which an end ratio is sought.
 const SLOW_END: f64 = 1e-5;
 const FAST_END: f64 = 1e6;
+/// Below this lam there is one centre of the pressure for each ratio.
+const UNIQUE_BELOW: f64 = 0.97;
 /// How far the centre of the pressure moves in a step along a branch.
 const SAME_BRANCH: f64 = 0.02;
 /// The largest root of the ratio of a fold less 1, and the relative accuracy of its place, whose square is that of lam.
@@ -109,6 +111,22 @@ impl FaceFriction {
     /// The ratio of `v` to `s` above which the body topples.
     pub fn fold(&self) -> f64 {
         self.fold
+    }
+
+    /// The ratios of `v` to `s` between which the whole face presses: the second one is that at which a part lifts off.
+    pub fn lifts(&self) -> [f64; 2] {
+        let slope = if self.form == Face::Ring { 2.0 } else { 4.0 };
+        let tilt = |x: f64| {
+            let (v, s) = if x < 1.0 { (x, 1.0) } else { (1.0, 2.0 - x) };
+            let whole = if self.form == Face::Ring { WholeMeans::of_ring(v, s) } else { disc::whole(v, s) };
+            let [along, across, _] = whole.pressed(self.lam, slope);
+            slope * self.lam * along.hypot(across) - 1.0
+        };
+        if slope * self.lam <= 1.0 {
+            return [f64::INFINITY; 2];
+        }
+        let x = crossing(tilt, 0.0, 2.0, -1.0, slope * self.lam - 1.0);
+        [if x < 1.0 { x } else { 1.0 / (2.0 - x) }; 2]
     }
 
     /// The force at the speed `v` of the centre and the speed `s` of the rim; none where the body topples. Where there
@@ -138,7 +156,7 @@ impl FaceFriction {
                 let apart = |of: &FaceForce| (of.centre[0] - x[0]).hypot(of.centre[1] - x[1]);
                 let near = self.solved(Part::towards(self.width_of(x[0].hypot(x[1])), x), v, s);
                 match near {
-                    Some(near) if apart(&near) < SAME_BRANCH => Some(near),
+                    Some(near) if lam < UNIQUE_BELOW || apart(&near) < SAME_BRANCH => Some(near),
                     _ => near.into_iter().chain(first()).min_by(|a, b| apart(a).total_cmp(&apart(b))),
                 }
             }

@@ -9,8 +9,8 @@
 //! All of these are integrals over the same nodes, so that Newton's method has exact derivatives. In this frame the
 //! sums are of terms as small as themselves for a slow spin and for a small part.
 
-use crate::numbers::here;
 use crate::numbers::side_by_side::SideBySide;
+use crate::numbers::{LANES, Pair, here};
 
 /// The nodes of Gauss's rule of 24 nodes, and their weights.
 #[rustfmt::skip]
@@ -49,12 +49,15 @@ impl Part {
 }
 
 const INTEGRALS: usize = 11;
-/// Numbers that are summed side by side, so that every machine adds in the same order.
-const SIDES: usize = 8;
+/// Numbers that are summed side by side: eight on every machine, so that each adds in the same order.
+pub(super) type Sides = Pair<Pair<Pair<f64>>>;
+/// Eight zeros.
+pub(super) const ZEROS: Sides =
+    Pair(Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)), Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)));
 
 /// Integrals over a part, of numbers in lanes.
 pub(super) struct Integrals<T> {
-    sums: [[T; INTEGRALS]; SIDES],
+    sums: [T; INTEGRALS],
 }
 
 /// A node: its weight, the pressure, 1 - along and across of its place, and sin d and 1 - cos d of its slip. Along and
@@ -79,21 +82,20 @@ pub(super) fn one_less<T: SideBySide>(sine: T, cosine: T) -> T {
 impl<T: SideBySide> Integrals<T> {
     #[inline(always)]
     pub fn new(like: T) -> Self {
-        Self { sums: [[like.splat(0.0); INTEGRALS]; SIDES] }
+        Self { sums: [like.splat(0.0); INTEGRALS] }
     }
 
-    /// Adds integrals of a chord or of nodes; the `group` is that of their place among the nodes.
+    /// Adds integrals over a chord or at a node.
     #[inline(always)]
-    pub fn add(&mut self, group: usize, terms: [T; INTEGRALS]) {
-        let sums = &mut self.sums[group % (SIDES / T::COUNT)];
-        for (sum, term) in sums.iter_mut().zip(terms) {
+    pub fn add(&mut self, terms: [T; INTEGRALS]) {
+        for (sum, term) in self.sums.iter_mut().zip(terms) {
             *sum = *sum + term;
         }
     }
 
     /// Adds a node.
     #[inline(always)]
-    pub fn rub(&mut self, group: usize, of: Rubbing<T>) {
+    pub fn rub(&mut self, of: Rubbing<T>) {
         let Rubbing { weight, pressed, short, across, aside, back } = of;
         let terms = [
             pressed,
@@ -108,7 +110,7 @@ impl<T: SideBySide> Integrals<T> {
             weight * across * aside,
             weight * across * back,
         ];
-        self.add(group, terms);
+        self.add(terms);
     }
 
     /// The integrals, and what follows from them for a height lam.
@@ -117,10 +119,8 @@ impl<T: SideBySide> Integrals<T> {
         let total = here(
             #[inline(always)]
             |i: usize| {
-                let mut sides = [0.0; SIDES];
-                for group in 0..SIDES / T::COUNT {
-                    self.sums[group][i].spill(&mut sides[group * T::COUNT..]);
-                }
+                let mut sides = [0.0; LANES];
+                self.sums[i].spill(&mut sides);
                 let [a, b, c, d, e, f, g, h] = sides;
                 ((a + b) + (c + d)) + ((e + f) + (g + h))
             },

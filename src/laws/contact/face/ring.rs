@@ -16,7 +16,7 @@
 //!
 //! Error: 1e-15 of the whole ring, 1e-14 of a part.
 
-use super::part::{GAUSS_PLACES, GAUSS_WEIGHTS, Integrals, Part, Pressed, Rubbing, one_less};
+use super::part::{GAUSS_PLACES, GAUSS_WEIGHTS, Integrals, Part, Pressed, Rubbing, ZEROS, one_less};
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{here, in_lanes, level};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4};
@@ -121,11 +121,11 @@ impl<T: SideBySide> Rubs<T> {
 
 /// Runs through the nodes between `left` and `right`: group, place and weight.
 #[inline(always)]
-pub(super) fn nodes<T: SideBySide>(like: T, left: f64, right: f64, mut each: impl FnMut(usize, T, T)) {
+pub(super) fn nodes<T: SideBySide>(like: T, left: f64, right: f64, mut each: impl FnMut(T, T)) {
     let (middle, half) = (like.splat(0.5 * (left + right)), like.splat(0.5 * (right - left)));
     for group in 0..GAUSS_PLACES.len() / T::COUNT {
         let at = group * T::COUNT;
-        each(group, middle + half * like.load(&GAUSS_PLACES[at..]), half * like.load(&GAUSS_WEIGHTS[at..]));
+        each(middle + half * like.load(&GAUSS_PLACES[at..]), half * like.load(&GAUSS_WEIGHTS[at..]));
     }
 }
 
@@ -136,7 +136,7 @@ pub(super) fn pressed(part: &Part, lam: f64, v: f64, s: f64) -> Pressed {
     in_lanes!(
         level(),
         simd => integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
-        else integrals(0.0, part, v, s).pressed(lam)
+        else integrals(ZEROS, part, v, s).pressed(lam)
     )
 }
 
@@ -166,12 +166,12 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
             -end,
             end,
             #[inline(always)]
-            |group, x, weight| {
+            |x, weight| {
                 let over = one / (one + x * x);
                 let half = [(x + x) * over, (one - x * x) * over];
                 let side = half[0] * cosine - half[1] * sine;
                 let size = (near + twice * side * side).sqrt();
-                sums.rub(group, rubs.at(four * over * weight, half, one / size));
+                sums.rub(rubs.at(four * over * weight, half, one / size));
             },
         );
         return sums;
@@ -186,12 +186,12 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
                 left,
                 right,
                 #[inline(always)]
-                |group, x, weight| {
+                |x, weight| {
                     let root = (one + x * x).sqrt();
                     let over = one / root;
                     let half = [over * (x * sine - cosine), over * (x * cosine + sine)];
                     let size = (near * x * x + twice).sqrt();
-                    sums.rub(group, rubs.at((weight + weight) * over * over, half, root / size));
+                    sums.rub(rubs.at((weight + weight) * over * over, half, root / size));
                 },
             );
         },
@@ -224,7 +224,7 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
             left,
             right,
             #[inline(always)]
-            |group, x, weight| {
+            |x, weight| {
                 let square = x * x + one;
                 let both = one / (x * square);
                 let inverse = both * square;
@@ -233,7 +233,7 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
                 let over = one / root;
                 let half = [over * cosine * (t + tilt), over * cosine * (one - t * tilt)];
                 let dt = share * (one + inverse * inverse) * over * over * weight;
-                sums.rub(group, rubs.at(dt, half, size * root * x * x * both));
+                sums.rub(rubs.at(dt, half, size * root * x * x * both));
             },
         );
         left = right;
