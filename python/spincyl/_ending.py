@@ -15,7 +15,8 @@ class Ending(IntEnum):
     DONE
         The motion reached the last time.
     FACE
-        The face landed on the table, at theta = 0 or pi.
+        The face landed on the table, at theta = 0 or pi. With a law of friction and ``restitution=0.0`` the
+        motion continues on the face. A motion that starts on the face always does.
     SIDE
         The other rim landed at theta = pi/2, another circle at one of `Body.borders`, or another part at
         `theta_end`. A thin disk (ell = 0) has no other rim.
@@ -26,7 +27,7 @@ class Ending(IntEnum):
     PAINLEVE
         The law of friction allows no contact force, or more than one.
     STOPS
-        In a motion with losses, the body has come to rest, and dry friction holds it.
+        The body has come to rest on its face, or in a motion with losses, and dry friction holds it.
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
@@ -56,7 +57,8 @@ class RestsOn(IntEnum):
         The body is not at rest, or the motion was not computed to its rest.
     FACE
         Its first face, at the rim from which the initial state is seen, or at the lower end of a body of
-        several circles; `Motion.axis_up` is then 1. A bounce of the face and a spin on it are not computed.
+        several circles; `Motion.axis_up` is then 1. It is the same face if the motion ended with
+        `Ending.FACE`, and the body goes on to spin or to bounce on it.
     OTHER_FACE
         The face at its other end; `Motion.axis_up` is then -1.
     SIDE

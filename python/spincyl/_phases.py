@@ -212,6 +212,7 @@ def methods_in_words(phases: Sequence[Phase], within: float) -> str:
         "slipping": f"slipping by steps within {within:g}",
         "rolling": "rolling by first integrals",
         "flying": "flight in closed form",
+        "on its face": f"sliding on its face by steps within {within:g}",
     }
     kinds = {"slipping" if phase.kind in ("lying", "pivoting") else phase.kind for phase in phases}
     return ", ".join(text for kind, text in how.items() if kind in kinds)

@@ -95,8 +95,9 @@ def roll(
     body : Body or Ellipsoid
         Single body with ell at most 1e6 and moments of inertia from 1e-6 to 1e12, or a single stone.
     state : State or EllipsoidState
-        Initial state, in natural units, also for a measured body. theta is in [1e-8, pi - 1e-8], and angular
-        velocities are at most 1e6 sqrt(g/R). A stone needs an `EllipsoidState`.
+        Initial state, in natural units, also for a measured body. theta is in [1e-8, pi - 1e-8], or 0 or pi
+        for a body on its face (`spun`), with w1 = 0. Angular velocities are at most 1e6 sqrt(g/R). A stone
+        needs an `EllipsoidState`.
     t : array_like, 1-D, or a number
         Times at which the motion is returned, in sqrt(R/g), in ascending order, or descending to go backward
         in time. For a measured body `t`, `t0` and `step` are in seconds, or are pint quantities.
@@ -130,8 +131,8 @@ def roll(
     restitution : float, optional
         Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
         that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
-        other rim lands. With a restitution the motion continues: the body may fly, bounce, lie on both rims
-        and rise again. An initial state in the air (`dropped`) needs a restitution. While the other rim
+        other rim or its face lands. With a restitution the motion continues: the body may fly, bounce, lie on
+        both rims, stand on its face and rise again. An initial state in the air (`dropped`) needs a restitution. While the other rim
         carries the body, theta refers to that rim, and phi is turned by pi: `Motion.rim` tells the rim, and
         `Motion.axis_up` and `Motion.rests_on` tell heads from tails. With `contact="rolling"` a
         landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks from rim to rim, and
@@ -149,11 +150,12 @@ def roll(
     -------
     Motion
         States at the times `t` up to the event that ends the motion: a landing of the face or of the other
-        rim, lift-off, or slip. With a restitution a motion ends only if the face lands, or if the laws of
-        impact and friction do not determine how the motion continues. The arrays of a motion that ends early
-        are then shorter than `t`; plot them against the motion's own `t` (matplotlib rejects x and y of
-        different lengths). If `t` is a number and the motion ends before `t`, the arrays are empty; `status`,
-        `event` and `message` give the reason. For a measured body the motion is in SI.
+        rim, lift-off, or slip. With a restitution a motion ends only where a body on its face has come to
+        rest, where a face lands while the body bounces and tumbles, or if the laws of impact and friction do
+        not determine how the motion continues. The arrays of a motion that ends early are then shorter than
+        `t`; plot them against the motion's own `t` (matplotlib rejects x and y of different lengths). If `t`
+        is a number and the motion ends before `t`, the arrays are empty; `status`, `event` and `message` give
+        the reason. For a measured body the motion is in SI.
 
     Raises
     ------
@@ -209,6 +211,13 @@ def roll(
     >>> m = sc.roll(ball, sc.dropped(ball, 0.5, 1.0), 10.0, contact=sc.Coulomb(0.3), restitution=0.5)
     >>> len(m.impacts), m.phases[-1].kind, round(m.phases[-1].time, 5)
     (23, 'rolling', 3.0)
+
+    A tube slides and spins on its face. Both end at the same moment:
+
+    >>> tube = sc.Body.tube(0.75, bore=0.8)
+    >>> m = sc.roll(tube, sc.spun(tube, 1.0, (1.5, 0.0)), 10.0, contact=sc.Coulomb(0.25))
+    >>> m.status.name, round(m.event.time, 9)
+    ('STOPS', 7.498824259)
     """
     one: Any = body
     given: Any = state

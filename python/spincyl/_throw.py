@@ -114,8 +114,8 @@ def dropped(
         Height of the lowest point of the body above the table, 0 or more, in R; for a measured body, or with
         `scale`, in metres.
     theta : array_like
-        Inclination in radians, from 0 to pi. At 0 and pi, where the axis is vertical, `w1` must be 0. A body
-        that lands flat ends there, with `Ending.FACE`.
+        Inclination in radians, from 0 to pi. At 0 and pi, where the axis is vertical, `w1` must be 0. With w2
+        = 0, too, the body lands flat on its face: it bounces, slides and spins there.
     w1, w2, w3 : array_like, optional
         Components of the angular velocity, as in `State`, in sqrt(g/R); for a measured body, or with `scale`,
         in rad/s.

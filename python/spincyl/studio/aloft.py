@@ -38,8 +38,9 @@ FLIES, ON_FACE = 2, 7
 
 
 def goes_up(m: "Motion") -> bool:
-    """Whether the motion leaves the table, lies on both rims or stands on its face at any time."""
-    return m._phases is not None and any(phase.kind not in _ON_RIM for phase in m.phases)
+    """Whether the motion leaves the table, lies on both rims, stands on its face or rocks at any time."""
+    rocks = m._impacts is not None and len(m._impacts) > 0
+    return rocks or (m._phases is not None and any(phase.kind not in _ON_RIM for phase in m.phases))
 
 
 def strikes(m: "Motion") -> "tuple[Impact, ...]":

@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from spincyl._motion import Motion
 
 
+#: Sine of an inclination below which the whole face strikes the table.
+FLAT = 1e-9
+
+
 class PlotUnits(NamedTuple):
     """Units of time and of length of a plot, and the name of the unit of length."""
 
@@ -95,5 +99,6 @@ def _height(ax: "Axes", m: "Motion", t: Floats, units: PlotUnits, style: dict[st
 def strikes(m: "Motion") -> Floats:
     """(2, k) positions of the impacts of a motion on the table."""
     there = m.wanting("pose", t=np.unique([x.time for x in m.impacts]))
-    found: Floats = there.contact_point.T
+    flat = np.sin(there.theta)[:, np.newaxis] < FLAT  # the whole face strikes
+    found: Floats = np.where(flat, there.centre[:, :2], there.contact_point).T
     return found
