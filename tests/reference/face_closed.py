@@ -173,7 +173,7 @@ class Closed(Vectors):
                 scale = mpfr("0.3") / max(abs(dm), abs(dh))
                 dm, dh = dm * scale, dh * scale
             middle, half = middle + dm, half + dh
-            if max(abs(dm), abs(dh)) < mpfr("1e-44"):
+            if max(abs(dm), abs(dh)) < mpfr("1e-20"):
                 break
             if half >= gmpy2.const_pi():
                 half = gmpy2.const_pi() - mpfr("1e-3")
@@ -283,7 +283,7 @@ class Closed(Vectors):
         y = [v if self.drilling else gmpy2.log(v), ZERO, s if self.drilling else gmpy2.log(s), *[ZERO] * 5, now.t]
         ring = self.scene.face != "disc"
         self.part, self.arc_at = ring and self.inside(y) < 0, None
-        least = (v + s) * mpfr("1e-28")
+        least = (v + s) * mpfr("1e-27")
         while True:
             events = [("sample", lambda y: times[0] - y[8])] if times else []
             if ring:

@@ -15,7 +15,7 @@ from gmpy2 import mpfr
 sqrt = np.frompyfunc(gmpy2.sqrt, 1, 1)
 sin, cos = np.frompyfunc(gmpy2.sin, 1, 1), np.frompyfunc(gmpy2.cos, 1, 1)
 ZERO, ONE = mpfr(0), mpfr(1)
-WHOLE = 100  # exp(-100) is what a sum round the ring may leave out
+WHOLE = 75  # exp(-75) is what a sum round the ring may leave out
 
 
 @functools.cache
@@ -41,7 +41,7 @@ class Vectors:
         self.rho = mpfr(scene.body[3])
         self.mu = mpfr(scene.mu)
         self.drilling, self.air = mpfr(scene.losses.get("drilling", 0)), mpfr(scene.losses.get("air", 0))
-        self.part, self.plane = False, None
+        self.part, self.planes = False, {}
         self.frozen, self.sense, self.pure, self.fixed = False, 0, False, None
         self.steps = 0
         self.col = Collocation(self.count)
@@ -59,6 +59,8 @@ class Vectors:
     def ratio(self, vx, vy, w):
         """Radius to which the singular place of the ring goes by that map."""
         v, s = sqrt(vx * vx + vy * vy), self.a * abs(w)
+        if self.scene.law == "viscous":  # nothing is singular
+            return v * 0
         q = np.where(v < s, v, s) / np.where(v < s, s, v)
         return q / (1 + sqrt(1 - q * q))
 
@@ -77,34 +79,63 @@ class Vectors:
         """Force, couple, heat and the pressure's plane with all these nodes."""
         ux, uy, size = self.slip_at(vx, vy, w, nx, ny)
         safe = np.where(size == 0, ONE, size)
-        x, y = nx, ny
-        if self.scene.law == "viscous":
-            dx, dy = ux, uy
-        elif not self.pure:
-            dx, dy = ux / safe, uy / safe
-        else:  # the direction of a slip that goes through 0 stays
-            dx, dy = (x * 0 + d for d in self.fixed) if self.sense == 0 else (-self.sense * y, self.sense * x)
+        x, y, dx, dy = nx, ny, ux / safe, uy / safe
         lam = self.mu * self.z / self.a
         rows = [weight, weight * (x - lam * dx), weight * (y - lam * dy)]
         matrix = [[over(row), over(row * x), over(row * y)] for row in rows]
         plane = cramer(matrix)
-        p = weight * (plane[0][..., None] + plane[1][..., None] * x + plane[2][..., None] * y)
+        p = weight * (plane[0] + plane[1] * x + plane[2] * y)
         force = -self.mu * over(p * dx), -self.mu * over(p * dy)
         couple = -self.mu * self.a * over(p * (x * dy - y * dx))
         heat = self.mu * over(p * (dx * ux + dy * uy))
         return (*force, couple, heat, *plane)
 
     def whole(self, vx, vy, w):
-        """Everything of a ring that presses all round."""
+        """Everything of a ring that presses all round, which is the mirror image of itself but for the sense of the turn.
+
+        The direction n of a node is cos b across V and sin b along it, and that of its slip has the parts f and h so told.
+        """
         r = self.ratio(vx, vy, w)
         most = max(np.atleast_1d(r))
-        n = 32 if self.scene.law == "viscous" or most == 0 else max(32, int(WHOLE / -gmpy2.log(most)) // 16 * 16 + 16)
-        cosine, sine = circle(n)
-        at = [x[..., None] for x in (vx, vy, w, r)]
-        nx, ny, weight = self.ring(*at[:3], cosine[None, :], sine[None, :], at[3])
-        return self.summed(*at[:3], nx, ny, weight / n)
+        viscous = self.scene.law == "viscous"
+        n = 32 if viscous or most == 0 else max(32, int(WHOLE / -gmpy2.log(most)) // 16 * 16 + 16)
+        cosine, sine = (x[None, : n // 2 + 1] for x in circle(n))
+        share = np.array([ONE, *[2 * ONE] * (n // 2 - 1), ONE]) / n
+        v, s = sqrt(vx * vx + vy * vy), self.a * abs(w)
+        at, v, s = r[..., None], v[..., None], s[..., None]
+        below = 1 + at * at + 2 * at * cosine
+        c, d = (cosine * (1 + at * at) + 2 * at) / below, (1 - at * at) * sine / below
+        weight = share * (1 - at * at) / below
+        f, h = v - s * c, s * d
+        if not viscous:
+            if self.pure:
+                weight = weight / (s if self.sense else v)
+                f, h = (-s * c, h) if self.sense else (v + 0 * c, 0 * h)
+            else:
+                weight = weight / sqrt(f * f + h * h)
+        f, h = weight * f, weight * h
+        fc, hd = c * f, d * h
+        turn = hd - fc
+        mean_f, mean_fc, mean_hd, mean_turn, mean_tc = over(f), over(fc), over(hd), over(turn), over(c * turn)
+        # p = 1 + 2 X . n: the pressure's centre X is lam times the mean of the direction of the slip
+        lam = self.mu * self.z / self.a
+        along = mean_f / (1 - 4 * lam * lam * mean_hd * mean_fc)
+        across = 2 * lam * mean_hd * along
+        couple = mean_turn + 2 * lam * across * mean_tc
+        sign = self.sense if self.pure and self.sense else np.array([-1 if x < 0 else 1 for x in w])
+        ex, ey = self.fixed if self.pure and self.fixed else self.ahead(vx, vy)
+        gx, gy = along * ex - sign * across * ey, along * ey + sign * across * ex
+        force = -self.mu * gx, -self.mu * gy
+        moment = -self.mu * self.a * couple * sign
+        return (*force, moment, -(force[0] * vx + force[1] * vy + moment * w), w * 0 + 1, 2 * lam * gx, 2 * lam * gy)
 
-    def partly(self, vx, vy, w):
+    @staticmethod
+    def ahead(vx, vy):
+        v = sqrt(vx * vx + vy * vy)
+        safe = np.where(v == 0, ONE, v)
+        return np.where(v == 0, ONE, vx / safe), vy / safe
+
+    def partly(self, vx, vy, w, key=None):
         """The same of one state, of which a part presses."""
         one = np.array([vx]), np.array([vy]), np.array([w])
         full = self.whole(*one)
@@ -113,8 +144,9 @@ class Vectors:
             return [x[0] for x in full]
         r = self.ratio(*one)[0]
         dx, dy = (x[0] for x in self.places(*one, r))
-        if self.plane is not None:  # the last one, told from the direction of the least slip
-            plane = np.array([self.plane[0], self.plane[1] * dx - self.plane[2] * dy, self.plane[1] * dy + self.plane[2] * dx])
+        old = self.planes.get(key, self.planes.get("last"))
+        if old is not None:  # the last one, told from the direction of the least slip
+            plane = np.array([old[0], old[1] * dx - old[2] * dy, old[1] * dy + old[2] * dx])
         for _ in range(60):
             size = gmpy2.hypot(plane[1], plane[2])
             middle = gmpy2.atan2(plane[2] * dx - plane[1] * dy, plane[1] * dx + plane[2] * dy)
@@ -125,9 +157,10 @@ class Vectors:
             new = np.array(found[4:])
             change = max(abs(x) for x in new - plane)
             plane = new
-            if change < 1e-44:
+            if change < 1e-21:  # the next one would be less than its square
                 break
-        self.plane = plane[0], plane[1] * dx + plane[2] * dy, plane[2] * dx - plane[1] * dy
+        kept = plane[0], plane[1] * dx + plane[2] * dy, plane[2] * dx - plane[1] * dy
+        self.planes[key] = self.planes["last"] = kept
         return list(found)
 
     def arc(self, low, high, r):
@@ -141,7 +174,7 @@ class Vectors:
         pi, width = gmpy2.const_pi(), -gmpy2.log(r)
         edges, x = {ZERO}, pi
         while True:
-            edges |= {x, -x}
+            edges |= {x, -x, pi - x, x - pi}  # the map has poles on the other side
             if x < width:
                 break
             x /= 5
@@ -193,7 +226,7 @@ class Vectors:
             return self.disc(vx, vy, w)
         if not self.part:
             return self.whole(vx, vy, w)
-        rows = [self.partly(*at) for at in zip(vx, vy, w, strict=True)]
+        rows = [self.partly(*at, key=k if len(w) > 1 else None) for k, at in enumerate(zip(vx, vy, w, strict=True))]
         return [np.array(x) for x in zip(*rows)]
 
     def rates(self, values):
@@ -215,12 +248,12 @@ class Vectors:
         return gmpy2.hypot(y[3], y[4]) + self.a * abs(y[5])
 
     def longest(self, y):
-        left = self.size(y) / self.mu * (mpfr("0.4"))
-        v, s = gmpy2.hypot(y[3], y[4]), self.a * abs(y[5])
         if self.scene.law == "viscous":
             return mpfr(1)
         if self.pure:
-            return left * 8
+            return 3 * self.size(y) / self.mu
+        left = mpfr("0.6") * self.size(y) / -self.shrinks(y)
+        v, s = gmpy2.hypot(y[3], y[4]), self.a * abs(y[5])
         far = abs(v - s)
         pace = abs(self.pace(y))
         if far < 1e-11 * (v + s):
@@ -245,7 +278,7 @@ class Vectors:
                 yield "sample", now.at(t=mpfr(t))
             yield "rests", now
             return
-        self.plane = None
+        self.planes = {}
         ring = self.scene.law != "viscous" and self.scene.face != "disc"
         self.part = ring and self.margin(y) < 0
         times = [mpfr(t) for t in times]
@@ -265,8 +298,8 @@ class Vectors:
                 name = "rests" if self.pure else "straight"
                 events.append((name, lambda y: y[5] * self.sense))
             else:
-                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-28")))
-            name, y, n = self.col.follow(self.rates, y, self.longest(y), events, self.longest)
+                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-27")))
+            name, y, n = self.col.follow(self.rates, y, self.longest(y), events, self.longest, scale=self.size)
             self.steps += n
             if name == "border":
                 self.part = not self.part

@@ -9,7 +9,7 @@ import gmpy2
 import numpy as np
 from gmpy2 import mpfr
 
-TOLERANCE = mpfr("1e-19")  # of the polynomial of the rates; the end of a step errs by about its square
+TOLERANCE = mpfr("3e-17")  # of the polynomial of the rates; the end of a step errs by about its square
 CLOSE = mpfr("1e-42")
 
 
@@ -94,18 +94,19 @@ class Collocation:
                 return list(start[:, 0] + h * f.dot(self.weights))
         raise ArithmeticError("the first step does not converge")
 
-    def follow(self, rates, y, h, events, longest=None, most=100000):
+    def follow(self, rates, y, h, events, longest=None, scale=None):
         """Goes on until the first of the events, (name, function of a state), becomes negative.
 
         The name and the state there, and the number of steps.
         """
-        taken = 0
-        while taken < most:
+        taken, most = 0, mpfr(3)
+        while taken < 100000:
+            allowed = TOLERANCE * gmpy2.sqrt(scale(y)) if scale else TOLERANCE
             if longest is not None:
                 h = min(h, longest(y))
             found = self.step(rates, y, h)
-            if found is None or not found[2] < TOLERANCE:
-                h /= 2
+            if found is None or not found[2] < allowed:
+                h, most = h / 2, mpfr("1.2")
                 if h < 1e-60:
                     raise ArithmeticError("the steps vanish")
                 continue
@@ -131,7 +132,8 @@ class Collocation:
                             best = (*place, name)
                 return best[2], best[1], taken
             y = end
-            h *= min(mpfr(3), max(mpfr("0.5"), mpfr("0.9") * (TOLERANCE / (error + mpfr("1e-60"))) ** (mpfr(1) / self.count)))
+            most = min(mpfr(3), most + mpfr("0.2"))
+            h *= min(most, max(mpfr("0.5"), mpfr("0.9") * (allowed / (error + mpfr("1e-60"))) ** (mpfr(1) / self.count)))
         raise ArithmeticError("too many steps")
 
     def place(self, rates, y, g, low, high, low_g, high_g):
