@@ -349,7 +349,7 @@ class Vectors:
 
     def corner(self, side, lean):
         """From the centre to a contact, and its rate by the lean."""
-        c, s = np.cos(lean) if False else cos(lean), sin(lean)
+        c, s = cos(lean), sin(lean)
         rx, rz = side * self.a * c + self.z * s, side * self.a * s - self.z * c
         return rx, rz
 
@@ -514,20 +514,20 @@ class Vectors:
         normal = 1 / (1 - (lam - 1) * self.a**2 / self.i1)
         c = (lam - 1) * self.a * normal / self.i1
         nu = now.w * (self.i3 / self.i1) * (lam - 1) / (3 * lam - 2)
-        y = [now.t, *now.place, self.z, vx, vy, ZERO, ZERO, ZERO, ONE, *(-x for x in n), ZERO, ZERO, ZERO, now.w, now.heat]
+        mark = now.phi + now.psi  # the direction of a vector in the body
+        y = [now.t, *now.place, self.z, vx, vy, ZERO, ZERO, ZERO, ONE, gmpy2.cos(mark), gmpy2.sin(mark), ZERO, ZERO, ZERO, now.w, now.heat]
         h = mpfr("0.02")
         t = self.col.nodes * h
         theta, turned = c * t * t / 2, nu * t
         mx, my = n[0] * cos(turned) - n[1] * sin(turned), n[1] * cos(turned) + n[0] * sin(turned)
         tx, ty = mx * sin(theta), my * sin(theta)
         dx, dy = mx * c * t - my * theta * nu, my * c * t + mx * theta * nu
-        spin = now.w * t
+        spin = mark + now.w * t
         guess = [now.t + t, now.place[0] + vx * t, now.place[1] + vy * t, self.z + self.a * theta,
                  vx - mu * normal * n[0] * t, vy - mu * normal * n[1] * t, self.a * c * t, tx, ty, cos(theta),
-                 -n[0] * cos(spin) + n[1] * sin(spin), -n[1] * cos(spin) - n[0] * sin(spin), t * 0,
+                 cos(spin), sin(spin), t * 0,
                  -dy + now.w * tx, dx + now.w * ty, now.w + t * 0, now.heat + mu * normal * sqrt(v * v - s * s + t * 0) * t]
-        y = self.small().implicit(self.space_rates, y, h, np.array([np.interp(0, [0], [0]) * 0 + g for g in guess])
-                                  if False else self.thinned(guess))
+        y = self.small().implicit(self.space_rates, y, h, self.thinned(guess))
         times = [mpfr(x) for x in times]
         yield "topples", self.space_told(None, now, n)
         while times:
