@@ -154,7 +154,7 @@ fn states_slips_heat_and_poses_on_a_face_are_those_of_the_references() {
                 if row.friction[0].is_nan() {
                     0.0
                 } else {
-                    most(&[force.normal, force.along, force.across], &[1.0, row.friction[0], row.friction[1]])
+                    most(&[force.normal, force.across, force.along], &[1.0, row.friction[0], row.friction[1]])
                 }
             });
             let (state_ok, pose_ok) = (TIGHT.max(m.error), TIGHT.max(m.pose_error));

@@ -40,10 +40,10 @@ from series import precise
 from tables import compared, decimal, followed, renew_json
 
 HERE = pathlib.Path(__file__).parent
-DIGITS = 60
+DIGITS = 50
 NAMES = "t theta w1 w2 w3 u_h u_2 height heat work phi psi x y f_h f_2".split()
 SETTLED = mpfr("1e-13")  # a rate of landing below which the rest of a rocking is summed
-STILL = mpfr("1e-30")  # the same of bounces
+STILL = mpfr("1e-14")  # the same of bounces
 
 
 class Now:

@@ -15,7 +15,7 @@ from gmpy2 import mpfr
 sqrt = np.frompyfunc(gmpy2.sqrt, 1, 1)
 sin, cos = np.frompyfunc(gmpy2.sin, 1, 1), np.frompyfunc(gmpy2.cos, 1, 1)
 ZERO, ONE = mpfr(0), mpfr(1)
-WHOLE = 75  # exp(-75) is what a sum round the ring may leave out
+WHOLE = 68  # exp(-68) is what a sum round the ring may leave out
 
 
 @functools.cache

@@ -10,7 +10,8 @@ import numpy as np
 from gmpy2 import mpfr
 
 TOLERANCE = mpfr("3e-17")  # of the polynomial of the rates; the end of a step errs by about its square
-CLOSE = mpfr("1e-42")
+CLOSE = mpfr("1e-33")  # of the states at the nodes
+ROOT = mpfr("1e-38")
 
 
 @functools.cache
@@ -57,7 +58,7 @@ class Collocation:
             values = new
             if not change < 1e6:
                 return None
-            if change < CLOSE or (before is not None and change < 1e-38 and change >= before):
+            if change < CLOSE or (before is not None and change < 1e-31 and change >= before):
                 break
             before = change
         else:
@@ -145,17 +146,17 @@ class Collocation:
             x = (low * high_g - high * low_g) / (high_g - low_g)
             state = self.step(rates, y, x)[0]
             value = g(state)
-            if abs(value) < CLOSE or abs(high - low) < CLOSE * abs(high):
+            if abs(value) < ROOT or abs(high - low) < ROOT * abs(high):
                 return x, state
             if value > 0:
-                if abs(x - low) < CLOSE * x:
+                if abs(x - low) < ROOT * x:
                     return x, state
                 low, low_g = x, value
                 if side == 1:
                     high_g /= 2
                 side = 1
             else:
-                if abs(x - high) < CLOSE * x:
+                if abs(x - high) < ROOT * x:
                     return x, state
                 high, high_g = x, value
                 if side == -1:
