@@ -16,6 +16,7 @@ mod ensemble;
 mod equations;
 mod evaluations;
 mod exact;
+mod face_reference;
 #[cfg(feature = "serde")]
 mod files;
 mod flight;
