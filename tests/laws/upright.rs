@@ -51,10 +51,10 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
         let times: Vec<f64> = (0..40).map(|k| falls * f64::from(k) / 39.0 + f64::from(k / 39) * 1e-9).collect();
         let m = moved(&body, &start, &ask, &times);
         let path = m.path.as_ref().unwrap();
-        let time = path.impacts.first().map_or(path.phases[1].time, |impact| impact.time);
+        let time = path.impacts.first().unwrap_or_else(|| panic!("{start:?} {ask:?} {:?} {body:?}", m.event)).time;
         assert!((time - falls).abs() < 1e-14 * (1.0 + falls), "{time} {falls}");
         assert!(
-            m.error < 1e-12 && m.pose_error < 1e-12,
+            m.error < 1e-10 && m.pose_error < 1e-11,
             "{} {}: {body:?} {start:?} {ask:?}",
             m.error,
             m.pose_error

@@ -77,7 +77,7 @@ impl LastState {
             return RestsOn::None;
         }
         match self.ending {
-            Ending::Stops if theta.sin() < FLAT && body.rim() > 0.0 => {
+            Ending::Stops if theta.sin() < FLAT && body.standing_on(self.rim).rim() > 0.0 => {
                 if axis_up(body, &self.state, self.rim) > 0.0 { RestsOn::Face } else { RestsOn::OtherFace }
             }
             Ending::Done | Ending::Stops | Ending::Side if self.is_on_side(body, theta) => RestsOn::Side,
