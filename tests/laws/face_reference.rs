@@ -158,7 +158,9 @@ fn states_slips_heat_and_poses_on_a_face_are_those_of_the_references() {
                 }
             });
             let (state_ok, pose_ok) = (TIGHT.max(m.error), TIGHT.max(m.pose_error));
-            if !(state.max(heat).max(work) <= state_ok && place <= pose_ok && force <= TIGHT.max(m.force_error))
+            if !(state.max(heat).max(work) <= state_ok
+                && place <= pose_ok
+                && force <= TIGHT.max(m.force_error))
             {
                 worst.push(format!(
                     "{name} at {}: state {state:.1e} heat {heat:.1e} work {work:.1e} of {:.1e}, pose {place:.1e} \

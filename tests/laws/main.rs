@@ -46,6 +46,7 @@ mod rounded_motions;
 mod several_held;
 mod slip;
 mod stability;
+mod standing;
 mod steady_states;
 mod sticking;
 mod stone;

@@ -48,10 +48,12 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
             ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
         }
         let falls = lift + (lift * lift + 2.0 * height).sqrt();
-        let times: Vec<f64> = (0..40).map(|k| falls * f64::from(k) / 39.0 + f64::from(k / 39) * 1e-9).collect();
+        let times: Vec<f64> =
+            (0..40).map(|k| falls * f64::from(k) / 39.0 + f64::from(k / 39) * 1e-9).collect();
         let m = moved(&body, &start, &ask, &times);
         let path = m.path.as_ref().unwrap();
-        let time = path.impacts.first().unwrap_or_else(|| panic!("{start:?} {ask:?} {:?} {body:?}", m.event)).time;
+        let time =
+            path.impacts.first().unwrap_or_else(|| panic!("{start:?} {ask:?} {:?} {body:?}", m.event)).time;
         assert!((time - falls).abs() < 1e-14 * (1.0 + falls), "{time} {falls}");
         assert!(
             m.error < 1e-9 && m.pose_error < 1e-9,
@@ -60,7 +62,8 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
             m.pose_error
         );
         if k % 5 > 0 {
-            for (t, (y, pose)) in m.times.iter().zip(m.states.iter().zip(m.poses.as_ref().unwrap())).take(39) {
+            for (t, (y, pose)) in m.times.iter().zip(m.states.iter().zip(m.poses.as_ref().unwrap())).take(39)
+            {
                 assert_eq!((y.w1, y.w2, y.w3), (0.0, 0.0, w3));
                 let turned = pose.phi.radians() + if over { -1.0 } else { 1.0 } * pose.psi.radians();
                 let whole = turned - if over { -w3 } else { w3 } * t;

@@ -100,7 +100,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The phase after an impact.
-    fn leaves_impact(&mut self, after: &Aloft) -> Next {
+    pub(super) fn leaves_impact(&mut self, after: &Aloft) -> Next {
+        if self.is_on_face() {
+            let lost = self.keeps_upright();
+            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += lost);
+        }
         if after.lift > 0.0 {
             if self.is_on_face() {
                 self.at[SIN] = 0.0;

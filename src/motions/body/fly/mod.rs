@@ -278,6 +278,11 @@ impl Flight {
         if t == 0.0 {
             return self.given;
         }
+        if self.transverse == 0.0 && self.from.angle.0 == 0.0 {
+            // Only the sum of phi and psi, or their difference, turns.
+            let spin = self.from.w[2];
+            return self.placed(t, self.from.angle, [0.0, 0.0, spin], [0.0, spin * t]);
+        }
         let angle = self.angle(t);
         let [w1, w2] = self.tilting(t, angle);
         let [x, y] = self.analogies(t);

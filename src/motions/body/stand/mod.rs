@@ -33,7 +33,7 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
 /// Slower velocities are those of a body at rest.
@@ -380,23 +380,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.at = at(lasts);
         self.of.state = write::state(&self.at);
-    }
-
-    /// Tells a body on its face from the point of its ring that its lean will bring down, with its slip and lift.
-    fn tells_from_lean(&mut self) {
-        let (up, [w1, w2, w3], shape) = (self.up(), self.at.w(), self.of.slide.law.shape);
-        let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
-        let rises = self.of.takeoff.lift + shape.rim.lever(self.at.angle()) * w2;
-        let turn = w2.atan2(up * w1) + if up > 0.0 { FRAC_PI_2 } else { -FRAC_PI_2 };
-        self.turns_by(turn);
-        let (sin, cos) = turn.sin_cos();
-        (self.at[W1], self.at[W2]) = (0.0, -up * w1.hypot(w2));
-        (self.at[UH], self.at[U2]) = (
-            v_h * cos + v_2 * sin - shape.rim.height(self.at.angle()) * self.at[W2],
-            v_2 * cos - v_h * sin - shape.rim.radius(self.at.angle()) * w3,
-        );
-        self.of.takeoff.lift = rises - shape.rim.lever(self.at.angle()) * self.at[W2];
-        self.sees_face();
     }
 
     /// Tells a body on its face from the point of its ring in this direction, an angle from e_h. Slide and spin remain.

@@ -65,9 +65,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.lies_on_face();
             return self.stands_on_face();
         }
-        if self.at[W1] != 0.0 {
-            return self.leaves_impact_on_face();
-        }
         self.rises_from_face()
     }
 
@@ -93,12 +90,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[W1], self.at[W2], self.at[W3]) = (-after.turns, -up * after.leans, up * after.spins);
         [self.at[UH], self.at[U2]] = after.slip.map(|u| -up * u);
         self.of.takeoff.lift = if e > 0.0 { after.lift } else { 0.0 };
-        if after.leans == 0.0 && e == 0.0 {
-            // The other points of the ring take what would turn the body about the line between these two.
-            let before = self.of.slide.energy(&self.at);
-            let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
-            (self.at[W1], self.at[UH], self.at[U2]) = (0.0, v_h, v_2 - arms[0] * self.at[W3]);
-            lost += before - self.of.slide.energy(&self.at);
+        if e == 0.0 {
+            lost += self.keeps_upright();
         }
         self.claims(-lost);
         if records {
@@ -239,7 +232,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         match self.lands_flat(0.0, true) {
             None => Next::Ends(Ending::Landing),
             Some(false) => self.comes_to_lie(),
-            Some(true) => self.leaves_impact_on_face(),
+            Some(true) => self.rises_from_face(),
         }
     }
 
@@ -354,20 +347,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Landing) };
         let after = self.struck(&at, &struck, (self.made.path.view.over, false));
         self.sets(&after);
-        self.leaves_impact_on_face()
+        self.leaves_impact(&after)
     }
 
-    /// The phase after an impact at a point of the ring, beside which the lean may bring down another one.
-    fn leaves_impact_on_face(&mut self) -> Next {
-        self.tells_from_lean();
-        if self.of.takeoff.lift > 0.0 {
-            (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
-            return Next::Own(Kind::Flying);
-        }
-        if self.of.takeoff.lift < -STILL {
-            return self.strikes();
-        }
-        self.leaves_face()
+    /// Takes what would turn a body on its face about the direction of its lean: the other points of the ring do so. The centre
+    /// keeps its velocity. Returns the energy lost.
+    pub(crate) fn keeps_upright(&mut self) -> f64 {
+        let energy = |y: &[f64; N]| self.of.slide.energy(y);
+        let (before, [v_h, v_2]) =
+            (energy(&self.at), self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip()));
+        let shape = self.of.slide.law.shape;
+        self.at[W1] = 0.0;
+        self.at[UH] = v_h - shape.rim.height(self.at.angle()) * self.at[W2];
+        self.at[U2] = v_2 - shape.rim.radius(self.at.angle()) * self.at[W3];
+        self.sees_face();
+        before - self.of.slide.energy(&self.at)
     }
 
     /// Tells a body on its face from the opposite point of its ring.
