@@ -30,7 +30,7 @@ use super::body::Body;
 pub use super::newton::Force;
 use super::state::State;
 use crate::numbers::Real;
-pub use face::Face;
+pub use face::{Face, end_ratio};
 use reduced::{Rates, Reduced};
 pub use slip::Friction;
 pub use table::{Table, TableKind};

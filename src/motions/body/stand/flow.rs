@@ -14,7 +14,7 @@
 use crate::laws::body::rim::Rim;
 use crate::laws::body::{Body, Shape};
 use crate::laws::contact::Force;
-use crate::laws::contact::face::FaceFriction;
+use crate::laws::contact::face::{FaceFriction, viscous};
 use crate::laws::contact::slip::Friction;
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
@@ -177,16 +177,14 @@ impl StandingFlow {
     /// Force along e_h and e2 and couple about the vertical, at the velocity of the centre and w_z.
     fn pushed(&self, [v_h, v_2]: [f64; 2], w: f64) -> [f64; 3] {
         let (v, s) = (v_h.hypot(v_2), self.radius * w.abs());
+        let [x, z] = if v > 0.0 { [v_h / v, v_2 / v] } else { [1.0, 0.0] };
         if !self.dry {
-            let q = self.strength * self.height * w;
-            let per = -self.strength / (1.0 + q * q);
-            let [f_h, f_2] = [per * (v_h - q * v_2), per * (v_2 + q * v_h)];
-            return [f_h, f_2, -self.strength * w * self.stands_under([f_h, f_2])];
+            let at = viscous(self.strength, [self.radius, self.height], v, w);
+            return [at.across * z - at.along * x, -(at.along * z + at.across * x), -at.couple];
         }
         if v == 0.0 && s == 0.0 || self.strength == 0.0 {
             return [0.0; 3];
         }
-        let [x, z] = if v > 0.0 { [v_h / v, v_2 / v] } else { [1.0, 0.0] };
         let [along, across, couple] = self.rubs([v, s]).map(|of| -self.strength * of);
         let (aside, about) = (across * w.signum(), self.radius * couple * w.signum());
         [along * x - aside * z, along * z + aside * x, if s > 0.0 { about } else { 0.0 }]
