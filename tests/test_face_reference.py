@@ -138,9 +138,9 @@ def test_a_pillar_rocks_by_the_factor_of_housner():
     for name in ("pillar rocks to rest", "pillar kicked falls back"):
         case, rows = of(name)
         a, z, i1, _ = body(case)
-        inertia = i1 + z**2 + a**2
-        ratio = (inertia - 2 * a**2) / inertia
         with mp.workdps(40):
+            inertia = i1 + z**2 + a**2
+            ratio = (inertia - 2 * a**2) / inertia
             rocks = [row for row in case.rows if row.kind == "rocks"]
             assert len(rocks) > 4
             assert all(abs(other.w2 / one.w2 - ratio) < TIGHT for one, other in pairwise(rocks))
