@@ -138,9 +138,9 @@ def test_a_pillar_rocks_by_the_factor_of_housner():
     for name in ("pillar rocks to rest", "pillar kicked falls back"):
         case, rows = of(name)
         a, z, i1, _ = body(case)
-        inertia = i1 + z**2 + a**2
-        ratio = (inertia - 2 * a**2) / inertia
         with mp.workdps(40):
+            inertia = i1 + z**2 + a**2
+            ratio = (inertia - 2 * a**2) / inertia
             rocks = [row for row in case.rows if row.kind == "rocks"]
             assert len(rocks) > 4
             assert all(abs(other.w2 / one.w2 - ratio) < TIGHT for one, other in pairwise(rocks))
@@ -169,7 +169,8 @@ def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_e
         need = mp.hypot(a, z) - z
         lifts = [(i1 + z**2 + a**2) * mpf(x.start[2]) ** 2 / 2 for x in (back, case)]
         assert lifts[0] < need < lifts[1]
-        assert rows["end"].theta > mp.atan2(a, z)
+        assert rows["end"].w2 < 0  # it still rises, at an inclination that the other one does not reach
+        assert rows["end"].theta > max(row.theta for row in back.rows)
 
 
 def test_a_body_that_topples_leaves_over_the_point_whose_slip_points_outward():

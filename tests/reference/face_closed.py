@@ -492,7 +492,7 @@ class Closed(Vectors):
                 continue
             found.append(("stands", v + q, ZERO, ZERO))
         j = i1 + z * z + a * a
-        grip = (rate * (j - 2 * a * a) - z * (v - z * rate)) / j
+        grip = (rate * (j - 2 * a * a) + z * (v - z * rate)) / j
         # grips: angular momentum about the new point; u = v - Z W is the slip of the old point
         q, p = z * grip - v, a * (rate + grip)
         if grip > 0 and abs(q) <= mu * p:
