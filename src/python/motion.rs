@@ -68,6 +68,9 @@ impl ArrayRows<'_> {
     }
 }
 
+/// A couple as a function of a state and its slip.
+type CoupleOfSlip<S> = Box<dyn Fn(&S, [f64; 2]) -> f64>;
+
 /// A state whose motions can be converted to arrays for Python.
 trait StateArrays: Moving + Sized {
     type Body;
@@ -78,7 +81,7 @@ trait StateArrays: Moving + Sized {
     /// The normal component of a force.
     fn normal(force: &Self::Force) -> f64;
     /// The couple of friction on a body on its face, from a state and its slip.
-    fn couple_on_face(_: &Self::Body, _: &Ask) -> Box<dyn Fn(&Self, [f64; 2]) -> f64> {
+    fn couple_on_face(_: &Self::Body, _: &Ask) -> CoupleOfSlip<Self> {
         Box::new(|_, _| f64::NAN)
     }
     /// What a body of revolution rests on.
@@ -126,7 +129,7 @@ impl StateArrays for State {
         Ok(())
     }
 
-    fn couple_on_face(body: &Body, ask: &Ask) -> Box<dyn Fn(&Self, [f64; 2]) -> f64> {
+    fn couple_on_face(body: &Body, ask: &Ask) -> CoupleOfSlip<Self> {
         Box::new(couple_on_face(body, ask))
     }
 

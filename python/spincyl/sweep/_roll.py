@@ -42,6 +42,7 @@ from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction, refuse_impacts_on_patch
 from spincyl._roll import is_stone
+from spincyl._slip import at_rest_on_face
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_bodies, kept_contact
@@ -303,6 +304,8 @@ def roll(
         numbers_without_slip(
             states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
         )
+    if has_friction(contact):
+        states = at_rest_on_face(bodies, states)
     of = TABLES[contact] if isinstance(contact, str) else code_of_friction(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
     wanted = _wanted_of_motions(

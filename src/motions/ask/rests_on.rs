@@ -1,12 +1,12 @@
 //! What a body lies or stands on once it is at rest: heads or tails.
 //!
 //! ```text
-//! a face    the motion ended where a face landed; e3 points up on the first face, and down on the other one
+//! a face    the motion ended where a face landed, or at rest on it; e3 points up on the first face, and down on the other
 //! its side  no velocity is left, and both rims or any two circles touch the table, or theta has reached theta_end
 //! an edge   no velocity is left, and dry losses hold the body, or it is balanced: theta'' = 0
 //! ```
-//! A bounce of the face and a spin on it are not computed, and neither changes which face lies on the table. A motion that
-//! ends where its other rim lands is not computed to its rest. A body of several circles is told from its lower end, so
+//! A motion that ends where its face lands has the slide and the spin on it still before it, and neither changes which face
+//! lies on the table. A motion that ends where its other rim lands is not computed to its rest. A body of several circles is told from its lower end, so
 //! that theta itself says which face is down, and every border of its circles is a side.
 //!
 //! Error: none, unless the estimated error of the motion is so large that another motion is as likely.

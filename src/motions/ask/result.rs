@@ -15,8 +15,9 @@ coded! {
     pub enum Ending {
         /// The motion reached the last requested time.
         Done = 0,
-        /// The face landed on the table (theta = 0 or pi). The body may still spin on its face, with the last w3; that
-        /// spin is not computed.
+        /// The face landed on the table (theta = 0 or pi) in a motion without a restitution, on a table on which a face that
+        /// moves cannot roll, or under laws of the user. The body may still spin on its face, with the last w3; that spin is
+        /// not computed.
         Face = 1,
         /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
         Side = 2,
@@ -33,7 +34,7 @@ coded! {
         Stops = 7,
         /// The computation stopped at this time, at the limit [`Motion::limit`].
         Bounded = 8,
-        /// A landing on both rims has no outcome, or more than one, under the law of friction.
+        /// A landing on both rims, or of a face, has no outcome, or more than one, under the law of friction.
         Landing = 9,
     }
 }

@@ -118,7 +118,7 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
     let (mut ask, mut start) = (*ask, *start);
     if ask.table == Table::Smooth && (ask.restitution.is_some() || on_face(body, &start.state)) {
         ask.table = Friction::coulomb(0.0).into();
-        if start.aloft.is_none() && !on_face(body, &start.state) {
+        if start.aloft.is_none() && start.slip == [0.0; 2] {
             let [v_h, v_2] = centre_velocity(body, &start.state, [0.0; 2]);
             start.slip = [0.0 - v_h, 0.0 - v_2];
         }

@@ -139,7 +139,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     }
 
     fn write_here(walk: &mut BodyWalk<'_, N, G>) {
-        if walk.is_on_face() {
+        if walk.is_on_face() && walk.at[W2] == 0.0 {
             return walk.writes_on_face();
         }
         let (y, slip, at) = (&walk.of.state, walk.at.slip(), &walk.at);

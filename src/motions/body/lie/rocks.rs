@@ -11,7 +11,9 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::state::State;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, U2, UH, W1, W2, W3};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, poses,
+};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
@@ -87,7 +89,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// from cycle to cycle are a geometric series. Also returns an error. None until three cycles have shown the ratio.
     #[inline(never)]
     pub(crate) fn shrinks_out(&mut self) -> Option<([f64; N], f64)> {
-        if !self.of.body.has_row() {
+        let (on_face, up) = (self.is_on_face(), self.up());
+        if !self.of.body.has_row() && !on_face {
             return None;
         }
         let all = &mut self.of.rocked;
@@ -96,7 +99,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             all.remove(0);
         }
         let [first, _, before, other, now] = &all[..] else { return None };
-        if all.iter().all(|y| y[W2] < LOST_HOP) {
+        if all.iter().all(|y| y[W2].abs() < LOST_HOP) {
             let mut end = self.at;
             end[W2] = 0.0;
             self.of.rocked.clear();
@@ -107,15 +110,19 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let steady = |ratio: f64, known: f64| (ratio / known - 1.0).abs();
         let lasted = (now[TIME] - before[TIME]) / (before[TIME] - first[TIME]);
         let unlike = steady(before[W2] / first[W2], ratio).max(steady(lasted, ratio));
-        let turned = other[COS].signum() != now[COS].signum();
+        let turned = on_face || other[COS].signum() != now[COS].signum();
         let slips = [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
         if !(turned && slips && ratio < MOST_RATIO && unlike < UNLIKE) {
             return None;
         }
         let share = ratio / (1.0 - ratio);
         let mut end: [f64; N] = core::array::from_fn(|i| now[i] + (now[i] - before[i]) * share);
-        (end[SIN], end[COS]) = self.of.body.border_angle();
+        (end[SIN], end[COS]) = if on_face { (0.0, up) } else { self.of.body.border_angle() };
         end[W2] = 0.0;
+        if on_face && poses(N) {
+            // Each landing turns e_h round.
+            (end[PHI], end[PSI]) = (now[PHI], now[PSI]);
+        }
         let left = end[TIME] - now[TIME];
         let error = left * (unlike / (1.0 - ratio) + left);
         let seen = left < SOON_OVER || self.until().is_none_or(|t| t > end[TIME]);

@@ -54,7 +54,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// cos theta on a face.
-    pub(super) fn up(&self) -> f64 {
+    pub(crate) fn up(&self) -> f64 {
         self.at[COS].signum()
     }
 
@@ -288,15 +288,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.resumes_phase();
         // A face that just rests has no direction in which it turns.
         let lasts = (2.0 * RISEN / grows).sqrt();
-        self.claims(lasts * lasts * lasts);
-        let (begin, heat) = (self.at, mu * normal * slip);
+        self.claims(lasts * lasts);
+        // The slip falls as friction and the lean slow it, and as e_h turns away from the velocity of the centre.
+        let falls = mu * normal + z * grows + nu * a * w;
+        let begin = self.at;
         let [forth, aside] = flow.velocity(&begin);
         self.rises_as(lasts, |t| {
             let mut y = begin;
             y[SIN] = 0.5 * grows * t * t;
             (y[W1], y[W2]) = (nu * y[SIN], -up * grows * t);
-            (y[UH], y[U2]) = (up * ((mu * normal + z * grows) * t - slip), slip * nu * t);
-            y[HEAT] += t * heat;
+            (y[UH], y[U2]) = (up * (falls * t - slip), slip * nu * t);
+            y[HEAT] += mu * normal * t * (slip - 0.5 * falls * t);
             if poses(N) {
                 let moved = [forth * t + 0.5 * up * mu * normal * t * t, (aside - up * a * nu) * t];
                 let (sin, cos) = begin[PHI].sin_cos();

@@ -35,6 +35,8 @@ use core::f64::consts::TAU;
 const OUTLASTS: f64 = 10.0;
 /// A rattle in a plane is over where all of its velocities are below this: its next hops are as low as roundings of theta.
 const LAST_RATTLE: f64 = 3e-6;
+/// The rest of a rocking with slips that stop in its hops is looked for below this rate.
+const SLIPS_SHRINK: f64 = 3e-3;
 /// Bounces of a flat face that are over in less time than this are summed.
 const LAST_BOUNCES: f64 = 1e-7;
 
@@ -64,6 +66,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !rocks {
             self.lies_on_face();
             return self.stands_on_face();
+        }
+        if self.at[W2].abs() < SLIPS_SHRINK
+            && self.at[W3] == 0.0
+            && let Some((end, error)) = self.shrinks_out()
+        {
+            return self.rests_after_rocking(end, error);
         }
         self.rises_from_face()
     }
@@ -188,6 +196,19 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn points_come_down(&self) -> [f64; 2] {
         let at = self.aloft();
         [at.lift, at.opposite(&self.of.slide.law.shape).lift]
+    }
+
+    /// The phase at the end of a rocking that is summed.
+    fn rests_after_rocking(&mut self, end: [f64; N], error: f64) -> Next {
+        self.claims(error);
+        let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
+        let taken = energy(&self.at) - energy(&end);
+        // The landings that are summed take what is missing.
+        self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
+        self.claims(-taken);
+        self.at = end;
+        self.lies_on_face();
+        self.stands_on_face()
     }
 
     /// The phase of a body on its face, whose centre keeps its velocity while the rest of a lean is lost.
@@ -380,15 +401,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let bounces = self.ask.restitution.is_some_and(|e| e > 0.0);
         if let Some((end, error)) = self.rocks_out_flat() {
             // Hops between bounces are as short.
-            self.claims(if bounces { end[TIME] - began } else { error });
-            let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
-            let taken = energy(&self.at) - energy(&end);
-            // The landings that are summed take what is missing.
-            self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.lost += taken);
-            self.claims(-taken);
-            self.at = end;
-            self.lies_on_face();
-            return Some(self.stands_on_face());
+            let error = if bounces { end[TIME] - began } else { error };
+            return Some(self.rests_after_rocking(end, error));
         }
         let up = self.up();
         let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
