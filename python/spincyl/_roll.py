@@ -136,7 +136,8 @@ def roll(
         restitution. While the other rim carries the body, theta refers to that rim, and phi is turned by pi:
         `Motion.rim` tells the rim, and `Motion.axis_up` and `Motion.rests_on` tell heads from tails. With
         `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks
-        from rim to rim, and so does friction that lifts the body (`Ending.SLIP`): on a real table the contact would slip first.
+        from rim to rim, and so does friction that lifts the body (`Ending.SLIP`): on a real table the contact
+        would slip first.
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
         eighth order, forward in time only. It may end where the body comes to rest (`Ending.STOPS`).
