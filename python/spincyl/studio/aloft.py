@@ -84,9 +84,11 @@ class Aloft(NamedTuple):
         rims, across, about, turns, sign = np.moveaxis(told, -1, 0)
         other = rims % 2 == 1
         lean, spin = np.where(other, np.pi - theta, theta), np.where(other, -psi, psi)
-        found: Floats = np.stack(
-            [2 * np.pi * turns + sign * lean, phi - np.pi * across, spin - np.pi * about], -1
-        )
+        phi, spin = phi - np.pi * across, spin - np.pi * about
+        # with a vertical axis only the sum of both has a meaning, or their difference
+        flat, up = (lean == 0) | (lean == np.pi), np.where(lean < np.pi / 2, 1.0, -1.0)
+        phi, spin = np.where(flat, 0.0, phi), np.where(flat, spin + up * phi, spin)
+        found: Floats = np.stack([2 * np.pi * turns + sign * lean, phi, spin], -1)
         return found
 
 

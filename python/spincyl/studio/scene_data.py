@@ -231,13 +231,14 @@ def _known_answer(
     """The known answer; NaN where the contact has no single point or force."""
     weight, extra = joule / metre, m._extra
     phase = extra.get("phase", np.zeros(m.t.size, int))
-    both = phase >= KINDS.index("lying")
+    stands = phase == KINDS.index("on its face")
+    both = (phase >= KINDS.index("lying")) & ~stands
     normal = m.normal + np.where(both, extra.get("normal_other", 0.0), 0.0)
     # where N < 0 the body leaves the table at once, and there is no force
     leaves = normal < 0
     force = np.where(both[:, None], np.nan, np.where(leaves[:, None], 0.0, m.contact_force))
     point = np.column_stack([m.contact_point, np.zeros(m.t.size)])
-    point[both | (phase == KINDS.index("flying"))] = np.nan
+    point[both | stands | (phase == KINDS.index("flying"))] = np.nan
     found = {
         "time": (m.t - t0) * second,
         "position": m.centre * metre,
@@ -256,7 +257,7 @@ def _known_answer(
     told: dict[str, Any] = {name: x.tolist() for name, x in found.items()}
     told["theta_is"] = "angle from the vertical to axis 3 of the body"
     told["contact_is"] = (
-        "force of the table on the body, and where; null on both rims, and no place in the air"
+        "force of the table on the body, and where; null on both rims, and no place in the air or on a face"
     )
     if m._asked.restitution is not None:
         told["height"] = (m.height * metre).tolist()
