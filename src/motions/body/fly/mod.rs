@@ -336,8 +336,8 @@ impl Flight {
     /// The error of the numbers at a time, due to rounding.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
-        // Where the axis is vertical nothing is turned by an error of phi.
-        let turned = if at.angle.0 > 0.0 { at.angle.0 } else { 1.0 };
+        // Where the axis is vertical, or stays in a plane, nothing is turned by an error of phi.
+        let turned = if at.angle.0 > 0.0 && !self.planar { at.angle.0 } else { 1.0 };
         self.roundings(t) * f64::EPSILON * fastest / turned
     }
 }

@@ -11,9 +11,7 @@ use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::state::State;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
-use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, poses,
-};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, poses};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;

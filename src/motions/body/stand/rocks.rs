@@ -186,8 +186,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (up, shape) = (self.up(), self.of.slide.law.shape);
         let [a, z] = [shape.rim.radius((0.0, up)), shape.rim.height((0.0, up))];
         let inertia = shape.i1 + z * z + a * a;
-        self.claims(self.at[SIN].abs());
-        self.claims(LASTS * LAST_RATTLE * inertia * inertia / (a * a * a));
+        // A body that stays after its next landing does not rock.
+        let share = (inertia - 2.0 * a * a).max(0.0) / inertia;
+        let [here, there] = self.points_come_down();
+        let size =
+            [self.at[SIN], self.at[W2], here, there].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        self.claims(LASTS * size * inertia / (a * (1.0 - share)));
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.comes_to_lie()
     }
@@ -406,7 +410,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let up = self.up();
         let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
-        let falls = up * self.rates_on_rim((theta.sin(), up), theta, &self.at, false)[W2];
+        let sticks = self.at.slip() == [0.0; 2];
+        let falls = up * self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks)[W2];
         if falls <= 0.0 {
             return None;
         }
@@ -447,7 +452,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.at[W2] = up * rises;
             self.of.state = State { w2: self.at[W2], ..self.of.state };
             if !self.lands_flat(0.0, false)? {
-                return None;
+                let mut end = self.at;
+                (end[SIN], end[COS], end[W1], end[W2], end[W3]) = (0.0, up, 0.0, 0.0, 0.0);
+                return Some((end, lasts * lasts));
             }
         }
         let share = 1.0 - self.at[W2] / begin[W2];
