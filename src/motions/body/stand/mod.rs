@@ -279,7 +279,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
         let grows = (lam - 1.0) * a * normal / shape.i1;
-        let nu = w * (shape.i3 / shape.i1) * (lam - 1.0) / (3.0 * lam - 2.0);
+        let free = w * (shape.i3 / shape.i1) * (lam - 1.0) / (3.0 * lam - 2.0);
+        let nu = if self.holds_contour() { w } else { free };
         self.tells_from(v_2.atan2(v_h) + (a * w / v).asin());
         (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
         self.of.planar |= w == 0.0;
@@ -351,7 +352,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (rates[W1] - nu * rises, rates)
         };
         let (here, there) = (follows(0.0).0, follows(1.0).0);
-        let nu = here / (here - there);
+        let nu = if self.holds_contour() { up * begin[W3] } else { here / (here - there) };
         let rates = follows(nu).1;
         self.sees_face();
         self.begins_phase(if sticks { Kind::Rolling } else { Kind::Slipping });
@@ -363,6 +364,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             y
         });
         self.touches_down()
+    }
+
+    /// Whether a loss along the contour, whose couple grows beyond all bounds on an almost flat face, stops the contact along
+    /// the rim at once.
+    fn holds_contour(&self) -> bool {
+        self.ask.losses.iter().any(|(law, _)| law.is_along_contour())
     }
 
     /// Follows a rising body for the time after which it is followed on its rim; `risen` gives its numbers after a time.

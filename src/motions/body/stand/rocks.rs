@@ -36,7 +36,9 @@ const OUTLASTS: f64 = 10.0;
 /// A rattle in a plane is over where all of its velocities are below this: its next hops are as low as roundings of theta.
 const LAST_RATTLE: f64 = 3e-6;
 /// The rest of a rocking with slips that stop in its hops is looked for below this rate.
-const SLIPS_SHRINK: f64 = 3e-3;
+const SLIPS_SHRINK: f64 = 0.1;
+/// A slower hop is as low as the inclination from which a rising body is followed on its rim.
+const HARDLY_ROCKS: f64 = 5e-6;
 /// Bounces of a flat face that are over in less time than this are summed.
 const LAST_BOUNCES: f64 = 1e-7;
 
@@ -412,7 +414,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
         let sticks = self.at.slip() == [0.0; 2];
         let falls = up * self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks)[W2];
-        if falls <= 0.0 {
+        if falls <= 0.0 || rises > HARDLY_ROCKS {
             return None;
         }
         // The slip turns round within the next hops.
