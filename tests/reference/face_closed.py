@@ -283,7 +283,7 @@ class Closed(Vectors):
         y = [v if self.drilling else gmpy2.log(v), ZERO, s if self.drilling else gmpy2.log(s), *[ZERO] * 5, now.t]
         ring = self.scene.face != "disc"
         self.part, self.arc_at = ring and self.inside(y) < 0, None
-        least = (v + s) * mpfr("1e-27")
+        least = (v + s) * mpfr("1e-20")
         while True:
             events = [("sample", lambda y: times[0] - y[8])] if times else []
             if ring:

@@ -25,6 +25,18 @@ def circle(n):
     return np.array([gmpy2.cos(x) for x in angle]), np.array([gmpy2.sin(x) for x in angle])
 
 
+@functools.cache
+def half_turn(count):
+    """Cosines, sines and weights of nodes from 0 to half a turn, in panels that are finer towards both ends."""
+    pi = gmpy2.const_pi()
+    near = [pi / 5**k for k in range(1, count + 2)]
+    edges = [ZERO, *reversed(near), *(pi - x for x in near), pi]
+    nodes, weights = legendre(44)
+    angle = np.concatenate([a + (b - a) * nodes for a, b in zip(edges, edges[1:])])
+    share = np.concatenate([(b - a) * weights for a, b in zip(edges, edges[1:])]) / pi
+    return cos(angle), sin(angle), share
+
+
 def over(x):
     """Adds over the nodes of the face."""
     return x.sum(axis=-1)
@@ -99,8 +111,12 @@ class Vectors:
         most = max(np.atleast_1d(r))
         viscous = self.scene.law == "viscous"
         n = 32 if viscous or most == 0 else max(32, int(WHOLE / -gmpy2.log(most)) // 16 * 16 + 16)
-        cosine, sine = (x[None, : n // 2 + 1] for x in circle(n))
-        share = np.array([ONE, *[2 * ONE] * (n // 2 - 1), ONE]) / n
+        if n < 1200:
+            cosine, sine = (x[None, : n // 2 + 1] for x in circle(n))
+            share = np.array([ONE, *[2 * ONE] * (n // 2 - 1), ONE]) / n
+        else:  # fewer in panels
+            cosine, sine, share = half_turn(int(gmpy2.floor(gmpy2.log(gmpy2.const_pi() / -gmpy2.log(most)) / gmpy2.log(5))))
+            cosine, sine = cosine[None, :], sine[None, :]
         v, s = sqrt(vx * vx + vy * vy), self.a * abs(w)
         at, v, s = r[..., None], v[..., None], s[..., None]
         below = 1 + at * at + 2 * at * cosine
@@ -298,7 +314,7 @@ class Vectors:
                 name = "rests" if self.pure else "straight"
                 events.append((name, lambda y: y[5] * self.sense))
             else:
-                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-27")))
+                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-20")))
             name, y, n = self.col.follow(self.rates, y, self.longest(y), events, self.longest, scale=self.size)
             self.steps += n
             if name == "border":
