@@ -210,7 +210,7 @@ def scenes():
     narrow = (1.8, 0.41 + 4 / 3, 0.82, 0.2)
     yield Scene("spin keeps it down", narrow, 0.48, moving(narrow, (0.4, 0), 1), [0.5, 1, 1.5], **few)
     yield Scene("pillar rocks to rest", pillar, 0.9, (0.1, 0, 0, 0, 0, 0), [1, 2, 3, 4, 5])
-    yield Scene("pillar rocks as it slips", pillar, 0.3, (0.15, 0, 0, 0, 0, 0), [1, 2, 3, 4])
+    yield Scene("pillar rocks as it slips", pillar, 0.3, (0.15, 0, 0, 0, 0, 0), [1, 2, 3])
     flat = solid(0.4)
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
     dropped = {"height": 0.08, "restitution": 0.5, **few}
