@@ -132,6 +132,7 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/slowest.py --count 20000
 	$(BIN)/python benches/profiles.py --count 10000
 	$(BIN)/python benches/aloft.py --count 20000
+	$(BIN)/python benches/faces.py --count 20000
 	$(BIN)/python benches/claims.py --of hops --count 5000
 	$(BIN)/python benches/random_scenes.py --count 500
 	$(BIN)/python benches/random_scenes.py --reference 24

@@ -4,16 +4,18 @@
     python benches/faces.py --count 20000            the figures of docs/hard-cases.md, half an hour
     python benches/faces.py --only 17 0.3            one of them, with its phases
     python benches/faces.py --coins 4000             the shares of thick coins that come to rest on their side
+    python benches/faces.py --limit 5                gives up after 5 seconds of one motion
 
 Coins, cylinders, tubes, pucks (with a pressure on the whole face), and the bodies of several circles of
 benches/profiles.py, on a rim, slipping or not, or let fall; Coulomb friction from 0.05 to 1, restitution 0, 0.3 and
 0.9, to t = 200. One start in five is exactly flat on a face, flat in the air, or at rest. A motion is followed if it
-reaches the last time or rests. Prints the others, those whose energy differs from that at the start by more than 1e-12
-and four times the estimated error, where they end, and rows for docs/hard-cases.md.
+reaches the last time or rests. Prints those whose energy differs from that at the start by more than 1e-12 and four times
+the estimated error, where motions end, rows for docs/hard-cases.md, and all that are not followed, by their reason.
 """
 
 import argparse
 import multiprocessing
+import signal
 import time
 import warnings
 from collections import Counter, defaultdict
@@ -30,6 +32,8 @@ FOLLOWED = (sc.Ending.DONE, sc.Ending.STOPS)
 OUTCOMES = ("heads", "tails", "side", "edge", "moving", "not followed")
 #: rates below which a body is at rest
 STILL = 1e-9
+#: phases of a body on its side
+ON_SIDE = ("lying", "pivoting", "rolling on its side", "rolling round its apex")
 #: published measurement of the share of tossed coins that came to rest on their side, by thickness over radius
 MEASURED = {0.707: 0.132, 1.154: 0.410}
 
@@ -60,8 +64,12 @@ FLAT = (*TWO_RIMS, profiles.cup, profiles.bottle, profiles.wheel, profiles.round
 KINDS = (*FLAT, profiles.five, profiles.cone, profiles.cap, profiles.dumb_bell)
 
 
+#: exact starts
+EXACT = ("flat on a face", "flat in the air", "at rest on a rim", "kicked up off a face", "at rest in the air")
+
+
 def drawn(number, seed=0):
-    """A kind, a body of it, a state, and the law of friction."""
+    """A kind, a body of it, a state, the law of friction, and the sort of the start."""
     rng = np.random.default_rng([seed, number])
 
     def u(low, high):
@@ -81,10 +89,11 @@ def drawn(number, seed=0):
             state = sc.dropped(
                 body, height, u(0.05, 3.09), w1=w[0], w2=w[1], w3=w[2], velocity=tuple(velocity)
             )
-        else:
-            slip = tuple(rng.uniform(-1, 1, 2)) if rng.random() < 0.5 else (0.0, 0.0)
-            state = sc.State(lean, *map(float, w), slip=slip)
-        return kind, body, state, mu
+            return kind, body, state, mu, "in the air"
+        slips = rng.random() < 0.5
+        slip = tuple(rng.uniform(-1, 1, 2)) if slips else (0.0, 0.0)
+        state = sc.State(lean, *map(float, w), slip=slip)
+        return kind, body, state, mu, "slips on a rim" if slips else "rolls on a rim"
     what = rng.integers(5)
     if what == 0:
         state = sc.spun(body, float(w[2]), velocity=(float(velocity[0]), float(velocity[1])), theta=end)
@@ -96,7 +105,7 @@ def drawn(number, seed=0):
         state = sc.State(0.0, 0.0, -u(0.0, 1.0), 0.0, slip=(0.0, 0.0))
     else:
         state = sc.dropped(body, height, u(0.05, 3.0))
-    return kind, body, state, mu
+    return kind, body, state, mu, EXACT[what]
 
 
 def outcome(motion):
@@ -108,25 +117,37 @@ def outcome(motion):
     phase = motion.phases[-1].kind
     if phase == "on its face":
         return "heads" if motion.axis_up[-1] > 0 else "tails"
-    if phase in ("lying", "pivoting", "rolling on its side", "rolling round its apex"):
+    if phase in ON_SIDE:
         return "side"
     return "edge"
 
 
-def followed(number, restitution):
-    _, body, state, table = drawn(number)
+def late(*_):
+    raise TimeoutError
+
+
+def followed(number, restitution, limit=0.0):
+    _, body, state, table, _ = drawn(number)
     since = time.process_time()
-    with warnings.catch_warnings(action="ignore"):
-        motion = sc.roll(body, state, TIMES, contact=table, restitution=restitution)
+    signal.signal(signal.SIGVTALRM, late)
+    signal.setitimer(signal.ITIMER_VIRTUAL, limit)
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            motion = sc.roll(body, state, TIMES, contact=table, restitution=restitution)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
     return motion, time.process_time() - since
 
 
 def one(job):
-    """Kind, outcome, why it is not followed, seconds, evaluations, and whether the energy is off."""
-    number, restitution = job
-    kind = drawn(number)[0].__name__
+    """Kind and start, outcome, why it is not followed, seconds, evaluations, and whether the energy is off."""
+    number, restitution, limit = job
+    kind, _, _, _, start = drawn(number)
+    kind = f"{kind.__name__}, {start}"
     try:
-        motion, seconds = followed(number, restitution)
+        motion, seconds = followed(number, restitution, limit)
+    except TimeoutError:
+        return number, restitution, kind, "not followed", f"over {limit} s", limit, 0, 0.0
     except ValueError as error:
         return number, restitution, kind, "not followed", "refused: " + str(error)[:90], 0.0, 0, 0.0
     what = outcome(motion)
@@ -140,8 +161,8 @@ def one(job):
 
 
 def show(number, restitution):
-    _, body, state, table = drawn(number)
-    print(body, state, table, sep="\n")
+    _, body, state, table, start = drawn(number)
+    print(body, state, table, start, sep="\n")
     motion, seconds = followed(number, restitution)
     print(f"{seconds:.3f} s, {motion.nfev} evaluations, {motion.message}")
     print(*motion.phases[:40], sep="\n")
@@ -149,31 +170,49 @@ def show(number, restitution):
     print("energy", total - total[0], "error", motion.error)
 
 
-def coins(count):
+def tossed(job):
+    """How a coin of this thickness over radius lies after one toss: on a face, on its side, or neither."""
+    number, thickness, restitution, mu, limit = job
+    rng = np.random.default_rng([7, number])
+    body = sc.Body.solid(thickness / 2)
+    theta, w = float(np.arccos(rng.uniform(-1, 1))), 2.0 * rng.normal(size=3)
+    velocity = (*(0.5 * rng.normal(size=2)), 0.0)
+    state = sc.dropped(body, 10.0, theta, w1=w[0], w2=w[1], w3=w[2], velocity=velocity)
+    signal.signal(signal.SIGVTALRM, late)
+    signal.setitimer(signal.ITIMER_VIRTUAL, limit)
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            motion = sc.roll(body, state, [0.0, UNTIL], contact=sc.Coulomb(mu), restitution=restitution)
+    except (TimeoutError, ValueError):
+        return "not followed"
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+    if motion.status not in FOLLOWED:
+        return "not followed"
+    phase = motion.phases[-1].kind
+    if phase == "on its face":
+        return "face"
+    return "side" if phase in ON_SIDE else "neither"
+
+
+def coins(count, jobs, limit):
     """Shares of solid cylinders on their side, tossed with a random orientation and rates."""
-    print("| thickness over radius | restitution | friction | on its side | published measurement |")
-    print("| --- | --- | --- | --- | --- |")
-    for thickness, known in MEASURED.items():
-        body = sc.Body.solid(thickness / 2)
+    print("| thickness over radius | restitution | friction | on its side | published measurement | on neither | lost |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    with multiprocessing.Pool(jobs) as pool:
         for restitution in (0.0, 0.3, 0.5):
             for mu in (0.2, 0.5):
-                rng, found = np.random.default_rng(7), Counter()
-                for _ in range(count):
-                    theta = float(np.arccos(rng.uniform(-1, 1)))
-                    w = 2.0 * rng.normal(size=3)
-                    velocity = (*(0.5 * rng.normal(size=2)), 0.0)
-                    state = sc.dropped(body, 10.0, theta, w1=w[0], w2=w[1], w3=w[2], velocity=velocity)
-                    with warnings.catch_warnings(action="ignore"):
-                        motion = sc.roll(
-                            body, state, [0.0, UNTIL], contact=sc.Coulomb(mu), restitution=restitution
-                        )
-                    found[outcome(motion)] += 1
-                settled = sum(found.values()) - found["not followed"]
-                share = (found["side"] + sum(found[x] for x in ("edge",))) / settled
-                error = np.sqrt(share * (1 - share) / settled)
-                print(
-                    f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} |", flush=True
-                )
+                for thickness, known in MEASURED.items():
+                    each = [(number, thickness, restitution, mu, limit) for number in range(count)]
+                    found = Counter(pool.imap_unordered(tossed, each, chunksize=5))
+                    lies = found["side"] + found["face"]
+                    share = found["side"] / lies
+                    error = np.sqrt(share * (1 - share) / lies)
+                    print(
+                        f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} "
+                        f"| {found['neither']} | {found['not followed']} |",
+                        flush=True,
+                    )
 
 
 def main():
@@ -182,22 +221,23 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", nargs=2, metavar=("NUMBER", "RESTITUTION"))
     parser.add_argument("--coins", type=int)
+    parser.add_argument("--limit", type=float, default=0.0, metavar="SECONDS")
     asked = parser.parse_args()
     if asked.only:
         show(int(asked.only[0]), float(asked.only[1]))
         return
     if asked.coins:
-        coins(asked.coins)
+        coins(asked.coins, asked.jobs, asked.limit)
         return
-    jobs = [(number, e) for number in range(asked.count) for e in BOUNCES]
-    found, rows = defaultdict(Counter), []
+    jobs = [(number, e, asked.limit) for number in range(asked.count) for e in BOUNCES]
+    found, lost, rows = defaultdict(Counter), defaultdict(list), []
     with multiprocessing.Pool(asked.jobs) as pool:
         for row in pool.imap_unordered(one, jobs, chunksize=20):
             rows.append(row)
             number, e, kind, what, why, _, _, off = row
             found[e][what] += 1
             if why:
-                print(f"not followed: {number} {e} {kind}: {why}", flush=True)
+                lost[why].append((number, e, kind))
             if off > 1:
                 print(f"energy: {number} {e} {kind}, {off:.1f} of what is allowed", flush=True)
     print("\n| restitution | " + " | ".join(OUTCOMES) + " |\n" + "| --- " * (len(OUTCOMES) + 1) + "|")
@@ -219,6 +259,10 @@ def main():
     )
     for row in sorted(rows, key=lambda row: -row[5])[:5]:
         print(f"slow: {row[0]} {row[1]} {row[2]}, {row[5]:.3f} s, {row[6]} evaluations, {row[3]}")
+    for why, all_of in sorted(lost.items(), key=lambda item: -len(item[1])):
+        print(f"not followed: {len(all_of)} {why}")
+        for number, e, kind in sorted(all_of):
+            print(f"    {number} {e} {kind}")
 
 
 if __name__ == "__main__":

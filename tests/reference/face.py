@@ -69,7 +69,7 @@ class Scene:
         self.carried = mpfr(1) - mpfr(rho), mpfr(ell) + mpfr(rho), mpfr(i1), mpfr(i3)
         self.start = [float(x) for x in start]
         self.samples = [float(t) for t in times]
-        self.to_rest = more.get("to_rest", True)
+        self.to_rest, self.digits = more.get("to_rest", True), more.get("digits", 25)
         self.brief = mpfr("0.02")
 
 
@@ -195,33 +195,34 @@ def tube(height):
 
 def scenes():
     can, tall, pillar = tube(0.75), tube(2.0), solid(2.0)
-    yield Scene("tube slides and spins to rest", can, 0.25, moving(can, (1.5, 0), 1), [2, 4, 6, 7.4])
+    few = {"digits": 18}
+    yield Scene("tube slides and spins to rest", can, 0.25, moving(can, (1.5, 0), 1), [2, 4, 6, 7.4], **few)
     low = tube(0.5)
-    yield Scene("tube turns clockwise, aslant", low, 0.3, moving(low, (-0.2, 0.35), -0.9), [1, 2, 3])
+    yield Scene("tube turns clockwise, aslant", low, 0.3, moving(low, (-0.2, 0.35), -0.9), [1, 2, 3], **few)
     rounded = (0.6, 0.37, 0.48, 0.15)
-    yield Scene("solid with a fillet", rounded, 0.2, moving(rounded, (1, 0.5), 2), [1, 3, 6])
+    yield Scene("solid with a fillet", rounded, 0.2, moving(rounded, (1, 0.5), 2), [1, 3, 6], **few)
     block = solid(0.8)
-    yield Scene("solid on its ring", block, 0.25, moving(block, (1.5, 0), 1), [1, 3, 6])
-    yield Scene("part of the ring presses", tall, 0.45, moving(tall, (1.5, 0), 1), [1, 2, 3])
+    yield Scene("solid on its ring", block, 0.25, moving(block, (1.5, 0), 1), [1, 3, 6], **few)
+    yield Scene("part of the ring presses", tall, 0.45, moving(tall, (1.5, 0), 1), [1, 2, 3], **few)
     glass = tube(1.4)
-    yield Scene("more and more of the ring presses", glass, 0.5, moving(glass, (2, 0.5), 1), [1, 2, 4])
+    yield Scene("more and more of the ring presses", glass, 0.5, moving(glass, (2, 0.5), 1), [1, 2, 4], **few)
     yield Scene("topples as it slides", pillar, 0.7, moving(pillar, (3, 0), 1.5), [0.2, 0.4, 0.6, 0.8], to_rest=False)
     narrow = (1.8, 0.41 + 4 / 3, 0.82, 0.2)
-    yield Scene("spin keeps it down", narrow, 0.48, moving(narrow, (0.4, 0), 1), [0.5, 1, 1.5])
+    yield Scene("spin keeps it down", narrow, 0.48, moving(narrow, (0.4, 0), 1), [0.5, 1, 1.5], **few)
     yield Scene("pillar rocks to rest", pillar, 0.9, (0.1, 0, 0, 0, 0, 0), [1, 2, 3, 4, 5])
-    yield Scene("pillar rocks as it slips", pillar, 0.3, (0.15, 0, 0, 0, 0, 0), [1, 2, 3, 4])
+    yield Scene("pillar rocks as it slips", pillar, 0.3, (0.15, 0, 0, 0, 0, 0), [1, 2, 3])
     flat = solid(0.4)
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
-    dropped = {"height": 0.08, "restitution": 0.5}
+    dropped = {"height": 0.08, "restitution": 0.5, **few}
     yield Scene("dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 1.1, 3, 5], **dropped)
-    tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3}
+    tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3, **few}
     coin = solid(0.1)
     yield Scene("coin tossed flat", coin, 0.2, moving(coin, (0.5, -0.6), 3), [0.5, 1.5, 2.2, 4], **tossed)
     still = {"height": 0.2, "lift": -0.1, "restitution": 0.0}
     yield Scene("thrown down flat, stays", can, 0.25, moving(can, (0, 0.9), -0.5), [0.3, 1, 2], **still)
     puck = tube(0.6)
     yield Scene("drilling ends the turning first", puck, 0.2, moving(puck, (1.2, 0), 0.4), [0.5, 2, 4], losses={"drilling": 0.15})
-    yield Scene("linear air", can, 0.25, moving(can, (1.2, 0.4), 1.5), [1, 3, 5], losses={"air": 0.05})
+    yield Scene("linear air", can, 0.25, moving(can, (1.2, 0.4), 1.5), [1, 3, 5], losses={"air": 0.05}, **few)
     yield Scene("viscous", tall, 0.2, moving(tall, (1, 0), 2), [1, 2, 3, 4, 5], law="viscous", to_rest=False)
     lap = solid(0.3)
     yield Scene("disc", lap, 0.3, moving(lap, (0.4, 0), 1), [0.5, 1, 1.4], face="disc")

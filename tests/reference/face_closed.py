@@ -253,7 +253,7 @@ class Closed(Vectors):
             return mpfr("0.2")
         far, fast = abs(y[0] - y[2]), self.flow([np.array([x]) for x in y])
         pace = abs(fast[0][0] - fast[2][0])
-        if far < 1e-11:
+        if far < self.jump:
             return 2 * far / pace
         return min(mpfr("0.8"), mpfr("0.7") * far / pace) if pace else mpfr("0.8")
 
@@ -283,7 +283,7 @@ class Closed(Vectors):
         y = [v if self.drilling else gmpy2.log(v), ZERO, s if self.drilling else gmpy2.log(s), *[ZERO] * 5, now.t]
         ring = self.scene.face != "disc"
         self.part, self.arc_at = ring and self.inside(y) < 0, None
-        least = (v + s) * mpfr("1e-27")
+        least = (v + s) * self.fades
         while True:
             events = [("sample", lambda y: times[0] - y[8])] if times else []
             if ring:
@@ -292,7 +292,7 @@ class Closed(Vectors):
             if self.drilling:
                 events.append(("straight", lambda y: y[2]))
             else:
-                events.append(("rests", lambda y: sum(self.speeds(y)) - least))
+                events.append(("fades", lambda y: sum(self.speeds(y)) - least))
             name, y, n = self.col.follow(rates, y, self.reach(y), events, self.reach)
             self.steps += n
             if name == "border":
@@ -311,6 +311,7 @@ class Closed(Vectors):
                 yield from self.plain(now, times)
                 return
             else:
+                name = "rests"
                 fast = self.flow([np.array([x]) for x in y])
                 v, s = self.speeds(y)
                 y[8] += (v + s) * (v + s) / self.mu / -(fast[0][0] * v + fast[2][0] * s)

@@ -15,7 +15,6 @@ from gmpy2 import mpfr
 sqrt = np.frompyfunc(gmpy2.sqrt, 1, 1)
 sin, cos = np.frompyfunc(gmpy2.sin, 1, 1), np.frompyfunc(gmpy2.cos, 1, 1)
 ZERO, ONE = mpfr(0), mpfr(1)
-WHOLE = 68  # exp(-68) is what a sum round the ring may leave out
 
 
 @functools.cache
@@ -23,6 +22,50 @@ def circle(n):
     """Cosines and sines of so many equal parts of a turn."""
     angle = [2 * gmpy2.const_pi() * k / n for k in range(n)]
     return np.array([gmpy2.cos(x) for x in angle]), np.array([gmpy2.sin(x) for x in angle])
+
+
+@functools.cache
+def half_circle(n):
+    """Cosines and sines of half the angles of half a circle of n equal parts, and the weights."""
+    angle = np.array([gmpy2.const_pi() * k / n for k in range(n // 2 + 1)])
+    return cos(angle), sin(angle), np.array([1, *[2] * (n // 2 - 1), 1]) * (ONE / n)
+
+
+@functools.cache
+def half_turn(count, panel):
+    """The same of nodes from 0 to half a turn in panels that are finer towards both ends."""
+    pi = gmpy2.const_pi()
+    near = [pi / 5**k for k in range(1, count + 2)]
+    edges = [ZERO, *reversed(near), *(pi - x for x in near), pi]
+    nodes, weights = legendre(panel)
+    angle = np.concatenate([a + (b - a) * nodes for a, b in zip(edges, edges[1:])])
+    share = np.concatenate([(b - a) * weights for a, b in zip(edges, edges[1:])]) / pi
+    return cos(angle / 2), sin(angle / 2), share
+
+
+def narrowed(x):
+    """Of 64 bits."""
+    if isinstance(x, np.ndarray):
+        return np.array([narrowed(y) for y in x.ravel()], dtype=np.longdouble).reshape(x.shape)
+    high = float(x)
+    return np.longdouble(high) + np.longdouble(float(x - high))
+
+
+def widened(x):
+    """Of 64 bits, as it was."""
+    high = x.astype(float)
+    low = (x - high).astype(float)
+    return np.array([mpfr(a) + mpfr(b) for a, b in zip(high.tolist(), low.tolist(), strict=True)])
+
+
+@functools.cache
+def narrow_circle(n):
+    return tuple(map(narrowed, half_circle(n)))
+
+
+@functools.cache
+def narrow_half_turn(count, panel):
+    return tuple(map(narrowed, half_turn(count, panel)))
 
 
 def over(x):
@@ -44,7 +87,12 @@ class Vectors:
         self.part, self.planes = False, {}
         self.frozen, self.sense, self.pure, self.fixed = False, 0, False, None
         self.steps = 0
-        self.col = Collocation(self.count)
+        few = scene.digits < 25
+        self.col = Collocation(self.count - 8 if few else self.count, scene.digits)
+        self.whole_turn = 50 if few else 68  # exp(-68) is what a sum round the ring may leave out
+        self.panel = 32 if few else 44
+        self.jump = mpfr("1e-9") if few else mpfr("1e-11")
+        self.fades = mpfr("1e-16") if few else mpfr("1e-20")
 
     # On the face.
 
@@ -94,19 +142,39 @@ class Vectors:
         """Everything of a ring that presses all round, which is the mirror image of itself but for the sense of the turn.
 
         The direction n of a node is cos b across V and sin b along it, and that of its slip has the parts f and h so told.
+        With few digits the sums are made with 64 bits.
         """
-        r = self.ratio(vx, vy, w)
-        most = max(np.atleast_1d(r))
+        if self.scene.digits < 25:
+            return [widened(x) for x in self.round(*map(narrowed, (vx, vy, w)), np.sqrt, narrowed)]
+        return self.round(vx, vy, w, sqrt, lambda x: x)
+
+    def round(self, vx, vy, w, sqrt, kept):
         viscous = self.scene.law == "viscous"
-        n = 32 if viscous or most == 0 else max(32, int(WHOLE / -gmpy2.log(most)) // 16 * 16 + 16)
-        cosine, sine = (x[None, : n // 2 + 1] for x in circle(n))
-        share = np.array([ONE, *[2 * ONE] * (n // 2 - 1), ONE]) / n
-        v, s = sqrt(vx * vx + vy * vy), self.a * abs(w)
-        at, v, s = r[..., None], v[..., None], s[..., None]
-        below = 1 + at * at + 2 * at * cosine
-        c, d = (cosine * (1 + at * at) + 2 * at) / below, (1 - at * at) * sine / below
-        weight = share * (1 - at * at) / below
-        f, h = v - s * c, s * d
+        a, mu, lam = kept(self.a), kept(self.mu), kept(self.mu * self.z / self.a)
+        v, s = sqrt(vx * vx + vy * vy), a * abs(w)
+        low, high = np.where(v < s, v, s), np.where(v < s, s, v)
+        # the radius of the map, and how much it is below 1
+        apart = (high - low) / high
+        leg = sqrt(apart * (2 - apart))
+        short, r = (apart + leg) / (1 + leg), (1 - apart) / (1 + leg)
+        if viscous:  # nothing is singular
+            short, r = r * 0 + 1, r * 0
+        least = mpfr(float(min(short)))
+        width = 2 if least > 0.8 else -gmpy2.log1p(-least)
+        n = max(32, int(self.whole_turn / width) // 16 * 16 + 16)
+        narrow = sqrt is np.sqrt
+        if n < 30 * self.panel:
+            c, d, share = (narrow_circle if narrow else half_circle)(n)
+        else:  # fewer in panels
+            count = int(gmpy2.log(gmpy2.const_pi() / width) / gmpy2.log(5))
+            c, d, share = (narrow_half_turn if narrow else half_turn)(count, self.panel)
+        r, short, v, s, ahead = (x[..., None] for x in (r, short, v, s, v - s))
+        c, d = c[None, :], d[None, :]
+        below = short**2 + 4 * r * c * c
+        left = 2 * (short * d) ** 2 / below  # 1 - cos b
+        weight = share * (short * (1 + r)) / below
+        c, d = 1 - left, 2 * short * (1 + r) * d * c / below
+        f, h = ahead + s * left, s * d
         if not viscous:
             if self.pure:
                 weight = weight / (s if self.sense else v)
@@ -118,22 +186,21 @@ class Vectors:
         turn = hd - fc
         mean_f, mean_fc, mean_hd, mean_turn, mean_tc = over(f), over(fc), over(hd), over(turn), over(c * turn)
         # p = 1 + 2 X . n: the pressure's centre X is lam times the mean of the direction of the slip
-        lam = self.mu * self.z / self.a
         along = mean_f / (1 - 4 * lam * lam * mean_hd * mean_fc)
         across = 2 * lam * mean_hd * along
         couple = mean_turn + 2 * lam * across * mean_tc
         sign = self.sense if self.pure and self.sense else np.array([-1 if x < 0 else 1 for x in w])
-        ex, ey = self.fixed if self.pure and self.fixed else self.ahead(vx, vy)
+        ex, ey = map(kept, self.fixed) if self.pure and self.fixed else self.ahead(vx, vy, sqrt)
         gx, gy = along * ex - sign * across * ey, along * ey + sign * across * ex
-        force = -self.mu * gx, -self.mu * gy
-        moment = -self.mu * self.a * couple * sign
+        force = -mu * gx, -mu * gy
+        moment = -mu * a * couple * sign
         return (*force, moment, -(force[0] * vx + force[1] * vy + moment * w), w * 0 + 1, 2 * lam * gx, 2 * lam * gy)
 
     @staticmethod
-    def ahead(vx, vy):
+    def ahead(vx, vy, sqrt=sqrt):
         v = sqrt(vx * vx + vy * vy)
-        safe = np.where(v == 0, ONE, v)
-        return np.where(v == 0, ONE, vx / safe), vy / safe
+        safe = np.where(v == 0, v * 0 + 1, v)
+        return np.where(v == 0, v * 0 + 1, vx / safe), vy / safe
 
     def partly(self, vx, vy, w, key=None):
         """The same of one state, of which a part presses."""
@@ -157,7 +224,7 @@ class Vectors:
             new = np.array(found[4:])
             change = max(abs(x) for x in new - plane)
             plane = new
-            if change < 1e-21:  # the next one would be less than its square
+            if change < (1e-15 if self.scene.digits < 25 else 1e-21):  # the next one would be less than its square
                 break
         kept = plane[0], plane[1] * dx + plane[2] * dy, plane[2] * dx - plane[1] * dy
         self.planes[key] = self.planes["last"] = kept
@@ -181,7 +248,7 @@ class Vectors:
         every = sorted(e + 2 * pi * k for e in edges for k in (-1, 0, 1))
         inner = [e for e in every if low < e < high]
         ends = [low, *inner, high]
-        nodes, weights = legendre(44)
+        nodes, weights = legendre(self.panel)
         angle = np.concatenate([a + (b - a) * nodes for a, b in zip(ends, ends[1:])])
         share = np.concatenate([(b - a) * weights for a, b in zip(ends, ends[1:])]) / (2 * pi)
         return cos(angle), sin(angle), share
@@ -192,7 +259,7 @@ class Vectors:
         k = max(v / s)
         assert k < mpfr("0.99")
         width = gmpy2.acosh(1 / k) if k else mpfr(5)
-        n = max(32, int(WHOLE / width) // 16 * 16 + 16)
+        n = max(32, int(self.whole_turn / width) // 16 * 16 + 16)
         cosine, sine = (x[None, :] for x in circle(n))
         vx, vy, w = (x[:, None] for x in (vx, vy, w))
         px, py = -vy / (self.a * w), vx / (self.a * w)  # in units of a
@@ -256,7 +323,7 @@ class Vectors:
         v, s = gmpy2.hypot(y[3], y[4]), self.a * abs(y[5])
         far = abs(v - s)
         pace = abs(self.pace(y))
-        if far < 1e-11 * (v + s):
+        if far < self.jump * (v + s):
             return min(left, 2 * far / pace)
         return min(left, mpfr("0.75") * far / pace) if pace else left
 
@@ -298,9 +365,10 @@ class Vectors:
                 name = "rests" if self.pure else "straight"
                 events.append((name, lambda y: y[5] * self.sense))
             else:
-                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-27")))
+                events.append(("fades", lambda y: self.size(y) - begin * self.fades))
             name, y, n = self.col.follow(self.rates, y, self.longest(y), events, self.longest, scale=self.size)
             self.steps += n
+            name = "rests" if name == "fades" else name
             if name == "border":
                 self.part = not self.part
                 continue

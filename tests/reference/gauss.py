@@ -34,8 +34,10 @@ def legendre(n):
 class Collocation:
     """Steps by so many nodes."""
 
-    def __init__(self, count):
+    def __init__(self, count, digits=25):
         self.count = count
+        few = mpfr("2e7") if digits < 25 else mpfr(1)
+        self.tolerance, self.close = TOLERANCE * few, CLOSE * few**2
         self.nodes, self.weights = legendre(count)
         # Legendre's polynomials at the nodes, and their integrals from 0: the rates are a series of them
         x = 2 * self.nodes - 1
@@ -58,7 +60,7 @@ class Collocation:
             values = new
             if not change < 1e6:
                 return None
-            if change < CLOSE or (before is not None and change < 1e-31 and change >= before):
+            if change < self.close or (before is not None and change < 100 * self.close and change >= before):
                 break
             before = change
         else:
@@ -98,11 +100,11 @@ class Collocation:
     def follow(self, rates, y, h, events, longest=None, scale=None):
         """Goes on until the first of the events, (name, function of a state), becomes negative.
 
-        The name and the state there, and the number of steps.
+        The name and the state there, and the number of steps. Where "fades" happens is not searched: it is soon enough.
         """
         taken, most = 0, mpfr(3)
         while taken < 100000:
-            allowed = TOLERANCE * gmpy2.sqrt(scale(y)) if scale else TOLERANCE
+            allowed = self.tolerance * gmpy2.sqrt(scale(y)) if scale else self.tolerance
             if longest is not None:
                 h = min(h, longest(y))
             found = self.step(rates, y, h)
@@ -127,7 +129,10 @@ class Collocation:
             if hits:
                 best = None
                 for low, high, name, g, low_g, high_g in hits:
-                    if best is None or low < best[0]:
+                    if name == "fades":
+                        place = high, self.step(rates, y, high)[0]
+                        best = best if best is not None and best[0] <= high else (*place, name)
+                    elif best is None or low < best[0]:
                         place = self.place(rates, y, g, low, high, low_g, high_g)
                         if best is None or place[0] < best[0]:
                             best = (*place, name)
