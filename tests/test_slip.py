@@ -134,7 +134,7 @@ def test_a_law_or_a_slip_that_makes_no_sense_is_refused_by_name(make, error, mat
             "^state: expected a single state",
         ),
         ({"state": sc.State(1.0, 0, 0, 1.0, slip=(np.zeros(0), 0))}, ValueError, "^state: expected a single"),
-        ({"state": sc.State(0.0, 0, 0, 1.0, slip=(0, 1))}, ValueError, "^theta = 0.0: expected"),
+        ({"state": sc.State(0.0, 0, 1, 1.0, slip=(0, 1))}, ValueError, "^w2 = 1.0: expected w2 <= 0"),
         ({"body": sc.Body.solid(np.array([1.0, 2.0]))}, ValueError, "^body: expected a single body"),
     ],
 )

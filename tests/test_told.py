@@ -214,7 +214,7 @@ def test_a_measured_body_has_the_same_motion_in_si(name):
     assert m.energy == pytest.approx(sized.scale.joules(plain.energy), rel=1e-8)
     table = m.to_dataframe()
     assert table["centre_z"].to_numpy() == pytest.approx(m.centre[:, 2], abs=0) and "rim" in table
-    assert m.to_xarray()["phase"].attrs["flag_meanings"].endswith("rolling_round_its_apex")
+    assert m.to_xarray()["phase"].attrs["flag_meanings"].endswith("rolling_round_its_apex on_its_face")
 
 
 @pytest.mark.parametrize("name", STARTS)
