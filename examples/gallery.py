@@ -30,6 +30,8 @@ SCENES = (
     "falling_pencil",
     "rolled_cup",
     "tipped_bottle",
+    "sliding_puck",
+    "pushed_can",
     "rattleback",
     "rising_egg",
 )

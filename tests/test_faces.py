@@ -99,15 +99,24 @@ def test_a_kerb_topples_a_body_that_is_fast_enough():
         assert m.rests_on.name == rests
 
 
+def test_a_rolling_motion_with_a_loss_says_nothing_of_faces():
+    coin = sc.Body.solid(0.1)
+    m = sc.roll(coin, coin.steady(0.5), 1.0, losses=sc.loss.DryContour(0.01))
+    assert "reached" in m.message and "topple" not in m.message
+
+
 def test_a_sweep_keeps_how_the_table_presses():
     pytest.importorskip("xarray")
-    table = sc.Coulomb(0.25, face="disc")
-    found = sc.sweep.roll(
-        TUBE, sc.spun(TUBE, [1.0, 2.0], (1.5, 0.0)), 20.0, contact=table, want=("end", "rests_on")
-    )
-    one = slide(20.0, table)
-    assert found["end"].values[0] == pytest.approx(one.event.time, rel=1e-8)
-    assert sc.sweep.inputs(found)["contact"] == table
+    felt, rim = sc.Coulomb(0.25, face="disc"), sc.Coulomb(0.25)
+    want, spins = ("end", "rests_on", "error"), [1.0, 2.0]
+    found = sc.sweep.roll(TUBE, sc.spun(TUBE, spins, (1.5, 0.0)), 20.0, contact=felt, want=want)
+    assert sc.sweep.inputs(found)["contact"] == felt
+    ends = found["end"].values
+    for i, w in enumerate(spins):
+        one = slide(20.0, felt, w=w)
+        # each within its own claim
+        assert abs(ends[i] - one.event.time) <= found["error"].values[i] + one.error
+        assert abs(ends[i] - slide(20.0, rim, w=w).event.time) > 1e-3, "the ring ends at another time"
 
 
 def test_pages_and_plots_show_a_body_on_its_face():

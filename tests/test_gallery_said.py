@@ -17,10 +17,12 @@ import hurricane_balls
 import near_steady_tube
 import numpy as np
 import pytest
+import pushed_can
 import rattleback
 import rising_egg
 import rocking_can
 import rolled_cup
+import sliding_puck
 import tippe_top_turns
 import tipped_bottle
 
@@ -272,6 +274,35 @@ def test_a_bottle_tips_rocks_infinitely_often_and_rolls_round_less_far_the_bette
         lost.append(m.lost_in_impacts[-1])
         far.append(np.ptp(m.phi[m.t > last.time]))
     assert (np.diff(lost) > 0).all() and (np.diff(far) < 0).all()
+
+
+def test_a_puck_slides_farther_with_a_spin_and_its_whole_face_ends_both_in_one_ratio():
+    says(
+        sliding_puck, "The faster a puck spins, the farther it slides", "ratio 0.655, however",
+        "If only its rim presses, the spin fades first",
+    )  # fmt: skip
+    rim, whole = sliding_puck.TABLES.values()
+    for table in (rim, whole):
+        far = [sliding_puck.cm(sliding_puck.pushed(turns, table))[-1, 0] for turns in sliding_puck.SPINS]
+        assert (np.diff(far) > 0).all()
+        assert far[0] == pytest.approx(100 / (2 * 0.2 * 9.80665), rel=1e-6)  # v^2/(2 mu g), in cm
+    for turns in sliding_puck.SPINS[1:]:
+        for table, least, most in ((whole, 0.65, 0.66), (rim, 3.0, np.inf)):
+            m = sliding_puck.pushed(turns, table)
+            slide = np.hypot(*sliding_puck.body.centre_velocity(m.states))[-1]
+            assert least < slide / m.w[-1, 2] < most
+
+
+def test_a_can_topples_only_with_enough_friction_and_speed_and_a_fast_spin_keeps_it_down():
+    says(
+        pushed_can, "topples if the friction is strong enough", "only tips, and rocks to rest",
+        "A fast spin keeps it on its face",
+    )  # fmt: skip
+    for mu, speed, turns, low, high in (
+        (0.49, 3.0, 0.0, 0.0, 0.0), (0.55, 0.6, 0.0, 1.0, 10.0), (0.55, 1.0, 0.0, 89.0, 91.0), (0.55, 1.0, 5.0, 0.0, 0.0),
+    ):  # fmt: skip
+        m = pushed_can.pushed(speed, turns, sc.Coulomb(mu))
+        assert low <= np.degrees(m.theta.max()) <= high, (mu, speed, turns)
 
 
 def test_a_rattleback_turns_back_and_the_other_way_takes_more_than_four_times_as_long():

@@ -41,7 +41,8 @@ def message(m: "Motion") -> str:
 
 def _near_toppling(m: "Motion") -> str:
     """A remark on a tall body on its face; empty for others."""
-    if not isinstance(m.contact, Coulomb) or not any(phase.kind == "on its face" for phase in m.phases):
+    stands = m._phases is not None and any(phase.kind == "on its face" for phase in m.phases)
+    if not stands or not isinstance(m.contact, Coulomb):
         return ""
     theta = next(phase.state.theta for phase in m.phases if phase.kind == "on its face")
     if m.body.topples(m.contact.mu, theta):
