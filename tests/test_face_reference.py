@@ -65,7 +65,7 @@ def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
     assert {law for case in MOTIONS for law in case.losses} >= {"drilling", "air"}
     assert any(case.body[3] > 0 for case in MOTIONS)
     assert len(MOTIONS) >= 16
-    assert max(case.agreement for case in MOTIONS) < 1e-23
+    assert max(case.agreement for case in MOTIONS) < 1e-18
 
 
 @each_motion
@@ -148,11 +148,15 @@ def test_a_pillar_rocks_by_the_factor_of_housner():
             for one, other in pairwise(rocks):
                 high = inertia * one.w2**2 / 2 + z
 
-                def pace(u, high=high, inertia=inertia, a=a, z=z):
-                    # theta = top (1 - u^2)
-                    top = mp.asin(high / mp.hypot(a, z)) - mp.atan2(z, a)
-                    theta = top * (1 - u * u)
-                    return 2 * top * u / mp.sqrt(2 * (high - a * mp.sin(theta) - z * mp.cos(theta)) / inertia)
+                far = mp.hypot(a, z)
+                begin = mp.atan2(z, a)
+                top = mp.asin(high / far) - begin
+
+                def pace(u, top=top, begin=begin, inertia=inertia, far=far):
+                    # theta = top (1 - u^2); the centre is still to rise by far (sin(begin + top) - sin(begin + theta))
+                    below = top * u * u
+                    rise = 2 * far * mp.cos(begin + top - below / 2) * mp.sin(below / 2)
+                    return 2 * top * u / mp.sqrt(2 * rise / inertia)
 
                 assert abs(2 * mp.quad(pace, [0, 1]) - (other.t - one.t)) < mpf("1e-18")
             # all that its centre comes down by, and the energy of a kick, is heat
