@@ -67,7 +67,13 @@ KINDS = (*FLAT, profiles.five, profiles.cone, profiles.cap, profiles.dumb_bell)
 
 
 #: exact starts
-EXACT = ("flat on a face", "flat in the air", "at rest on a rim", "kicked up off a face", "at rest in the air")
+EXACT = (
+    "flat on a face",
+    "flat in the air",
+    "at rest on a rim",
+    "kicked up off a face",
+    "at rest in the air",
+)
 
 
 def drawn(number, seed=0):
@@ -201,7 +207,9 @@ def tossed(job):
 
 def coins(count, jobs, limit):
     """Shares of solid cylinders on their side, tossed from 10 R with any orientation and normal rates of 2 sqrt(g/R)."""
-    print("| thickness over radius | restitution | friction | on its side | published measurement | on neither | lost |")
+    print(
+        "| thickness over radius | restitution | friction | on its side | published measurement | on neither | lost |"
+    )
     print("| --- | --- | --- | --- | --- | --- | --- |")
     with multiprocessing.Pool(jobs) as pool:
         for restitution in (0.0, 0.3, 0.5):

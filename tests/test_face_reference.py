@@ -59,7 +59,18 @@ def aloft(case):
 
 def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
     kinds = {row.kind for case in MOTIONS for row in case.rows}
-    assert kinds >= {"sample", "end", "pushed", "face", "straight", "topples", "rocks", "stands", "rocked", "rests"}
+    assert kinds >= {
+        "sample",
+        "end",
+        "pushed",
+        "face",
+        "straight",
+        "topples",
+        "rocks",
+        "stands",
+        "rocked",
+        "rests",
+    }
     assert {case.face for case in MOTIONS} == {"ring", "disc"}
     assert {case.law for case in MOTIONS} == {"coulomb", "viscous"}
     assert {law for case in MOTIONS for law in case.losses} >= {"drilling", "air"}
@@ -179,7 +190,7 @@ def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_e
 
 def test_a_body_that_topples_leaves_over_the_point_whose_slip_points_outward():
     case, rows = of("topples as it slides")
-    a, z, i1, _ = body(case)
+    a, z, _i1, _ = body(case)
     begin, v = rows["topples"], mpf(3)
     with mp.workdps(40):
         assert mpf(case.mu) * z > a
