@@ -59,13 +59,24 @@ def aloft(case):
 
 def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
     kinds = {row.kind for case in MOTIONS for row in case.rows}
-    assert kinds >= {"sample", "end", "pushed", "face", "straight", "topples", "rocks", "stands", "rocked", "rests"}
+    assert kinds >= {
+        "sample",
+        "end",
+        "pushed",
+        "face",
+        "straight",
+        "topples",
+        "rocks",
+        "stands",
+        "rocked",
+        "rests",
+    }
     assert {case.face for case in MOTIONS} == {"ring", "disc"}
     assert {case.law for case in MOTIONS} == {"coulomb", "viscous"}
     assert {law for case in MOTIONS for law in case.losses} >= {"drilling", "air"}
     assert any(case.body[3] > 0 for case in MOTIONS)
     assert len(MOTIONS) >= 16
-    assert max(case.agreement for case in MOTIONS) < 1e-23
+    assert max(case.agreement for case in MOTIONS) < 1e-18
 
 
 @each_motion
@@ -148,11 +159,15 @@ def test_a_pillar_rocks_by_the_factor_of_housner():
             for one, other in pairwise(rocks):
                 high = inertia * one.w2**2 / 2 + z
 
-                def pace(u, high=high, inertia=inertia, a=a, z=z):
-                    # theta = top (1 - u^2)
-                    top = mp.asin(high / mp.hypot(a, z)) - mp.atan2(z, a)
-                    theta = top * (1 - u * u)
-                    return 2 * top * u / mp.sqrt(2 * (high - a * mp.sin(theta) - z * mp.cos(theta)) / inertia)
+                far = mp.hypot(a, z)
+                begin = mp.atan2(z, a)
+                top = mp.asin(high / far) - begin
+
+                def pace(u, top=top, begin=begin, inertia=inertia, far=far):
+                    # theta = top (1 - u^2); the centre is still to rise by far (sin(begin + top) - sin(begin + theta))
+                    below = top * u * u
+                    rise = 2 * far * mp.cos(begin + top - below / 2) * mp.sin(below / 2)
+                    return 2 * top * u / mp.sqrt(2 * rise / inertia)
 
                 assert abs(2 * mp.quad(pace, [0, 1]) - (other.t - one.t)) < mpf("1e-18")
             # all that its centre comes down by, and the energy of a kick, is heat
@@ -175,7 +190,7 @@ def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_e
 
 def test_a_body_that_topples_leaves_over_the_point_whose_slip_points_outward():
     case, rows = of("topples as it slides")
-    a, z, i1, _ = body(case)
+    a, z, _i1, _ = body(case)
     begin, v = rows["topples"], mpf(3)
     with mp.workdps(40):
         assert mpf(case.mu) * z > a

@@ -15,6 +15,7 @@ A width of 1.5 or more stands for a pressure 1 + x.X that presses everywhere: th
 4 centre; the centre is then 1/(2 width) or 1/(4 (width - 0.5)). Inputs are exact doubles, written as hexadecimal.
 """
 
+import itertools
 import pathlib
 import random
 
@@ -51,7 +52,7 @@ def total(sums, left, right, near):
             steps.append(max(least, 3 * steps[-1]))
         ends |= {end for step in steps for end in (place - step, place + step) if left < end < right}
     ends, found = sorted(ends), [mpf(0)] * 5
-    for a, b in zip(ends, ends[1:], strict=False):
+    for a, b in itertools.pairwise(ends):
         for x, weight in RULE:
             terms = sums((a + b) / 2 + (b - a) / 2 * x)
             found = [sum_ + weight * (b - a) / 2 * term for sum_, term in zip(found, terms, strict=True)]
@@ -79,7 +80,13 @@ def ring(k, width, angle):
         size = mp.sqrt((k - 1) ** 2 + 4 * k * mp.sin((chi - mp.pi / 2) / 2) ** 2)
         p = base + slope * mp.cos(t)
         along, across = ux * mp.cos(angle) + uy * mp.sin(angle), uy * mp.cos(angle) - ux * mp.sin(angle)
-        return [p, p * mp.cos(t), p * along / size, p * across / size, p * (mp.cos(chi) * uy - mp.sin(chi) * ux) / size]
+        return [
+            p,
+            p * mp.cos(t),
+            p * along / size,
+            p * across / size,
+            p * (mp.cos(chi) * uy - mp.sin(chi) * ux) / size,
+        ]
 
     return total(sums, -b, b, [(near, least), (near - 2 * mp.pi, least)])
 
@@ -98,7 +105,9 @@ def disc(k, width, angle):
         for y in (half - pole[1], -half - pole[1]):
             size = mp.sqrt(off * off + y * y)
             turn = mp.asinh(y / abs(off)) if off else mpf(0)
-            out.append([-size, off * turn, x * off * turn + (y * size - off * off * turn) / 2 + pole[1] * size])
+            out.append(
+                [-size, off * turn, x * off * turn + (y * size - off * off * turn) / 2 + pole[1] * size]
+            )
         found = [2 * half] + [a - b for a, b in zip(*out, strict=True)]
         mp.dps = DIGITS
         return found
@@ -123,7 +132,25 @@ def row(form, k, width, angle):
 
 def cases():
     draw = random.Random(68).uniform
-    ratios = [1e-8, 1e-3, 0.1, 0.5, 0.9, 0.99, 1 - 1e-6, 1 - 2**-52, 1.0, 1 + 1e-9, 1.001, 1.05, 1.3, 2.0, 10.0, 1e4, 1e8]
+    ratios = [
+        1e-8,
+        1e-3,
+        0.1,
+        0.5,
+        0.9,
+        0.99,
+        1 - 1e-6,
+        1 - 2**-52,
+        1.0,
+        1 + 1e-9,
+        1.001,
+        1.05,
+        1.3,
+        2.0,
+        10.0,
+        1e4,
+        1e8,
+    ]
     for form in ("ring", "disc"):
         for k in ratios:
             for width in (1.5, draw(1.6, 9), draw(0.5, 1), 10 ** draw(-3, -0.3)):
