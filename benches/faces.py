@@ -172,7 +172,8 @@ def coins(count):
                 share = (found["side"] + sum(found[x] for x in ("edge",))) / settled
                 error = np.sqrt(share * (1 - share) / settled)
                 print(
-                    f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} |", flush=True
+                    f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} |",
+                    flush=True,
                 )
 
 

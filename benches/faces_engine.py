@@ -29,7 +29,9 @@ POINTS, TINY = 64, 5e-5
 class Case:
     """A body in SI, with its friction, and a start: height, tilt, velocity of the centre, and spin."""
 
-    def __init__(self, name, radius, height, mu, until, face="ring", drop=0.0, tilt=0.0, velocity=0.0, spin=0.0):
+    def __init__(
+        self, name, radius, height, mu, until, face="ring", drop=0.0, tilt=0.0, velocity=0.0, spin=0.0
+    ):
         self.name, self.radius, self.half, self.mu, self.until = name, radius, height / 2, mu, until
         self.face, self.drop, self.tilt, self.velocity, self.spin = face, drop, tilt, velocity, spin
         self.body = sc.Body.solid(self.half / radius)
@@ -63,9 +65,14 @@ class Case:
         else:
             angle, out = 2 * np.pi * np.arange(POINTS) / POINTS, np.ones(POINTS)
             if self.face == "disc":  # of equal areas
-                angle, out = np.pi * (3 - np.sqrt(5)) * np.arange(POINTS), np.sqrt((np.arange(POINTS) + 0.5) / POINTS)
+                angle, out = (
+                    np.pi * (3 - np.sqrt(5)) * np.arange(POINTS),
+                    np.sqrt((np.arange(POINTS) + 0.5) / POINTS),
+                )
             at = np.column_stack([r * out * np.cos(angle), r * out * np.sin(angle), 0 * angle - h + TINY])
-            balls = "".join(f'<geom type="sphere" size="{TINY}" pos="{x} {y} {z}" mass="0"/>' for x, y, z in at)
+            balls = "".join(
+                f'<geom type="sphere" size="{TINY}" pos="{x} {y} {z}" mass="0"/>' for x, y, z in at
+            )
             shape = f'<geom type="cylinder" size="{r} {h}" mass="1" contype="0" conaffinity="0"/>{balls}'
         return f"""<mujoco><option timestep="{step}" cone="elliptic" gravity="0 0 -{GRAVITY}" iterations="200"/>
         <default><geom friction="{self.mu} 0 0" condim="3" solref="{2 * step} 1"/></default>
@@ -78,14 +85,26 @@ class Case:
         data = mujoco.MjData(model)
         s, c = np.sin(self.tilt), np.cos(self.tilt)
         # as spincyl tilts it: about the edge at -x, with the axis towards -x
-        data.qpos[:] = [0, 0, self.half * c + self.radius * s + self.drop, np.cos(self.tilt / 2), 0, -np.sin(self.tilt / 2), 0]
+        data.qpos[:] = [
+            0,
+            0,
+            self.half * c + self.radius * s + self.drop,
+            np.cos(self.tilt / 2),
+            0,
+            -np.sin(self.tilt / 2),
+            0,
+        ]
         data.qvel[:] = [self.velocity, 0, 0, 0, 0, self.spin]
         rows, rests = [], np.inf
         begun = time.process_time()
         for _ in range(round(self.until / step)):
-            axis = np.array([2 * (data.qpos[4] * data.qpos[6] + data.qpos[3] * data.qpos[5]),
-                             2 * (data.qpos[5] * data.qpos[6] - data.qpos[3] * data.qpos[4]),
-                             1 - 2 * (data.qpos[4] ** 2 + data.qpos[5] ** 2)])
+            axis = np.array(
+                [
+                    2 * (data.qpos[4] * data.qpos[6] + data.qpos[3] * data.qpos[5]),
+                    2 * (data.qpos[5] * data.qpos[6] - data.qpos[3] * data.qpos[4]),
+                    1 - 2 * (data.qpos[4] ** 2 + data.qpos[5] ** 2),
+                ]
+            )
             turn = 2 * np.arctan2(data.qpos[6], data.qpos[3])
             rows.append([data.time, data.qpos[0], data.qpos[1], turn, np.arccos(np.clip(axis[2], -1, 1))])
             speed = np.hypot(*data.qvel[:2]) + self.radius * np.abs(data.qvel[3:]).max()
@@ -105,7 +124,17 @@ def cases():
 
 def table():
     """Rows of the table."""
-    yield ["scene", "in MuJoCo", "step", "centre off by", "turn off by", "tilt off by", "rests", "true", "time"]
+    yield [
+        "scene",
+        "in MuJoCo",
+        "step",
+        "centre off by",
+        "turn off by",
+        "tilt off by",
+        "rests",
+        "true",
+        "time",
+    ]
     yield ["---"] * 9
     for case in cases():
         for points in (False, True):
@@ -116,15 +145,28 @@ def table():
                 turned = np.unwrap(rows[:, 3]) - rows[0, 3] - turn
                 steep = np.abs(rows[:, 4] - tilt).max()
                 moves = [f"{x:.3f} s" if np.isfinite(x) else "" for x in (rests, true)]
-                shape = ("64 points of its face" if case.face == "disc" else "64 points of its rim") if points else "a cylinder"
-                yield [case.name, shape, f"{1e6 * step:g} us", f"{1e3 * off:.2g} mm",
-                       f"{np.degrees(np.abs(turned).max()):.2g} degrees" if case.spin else "",
-                       f"{np.degrees(steep):.2g} degrees", *moves, f"{1e3 * spent:.0f} ms"]
+                shape = (
+                    ("64 points of its face" if case.face == "disc" else "64 points of its rim")
+                    if points
+                    else "a cylinder"
+                )
+                yield [
+                    case.name,
+                    shape,
+                    f"{1e6 * step:g} us",
+                    f"{1e3 * off:.2g} mm",
+                    f"{np.degrees(np.abs(turned).max()):.2g} degrees" if case.spin else "",
+                    f"{np.degrees(steep):.2g} degrees",
+                    *moves,
+                    f"{1e3 * spent:.0f} ms",
+                ]
         yield [case.name, "spincyl", "", "", "", "", "", "", f"{1e3 * own:.1f} ms"]
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--docs", metavar="PAGE", help="write the table into a page, below the comment")
     args = parser.parse_args()
     rows = []

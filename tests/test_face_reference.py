@@ -59,7 +59,18 @@ def aloft(case):
 
 def test_the_motions_are_of_all_kinds_and_both_formulations_agree():
     kinds = {row.kind for case in MOTIONS for row in case.rows}
-    assert kinds >= {"sample", "end", "pushed", "face", "straight", "topples", "rocks", "stands", "rocked", "rests"}
+    assert kinds >= {
+        "sample",
+        "end",
+        "pushed",
+        "face",
+        "straight",
+        "topples",
+        "rocks",
+        "stands",
+        "rocked",
+        "rests",
+    }
     assert {case.face for case in MOTIONS} == {"ring", "disc"}
     assert {case.law for case in MOTIONS} == {"coulomb", "viscous"}
     assert {law for case in MOTIONS for law in case.losses} >= {"drilling", "air"}

@@ -16,8 +16,8 @@ import hula_hoop
 import hurricane_balls
 import near_steady_tube
 import numpy as np
-import pytest
 import pushed_can
+import pytest
 import rattleback
 import rising_egg
 import rocking_can

@@ -26,7 +26,6 @@ Inputs are exact doubles; results are decimal, to 25 digits. `agreement` is the 
 formulations in all numbers of a motion, over 1 or the number if that is more.
 """
 
-import math
 import pathlib
 from types import SimpleNamespace
 
@@ -95,8 +94,24 @@ def follow(model):
     scene, rows = model.scene, []
     theta, w1, w2, w3, u_h, u_2 = map(mpfr, scene.start)
     zero, a = mpfr(0), model.a
-    now = Now(t=zero, place=[zero, zero], velocity=[u_h, u_2 + a * w3], w=w3, phi=zero, psi=zero, heat=zero, work=zero, theta=theta,
-              w1=w1, w2=w2, w3=w3, u_h=u_h, u_2=u_2, height=mpfr(scene.height), rim=False)
+    now = Now(
+        t=zero,
+        place=[zero, zero],
+        velocity=[u_h, u_2 + a * w3],
+        w=w3,
+        phi=zero,
+        psi=zero,
+        heat=zero,
+        work=zero,
+        theta=theta,
+        w1=w1,
+        w2=w2,
+        w3=w3,
+        u_h=u_h,
+        u_2=u_2,
+        height=mpfr(scene.height),
+        rim=False,
+    )
     times, rate = list(scene.samples), -mpfr(scene.lift)
     kind = "rim" if theta or w2 else "air" if scene.height or scene.lift else "face"
     lam = model.mu * model.z / a
@@ -116,11 +131,23 @@ def follow(model):
             left = -rate + gmpy2.sqrt(rate * rate + 2 * height)
             while times and mpfr(times[0]) < now.t + left:
                 d = mpfr(times[0]) - now.t
-                add("sample", now.at(t=now.t + d, place=[p + v * d for p, v in zip(now.place, now.velocity, strict=True)],
-                                     psi=now.psi + now.w * d, height=height - rate * d - d * d / 2), aloft=True)
+                add(
+                    "sample",
+                    now.at(
+                        t=now.t + d,
+                        place=[p + v * d for p, v in zip(now.place, now.velocity, strict=True)],
+                        psi=now.psi + now.w * d,
+                        height=height - rate * d - d * d / 2,
+                    ),
+                    aloft=True,
+                )
             rate += left
-            now = now.at(t=now.t + left, place=[p + v * left for p, v in zip(now.place, now.velocity, strict=True)],
-                         psi=now.psi + now.w * left, height=zero)
+            now = now.at(
+                t=now.t + left,
+                place=[p + v * left for p, v in zip(now.place, now.velocity, strict=True)],
+                psi=now.psi + now.w * left,
+                height=zero,
+            )
             e = mpfr(scene.restitution)
             last = rate * e < STILL
             impulse = rate * (1 + e) / (1 - e) if last else rate * (1 + e)
@@ -168,7 +195,9 @@ def follow(model):
             earlier = rocked[-3] if len(rocked) > 2 else None
             if fall < SETTLED and earlier is not None:
                 ratio = fall / earlier[0]
-                t, x, y, heat, vx, vy = (p + (p - q) * ratio / (1 - ratio) for p, q in zip(rocked[-1][1], earlier[1], strict=True))
+                t, x, y, heat, vx, vy = (
+                    p + (p - q) * ratio / (1 - ratio) for p, q in zip(rocked[-1][1], earlier[1], strict=True)
+                )
                 vx = zero if abs(vx) < 1e-11 else vx
                 now = now.at(t=t, place=[x, y], heat=heat, velocity=[vx, zero], theta=zero, w2=zero, u_h=zero)
                 add("rocked", now)
@@ -205,7 +234,9 @@ def scenes():
     yield Scene("part of the ring presses", tall, 0.45, moving(tall, (1.5, 0), 1), [1, 2, 3])
     glass = tube(1.4)
     yield Scene("more and more of the ring presses", glass, 0.5, moving(glass, (2, 0.5), 1), [1, 2, 4])
-    yield Scene("topples as it slides", pillar, 0.7, moving(pillar, (3, 0), 1.5), [0.2, 0.4, 0.6, 0.8], to_rest=False)
+    yield Scene(
+        "topples as it slides", pillar, 0.7, moving(pillar, (3, 0), 1.5), [0.2, 0.4, 0.6, 0.8], to_rest=False
+    )
     narrow = (1.8, 0.41 + 4 / 3, 0.82, 0.2)
     yield Scene("spin keeps it down", narrow, 0.48, moving(narrow, (0.4, 0), 1), [0.5, 1, 1.5])
     yield Scene("pillar rocks to rest", pillar, 0.9, (0.1, 0, 0, 0, 0, 0), [1, 2, 3, 4, 5])
@@ -213,21 +244,40 @@ def scenes():
     flat = solid(0.4)
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
     dropped = {"height": 0.08, "restitution": 0.5}
-    yield Scene("dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 1.1, 3, 5], **dropped)
+    yield Scene(
+        "dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 1.1, 3, 5], **dropped
+    )
     tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3}
     coin = solid(0.1)
     yield Scene("coin tossed flat", coin, 0.2, moving(coin, (0.5, -0.6), 3), [0.5, 1.5, 2.2, 4], **tossed)
     still = {"height": 0.2, "lift": -0.1, "restitution": 0.0}
     yield Scene("thrown down flat, stays", can, 0.25, moving(can, (0, 0.9), -0.5), [0.3, 1, 2], **still)
     puck = tube(0.6)
-    yield Scene("drilling ends the turning first", puck, 0.2, moving(puck, (1.2, 0), 0.4), [0.5, 2, 4], losses={"drilling": 0.15})
+    yield Scene(
+        "drilling ends the turning first",
+        puck,
+        0.2,
+        moving(puck, (1.2, 0), 0.4),
+        [0.5, 2, 4],
+        losses={"drilling": 0.15},
+    )
     yield Scene("linear air", can, 0.25, moving(can, (1.2, 0.4), 1.5), [1, 3, 5], losses={"air": 0.05})
     yield Scene("viscous", tall, 0.2, moving(tall, (1, 0), 2), [1, 2, 3, 4, 5], law="viscous", to_rest=False)
     lap = solid(0.3)
     yield Scene("disc", lap, 0.3, moving(lap, (0.4, 0), 1), [0.5, 1, 1.4], face="disc")
-    yield Scene("disc only spins, with drilling", lap, 0.3, moving(lap, (0, 0), 2), [1, 2], face="disc", losses={"drilling": 0.1})
+    yield Scene(
+        "disc only spins, with drilling",
+        lap,
+        0.3,
+        moving(lap, (0, 0), 2),
+        [1, 2],
+        face="disc",
+        losses={"drilling": 0.1},
+    )
     yield Scene("pillar kicked falls back", pillar, 0.9, (0, 0, -0.2, 0, 0, 0), [0.5, 1.5, 3, 5])
-    yield Scene("pillar kicked goes over", pillar, 0.9, (0, 0, -0.3, 0, 0, 0), [0.5, 1, 1.5, 2], to_rest=False)
+    yield Scene(
+        "pillar kicked goes over", pillar, 0.9, (0, 0, -0.3, 0, 0, 0), [0.5, 1, 1.5, 2], to_rest=False
+    )
 
 
 def made(scene):
@@ -247,7 +297,8 @@ def made(scene):
         "lift": scene.lift,
         "agreement": float(f"{float(agreement):.1e}"),
         "rows": [
-            [kind, *("nan" if gmpy2.is_nan(x) else decimal(x, 1e-27) for x in row)] for kind, row in other.rows
+            [kind, *("nan" if gmpy2.is_nan(x) else decimal(x, 1e-27) for x in row)]
+            for kind, row in other.rows
         ],
     }
 

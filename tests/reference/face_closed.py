@@ -43,8 +43,16 @@ def carlson(x, y, z):
     p, q = 1 - x / a, 1 - y / a
     r = -p - q
     e2, e3 = p * q - r * r, p * q * r
-    series = (1 - e2 / 10 + e3 / 14 + e2**2 / 24 - 3 * e2 * e3 / 44 - 5 * e2**3 / 208 + 3 * e3**2 / 104
-              + e2**2 * e3 / 16)
+    series = (
+        1
+        - e2 / 10
+        + e3 / 14
+        + e2**2 / 24
+        - 3 * e2 * e3 / 44
+        - 5 * e2**3 / 208
+        + 3 * e3**2 / 104
+        + e2**2 * e3 / 16
+    )
     return series / gmpy2.sqrt(a)
 
 
@@ -107,7 +115,13 @@ class Closed(Vectors):
         q, both = v * v + s * s, 2 * v * s
         one = (q * inverse - first) / both  # of sin/|u|
         two = (q * q * inverse - 2 * q * first + third) / both**2  # of sin^2/|u|
-        return v * inverse - s * one, s * inverse - v * one, s * (inverse - two), v * one - s * two, s * one - v * two
+        return (
+            v * inverse - s * one,
+            s * inverse - v * one,
+            s * (inverse - two),
+            v * one - s * two,
+            s * one - v * two,
+        )
 
     def linear(self, f, g, c2, a1, m2, factor=2):
         gx = f / (1 - factor**2 * self.lam**2 * c2 * a1)
@@ -157,7 +171,9 @@ class Closed(Vectors):
             low, high = mpfr("0.01"), gmpy2.const_pi()
             for _ in range(20):
                 half = (low + high) / 2
-                inside = (half - gmpy2.sin(half) * gmpy2.cos(half)) / (2 * (gmpy2.sin(half) - half * gmpy2.cos(half)))
+                inside = (half - gmpy2.sin(half) * gmpy2.cos(half)) / (
+                    2 * (gmpy2.sin(half) - half * gmpy2.cos(half))
+                )
                 low, high = (half, high) if inside > r else (low, half)
             at = gmpy2.atan2(gy, gx), half
         middle, half = at
@@ -225,9 +241,17 @@ class Closed(Vectors):
         moves = 0 if self.frozen else 1
         w = s / self.a
         slow = (self.mu * self.a**2 * g + self.air * s * moves) / self.i3
-        return [-self.mu * gx / v * pace, -self.mu * gy / v * pace, -slow / s * pace, v * cos(turn) * pace * moves,
-                v * sin(turn) * pace * moves, w * pace * moves, self.mu * (v * gx + s * g) * pace,
-                self.air * w * w * pace * moves, pace]
+        return [
+            -self.mu * gx / v * pace,
+            -self.mu * gy / v * pace,
+            -slow / s * pace,
+            v * cos(turn) * pace * moves,
+            v * sin(turn) * pace * moves,
+            w * pace * moves,
+            self.mu * (v * gx + s * g) * pace,
+            self.air * w * w * pace * moves,
+            pace,
+        ]
 
     def by_turning(self, values):
         """Rates by the loss of s, with drilling."""
@@ -235,8 +259,17 @@ class Closed(Vectors):
         gx, gy, g = self.closure(v, s)
         slow = (self.mu * self.a**2 * g + self.drilling * self.a + self.air * s) / self.i3
         w = s / self.a
-        return [-self.mu * gx / slow, -self.mu * gy / v / slow, s * 0 - 1, v * cos(turn) / slow, v * sin(turn) / slow,
-                w / slow, self.mu * (v * gx + s * g) / slow, (self.drilling * w + self.air * w * w) / slow, 1 / slow]
+        return [
+            -self.mu * gx / slow,
+            -self.mu * gy / v / slow,
+            s * 0 - 1,
+            v * cos(turn) / slow,
+            v * sin(turn) / slow,
+            w / slow,
+            self.mu * (v * gx + s * g) / slow,
+            (self.drilling * w + self.air * w * w) / slow,
+            1 / slow,
+        ]
 
     def inside(self, y):
         """Positive while the whole ring presses."""
@@ -275,12 +308,24 @@ class Closed(Vectors):
             big, small = self.speeds(y)
             turn, x, z = sense * y[1], y[3], sense * y[4]
             c, d = gmpy2.cos(turn) * big, gmpy2.sin(turn) * big
-            return now.at(t=now.t if self.frozen else y[8], velocity=[way[0] * c - way[1] * d, way[1] * c + way[0] * d],
-                          w=sense * small / self.a, place=[now.place[0] + way[0] * x - way[1] * z, now.place[1] + way[1] * x + way[0] * z],
-                          psi=now.psi + sense * y[5], heat=now.heat + y[6], work=now.work + y[7])
+            return now.at(
+                t=now.t if self.frozen else y[8],
+                velocity=[way[0] * c - way[1] * d, way[1] * c + way[0] * d],
+                w=sense * small / self.a,
+                place=[now.place[0] + way[0] * x - way[1] * z, now.place[1] + way[1] * x + way[0] * z],
+                psi=now.psi + sense * y[5],
+                heat=now.heat + y[6],
+                work=now.work + y[7],
+            )
 
         rates = self.by_turning if self.drilling else self.flow
-        y = [v if self.drilling else gmpy2.log(v), ZERO, s if self.drilling else gmpy2.log(s), *[ZERO] * 5, now.t]
+        y = [
+            v if self.drilling else gmpy2.log(v),
+            ZERO,
+            s if self.drilling else gmpy2.log(s),
+            *[ZERO] * 5,
+            now.t,
+        ]
         ring = self.scene.face != "disc"
         self.part, self.arc_at = ring and self.inside(y) < 0, None
         least = (v + s) * mpfr("1e-27")
@@ -337,9 +382,15 @@ class Closed(Vectors):
             left = 1 - t / duration
             way = ZERO if self.frozen else t - t * t / (2 * duration)
             gone = energy * (1 - left * left)
-            return now.at(t=now.t if self.frozen else now.t + t, velocity=[x * left for x in now.velocity], w=w * left,
-                          place=[p + x * way for p, x in zip(now.place, now.velocity)], psi=now.psi + w * way,
-                          heat=now.heat + gone * shared, work=now.work + gone * (1 - shared))
+            return now.at(
+                t=now.t if self.frozen else now.t + t,
+                velocity=[x * left for x in now.velocity],
+                w=w * left,
+                place=[p + x * way for p, x in zip(now.place, now.velocity)],
+                psi=now.psi + w * way,
+                heat=now.heat + gone * shared,
+                work=now.work + gone * (1 - shared),
+            )
 
         while times and times[0] - now.t < duration:
             yield ("pushed" if self.frozen else "sample"), at(times.pop(0) - now.t)
@@ -349,6 +400,7 @@ class Closed(Vectors):
 
     def film(self, now, times):
         """Viscous friction: a complex velocity, any pressure."""
+
         def rates(values):
             t, x, y, vx, vy, w, psi, heat, _ = values
             below = 1 + (self.mu * self.z * w) ** 2
@@ -359,7 +411,9 @@ class Closed(Vectors):
 
         y = [now.t, *now.place, *now.velocity, now.w, now.psi, now.heat, now.work]
         while times:
-            _, y, n = self.col.follow(rates, y, mpfr("0.5"), [("sample", lambda y: times[0] - y[0])], lambda y: ONE)
+            _, y, n = self.col.follow(
+                rates, y, mpfr("0.5"), [("sample", lambda y: times[0] - y[0])], lambda y: ONE
+            )
             self.steps += n
             times.pop(0)
             yield "sample", now.at(t=y[0], place=y[1:3], velocity=y[3:5], w=y[5], psi=y[6], heat=y[7])
@@ -437,8 +491,15 @@ class Closed(Vectors):
                 v0 = slip - self.lever(start[1])[1] * start[2]
                 t, out_s, up_s = y[0] - start[0], self.lever(start[1])[0], self.lever(start[1])[1]
                 moved = v0 * t - self.mu * way * (t * t / 2 + (up - up_s) - out_s * start[2] * t)
-            return now.at(t=y[0], theta=y[1], w2=-y[2], u_h=u, place=[place + h * moved, now.place[1]],
-                          heat=heat + energy(start, slip) - energy(y, u), velocity=[h * (u - up * y[2]), ZERO])
+            return now.at(
+                t=y[0],
+                theta=y[1],
+                w2=-y[2],
+                u_h=u,
+                place=[place + h * moved, now.place[1]],
+                heat=heat + energy(start, slip) - energy(y, u),
+                velocity=[h * (u - up * y[2]), ZERO],
+            )
 
         while True:
             events = [("lands", lambda y: y[1])]
@@ -447,12 +508,15 @@ class Closed(Vectors):
             if way:
                 events.append(("slip ends", lambda y: way * slip_at(y)))
             else:
+
                 def spare(y):
                     f, n = self.reduced_force(y)
                     return self.mu * n - abs(f)
 
                 events.append(("slips", spare))
-            name, y, n = self.col.follow(self.reduced(way), y, self.first_step(now), events, lambda y: mpfr("0.3"))
+            name, y, n = self.col.follow(
+                self.reduced(way), y, self.first_step(now), events, lambda y: mpfr("0.3")
+            )
             self.steps += n
             if name == "lands":
                 y[1] = ZERO
@@ -510,7 +574,9 @@ class Closed(Vectors):
         if what == "stands":
             return what, now.at(theta=ZERO, w2=ZERO, velocity=[n * v1, ZERO], heat=heat, u_h=ZERO, w=ZERO)
         phi = gmpy2.const_pi() if n > 0 else ZERO
-        return what, now.at(w2=-turn, u_h=-slip, phi=phi, psi=now.psi + now.phi - phi, heat=heat, velocity=[n * v1, ZERO])
+        return what, now.at(
+            w2=-turn, u_h=-slip, phi=phi, psi=now.psi + now.phi - phi, heat=heat, velocity=[n * v1, ZERO]
+        )
 
     # One rim in space, as it topples: Lagrange's equations.
 
@@ -533,18 +599,47 @@ class Closed(Vectors):
         t = few.nodes * h
         theta = c * t * t / 2
         away = self.a * now.w
-        guess = [now.t + t, theta, c * t, phi + nu * t, self.i1 * theta**2 * nu, p + t * 0, psi + (now.w - nu) * t, now.place[0] + vx * t,
-                 now.place[1] + vy * t, vx - mu * normal * edge.real * t, vy - mu * normal * edge.imag * t,
-                 now.heat + mu * normal * gmpy2.sqrt(v * v - away * away) * t]
+        guess = [
+            now.t + t,
+            theta,
+            c * t,
+            phi + nu * t,
+            self.i1 * theta**2 * nu,
+            p + t * 0,
+            psi + (now.w - nu) * t,
+            now.place[0] + vx * t,
+            now.place[1] + vy * t,
+            vx - mu * normal * edge.real * t,
+            vy - mu * normal * edge.imag * t,
+            now.heat + mu * normal * gmpy2.sqrt(v * v - away * away) * t,
+        ]
         y = few.implicit(self.lagrange, y, h, np.array(guess))
         times = [mpfr(x) for x in times]
         while times:
-            name, y, k = self.col.follow(self.lagrange, y, y[0] / 5, [("sample", lambda y: times[0] - y[0])], lambda y: y[0] / 5)
+            name, y, k = self.col.follow(
+                self.lagrange, y, y[0] / 5, [("sample", lambda y: times[0] - y[0])], lambda y: y[0] / 5
+            )
             self.steps += k
             times.pop(0)
             u_h, u_2, w1 = self.slipping(y)
-            yield name, now.at(t=y[0], place=y[7:9], velocity=y[9:11], theta=y[1], w1=w1, w2=-y[2], w3=y[5] / self.i3,
-                               u_h=u_h, u_2=u_2, phi=y[3], psi=y[6], heat=y[11], rim=True)
+            yield (
+                name,
+                now.at(
+                    t=y[0],
+                    place=y[7:9],
+                    velocity=y[9:11],
+                    theta=y[1],
+                    w1=w1,
+                    w2=-y[2],
+                    w3=y[5] / self.i3,
+                    u_h=u_h,
+                    u_2=u_2,
+                    phi=y[3],
+                    psi=y[6],
+                    heat=y[11],
+                    rim=True,
+                ),
+            )
 
     def slipping(self, y):
         _, theta, turn, phi, about, p, psi, _, _, vx, vy, _ = y
@@ -568,5 +663,17 @@ class Closed(Vectors):
         normal = 1 + out * bend - up * turn**2
         f, g = -self.mu * normal * dx, -self.mu * normal * dy
         fx, fy = f * cos(phi) - g * sin(phi), f * sin(phi) + g * cos(phi)
-        return [t * 0 + 1, turn, bend, precession, self.z * s * g + p * s * turn, -self.a * g, p / self.i3 - precession * c, vx, vy,
-                fx, fy, self.mu * normal * size]
+        return [
+            t * 0 + 1,
+            turn,
+            bend,
+            precession,
+            self.z * s * g + p * s * turn,
+            -self.a * g,
+            p / self.i3 - precession * c,
+            vx,
+            vy,
+            fx,
+            fy,
+            self.mu * normal * size,
+        ]

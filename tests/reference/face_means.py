@@ -79,7 +79,13 @@ def ring(k, width, angle):
         size = mp.sqrt((k - 1) ** 2 + 4 * k * mp.sin((chi - mp.pi / 2) / 2) ** 2)
         p = base + slope * mp.cos(t)
         along, across = ux * mp.cos(angle) + uy * mp.sin(angle), uy * mp.cos(angle) - ux * mp.sin(angle)
-        return [p, p * mp.cos(t), p * along / size, p * across / size, p * (mp.cos(chi) * uy - mp.sin(chi) * ux) / size]
+        return [
+            p,
+            p * mp.cos(t),
+            p * along / size,
+            p * across / size,
+            p * (mp.cos(chi) * uy - mp.sin(chi) * ux) / size,
+        ]
 
     return total(sums, -b, b, [(near, least), (near - 2 * mp.pi, least)])
 
@@ -98,7 +104,9 @@ def disc(k, width, angle):
         for y in (half - pole[1], -half - pole[1]):
             size = mp.sqrt(off * off + y * y)
             turn = mp.asinh(y / abs(off)) if off else mpf(0)
-            out.append([-size, off * turn, x * off * turn + (y * size - off * off * turn) / 2 + pole[1] * size])
+            out.append(
+                [-size, off * turn, x * off * turn + (y * size - off * off * turn) / 2 + pole[1] * size]
+            )
         found = [2 * half] + [a - b for a, b in zip(*out, strict=True)]
         mp.dps = DIGITS
         return found
@@ -123,7 +131,25 @@ def row(form, k, width, angle):
 
 def cases():
     draw = random.Random(68).uniform
-    ratios = [1e-8, 1e-3, 0.1, 0.5, 0.9, 0.99, 1 - 1e-6, 1 - 2**-52, 1.0, 1 + 1e-9, 1.001, 1.05, 1.3, 2.0, 10.0, 1e4, 1e8]
+    ratios = [
+        1e-8,
+        1e-3,
+        0.1,
+        0.5,
+        0.9,
+        0.99,
+        1 - 1e-6,
+        1 - 2**-52,
+        1.0,
+        1 + 1e-9,
+        1.001,
+        1.05,
+        1.3,
+        2.0,
+        10.0,
+        1e4,
+        1e8,
+    ]
     for form in ("ring", "disc"):
         for k in ratios:
             for width in (1.5, draw(1.6, 9), draw(0.5, 1), 10 ** draw(-3, -0.3)):

@@ -127,7 +127,14 @@ class Vectors:
         gx, gy = along * ex - sign * across * ey, along * ey + sign * across * ex
         force = -self.mu * gx, -self.mu * gy
         moment = -self.mu * self.a * couple * sign
-        return (*force, moment, -(force[0] * vx + force[1] * vy + moment * w), w * 0 + 1, 2 * lam * gx, 2 * lam * gy)
+        return (
+            *force,
+            moment,
+            -(force[0] * vx + force[1] * vy + moment * w),
+            w * 0 + 1,
+            2 * lam * gx,
+            2 * lam * gy,
+        )
 
     @staticmethod
     def ahead(vx, vy):
@@ -165,10 +172,14 @@ class Vectors:
 
     def arc(self, low, high, r):
         """Cosines, sines and weights of nodes of an arc, in panels that are finer where the slip is least."""
+
         def mapped(angle):
             turns = gmpy2.rint(angle / (2 * gmpy2.const_pi()))
             rest = angle - 2 * gmpy2.const_pi() * turns
-            return 2 * gmpy2.atan2((1 + r) * gmpy2.sin(rest / 2), (1 - r) * gmpy2.cos(rest / 2)) + 2 * gmpy2.const_pi() * turns
+            return (
+                2 * gmpy2.atan2((1 + r) * gmpy2.sin(rest / 2), (1 - r) * gmpy2.cos(rest / 2))
+                + 2 * gmpy2.const_pi() * turns
+            )
 
         low, high = mapped(low), mapped(high)
         pi, width = gmpy2.const_pi(), -gmpy2.log(r)
@@ -203,12 +214,18 @@ class Vectors:
         # powers of the radius over the face, of which the area is pi
         m1, m2, m3, m4 = (2 * reach ** (j + 1) / (j + 1) / n for j in (1, 2, 3, 4))
         one = [m1, px * m1 + cosine * m2, py * m1 + sine * m2]  # of (1, x, y)
-        xs = [one[1], px * px * m1 + 2 * px * cosine * m2 + cosine**2 * m3,
-              px * py * m1 + (px * sine + py * cosine) * m2 + sine * cosine * m3]
+        xs = [
+            one[1],
+            px * px * m1 + 2 * px * cosine * m2 + cosine**2 * m3,
+            px * py * m1 + (px * sine + py * cosine) * m2 + sine * cosine * m3,
+        ]
         ys = [one[2], xs[2], py * py * m1 + 2 * py * sine * m2 + sine**2 * m3]
         lam = self.mu * self.z / self.a
-        matrix = [[over(x) for x in one], [over(x - lam * dx * o) for x, o in zip(xs, one)],
-                  [over(y - lam * dy * o) for y, o in zip(ys, one)]]
+        matrix = [
+            [over(x) for x in one],
+            [over(x - lam * dx * o) for x, o in zip(xs, one)],
+            [over(y - lam * dy * o) for y, o in zip(ys, one)],
+        ]
         plane = cramer(matrix)
         assert all(4 * abs(p) < abs(q) * 4 for p, q in zip(sqrt(plane[1] ** 2 + plane[2] ** 2), plane[0]))
         p = sum(c[:, None] * x for c, x in zip(plane, one))
@@ -226,7 +243,10 @@ class Vectors:
             return self.disc(vx, vy, w)
         if not self.part:
             return self.whole(vx, vy, w)
-        rows = [self.partly(*at, key=k if len(w) > 1 else None) for k, at in enumerate(zip(vx, vy, w, strict=True))]
+        rows = [
+            self.partly(*at, key=k if len(w) > 1 else None)
+            for k, at in enumerate(zip(vx, vy, w, strict=True))
+        ]
         return [np.array(x) for x in zip(*rows)]
 
     def rates(self, values):
@@ -299,7 +319,9 @@ class Vectors:
                 events.append((name, lambda y: y[5] * self.sense))
             else:
                 events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-27")))
-            name, y, n = self.col.follow(self.rates, y, self.longest(y), events, self.longest, scale=self.size)
+            name, y, n = self.col.follow(
+                self.rates, y, self.longest(y), events, self.longest, scale=self.size
+            )
             self.steps += n
             if name == "border":
                 self.part = not self.part
@@ -314,7 +336,15 @@ class Vectors:
                 y[5], self.sense, self.pure = ZERO, 0, True
                 self.aim(y)
                 self.drilling = ZERO
-            out = now.at(t=t0 if self.frozen else y[0], place=y[1:3], velocity=y[3:5], w=y[5], psi=y[6], heat=y[7], work=y[8])
+            out = now.at(
+                t=t0 if self.frozen else y[0],
+                place=y[1:3],
+                velocity=y[3:5],
+                w=y[5],
+                psi=y[6],
+                heat=y[7],
+                work=y[8],
+            )
             yield ("pushed" if self.frozen and name == "sample" else name), out
             if name == "rests" or (not times and self.frozen):
                 return
@@ -389,9 +419,17 @@ class Vectors:
         return side, [now.t, now.place[0], -rz, lean, slip + turn * rz, -turn * rx, turn, now.heat]
 
     def planar_told(self, side, y, now, slip):
-        return now.at(t=y[0], place=[y[1], now.place[1]], theta=abs(y[3]), w2=side * y[6], u_h=-side * slip,
-                      phi=ZERO if side < 0 else gmpy2.const_pi(), heat=y[7], velocity=[y[4], ZERO],
-                      psi=now.psi + (now.phi - (ZERO if side < 0 else gmpy2.const_pi())))
+        return now.at(
+            t=y[0],
+            place=[y[1], now.place[1]],
+            theta=abs(y[3]),
+            w2=side * y[6],
+            u_h=-side * slip,
+            phi=ZERO if side < 0 else gmpy2.const_pi(),
+            heat=y[7],
+            velocity=[y[4], ZERO],
+            psi=now.psi + (now.phi - (ZERO if side < 0 else gmpy2.const_pi())),
+        )
 
     def planar_slip(self, side, y):
         return y[4] - y[6] * self.corner(side, y[3])[1]
@@ -416,13 +454,16 @@ class Vectors:
             if way:
                 events.append(("slip ends", lambda y: way * self.planar_slip(side, y)))
             else:
+
                 def spare(y):
                     f, n, _ = self.planar_force(side, 0, y)
                     return self.mu * n - abs(f)
 
                 events.append(("slips", spare))
             longest = lambda y: mpfr("0.3")
-            name, y, n = self.col.follow(self.planar_rates(side, way), y, self.first_step(now), events, longest)
+            name, y, n = self.col.follow(
+                self.planar_rates(side, way), y, self.first_step(now), events, longest
+            )
             self.steps += n
             slip = self.planar_slip(side, y) if way and name != "slip ends" else ZERO
             if name == "slip ends":
@@ -497,7 +538,9 @@ class Vectors:
             return "stands", now.at(theta=ZERO, w2=ZERO, velocity=[vx1, ZERO], heat=heat, u_h=ZERO, w=ZERO)
         phi = gmpy2.const_pi() if side < 0 else ZERO
         psi = now.psi + now.phi - phi
-        return "rocks", now.at(w2=-side * turn1, u_h=side * slip, phi=phi, psi=psi, heat=heat, velocity=[vx1, ZERO])
+        return "rocks", now.at(
+            w2=-side * turn1, u_h=side * slip, phi=phi, psi=psi, heat=heat, velocity=[vx1, ZERO]
+        )
 
     # One rim in space, as it topples.
 
@@ -515,7 +558,24 @@ class Vectors:
         c = (lam - 1) * self.a * normal / self.i1
         nu = now.w * (self.i3 / self.i1) * (lam - 1) / (3 * lam - 2)
         mark = now.phi + now.psi  # the direction of a vector in the body
-        y = [now.t, *now.place, self.z, vx, vy, ZERO, ZERO, ZERO, ONE, gmpy2.cos(mark), gmpy2.sin(mark), ZERO, ZERO, ZERO, now.w, now.heat]
+        y = [
+            now.t,
+            *now.place,
+            self.z,
+            vx,
+            vy,
+            ZERO,
+            ZERO,
+            ZERO,
+            ONE,
+            gmpy2.cos(mark),
+            gmpy2.sin(mark),
+            ZERO,
+            ZERO,
+            ZERO,
+            now.w,
+            now.heat,
+        ]
         h = mpfr("0.02")
         t = self.col.nodes * h
         theta, turned = c * t * t / 2, nu * t
@@ -523,16 +583,32 @@ class Vectors:
         tx, ty = mx * sin(theta), my * sin(theta)
         dx, dy = mx * c * t - my * theta * nu, my * c * t + mx * theta * nu
         spin = mark + now.w * t
-        guess = [now.t + t, now.place[0] + vx * t, now.place[1] + vy * t, self.z + self.a * theta,
-                 vx - mu * normal * n[0] * t, vy - mu * normal * n[1] * t, self.a * c * t, tx, ty, cos(theta),
-                 cos(spin), sin(spin), t * 0,
-                 -dy + now.w * tx, dx + now.w * ty, now.w + t * 0, now.heat + mu * normal * sqrt(v * v - s * s + t * 0) * t]
+        guess = [
+            now.t + t,
+            now.place[0] + vx * t,
+            now.place[1] + vy * t,
+            self.z + self.a * theta,
+            vx - mu * normal * n[0] * t,
+            vy - mu * normal * n[1] * t,
+            self.a * c * t,
+            tx,
+            ty,
+            cos(theta),
+            cos(spin),
+            sin(spin),
+            t * 0,
+            -dy + now.w * tx,
+            dx + now.w * ty,
+            now.w + t * 0,
+            now.heat + mu * normal * sqrt(v * v - s * s + t * 0) * t,
+        ]
         y = self.small().implicit(self.space_rates, y, h, self.thinned(guess))
         times = [mpfr(x) for x in times]
         yield "topples", self.space_told(None, now, n)
         while times:
-            name, y, k = self.col.follow(self.space_rates, y, y[0] / 4, [("sample", lambda y: times[0] - y[0])],
-                                         lambda y: y[0] / 4)
+            name, y, k = self.col.follow(
+                self.space_rates, y, y[0] / 4, [("sample", lambda y: times[0] - y[0])], lambda y: y[0] / 4
+            )
             self.steps += k
             times.pop(0)
             yield name, self.space_told(y, now, None)
@@ -560,7 +636,11 @@ class Vectors:
         s = sqrt(e[0] ** 2 + e[1] ** 2)
         h = [e[0] / s, e[1] / s]  # towards the contact
         # the contact: a (h cos - z sin) - Z e, with cos = e_z and sin = s
-        r = [self.a * e[2] * h[0] - self.z * e[0], self.a * e[2] * h[1] - self.z * e[1], -self.a * s - self.z * e[2]]
+        r = [
+            self.a * e[2] * h[0] - self.z * e[0],
+            self.a * e[2] * h[1] - self.z * e[1],
+            -self.a * s - self.z * e[2],
+        ]
         s1 = h[0] * axis[0] + h[1] * axis[1]
         # height of the contact: z - a s - Z e_z; its acceleration without and with force
         spin = dotted(w, e)
@@ -582,7 +662,19 @@ class Vectors:
         force = [normal * x for x in aim]
         twist = [x + normal * y for x, y in zip(free, push)]
         heat = self.mu * normal * size
-        return [size * 0 + 1, vx, vy, vz, force[0], force[1], force[2] - 1, *axis, *crossed(w, m), *twist, heat]
+        return [
+            size * 0 + 1,
+            vx,
+            vy,
+            vz,
+            force[0],
+            force[1],
+            force[2] - 1,
+            *axis,
+            *crossed(w, m),
+            *twist,
+            heat,
+        ]
 
     def turned(self, torque, e):
         more = (1 / self.i3 - 1 / self.i1) * dotted(torque, e)
@@ -593,7 +685,17 @@ class Vectors:
             phi = gmpy2.atan2(n[1], n[0]) + gmpy2.const_pi()
             h = [-n[0], -n[1]]
             along = now.velocity[0] * h[0] + now.velocity[1] * h[1]
-            return now.at(phi=phi, psi=now.psi + now.phi - phi, theta=ZERO, w1=ZERO, w2=ZERO, w3=now.w, u_h=along, u_2=ZERO, rim=True)
+            return now.at(
+                phi=phi,
+                psi=now.psi + now.phi - phi,
+                theta=ZERO,
+                w1=ZERO,
+                w2=ZERO,
+                w3=now.w,
+                u_h=along,
+                u_2=ZERO,
+                rim=True,
+            )
         t, px, py, pz, vx, vy, vz, *rest = y[:16]
         e, m, w = rest[0:3], rest[3:6], rest[6:9]
         s = gmpy2.hypot(e[0], e[1])
@@ -603,9 +705,21 @@ class Vectors:
         r = [-self.a * e1[i] - self.z * e[i] for i in range(3)]
         u = [x + y for x, y in zip([vx, vy, vz], crossed(w, r))]
         self.strayed = max(abs(u[2]), abs(pz + r[2]), abs(dotted(e, e) - 1), abs(dotted(m, e)))
-        return now.at(t=t, place=[px, py], velocity=[vx, vy], theta=gmpy2.atan2(s, e[2]), w1=dotted(w, e1), w2=dotted(w, e2),
-                      w3=dotted(w, e), u_h=dotted(u, h), u_2=dotted(u, e2), phi=gmpy2.atan2(h[1], h[0]),
-                      psi=gmpy2.atan2(dotted(m, e2), dotted(m, e1)), heat=y[16], rim=True)
+        return now.at(
+            t=t,
+            place=[px, py],
+            velocity=[vx, vy],
+            theta=gmpy2.atan2(s, e[2]),
+            w1=dotted(w, e1),
+            w2=dotted(w, e2),
+            w3=dotted(w, e),
+            u_h=dotted(u, h),
+            u_2=dotted(u, e2),
+            phi=gmpy2.atan2(h[1], h[0]),
+            psi=gmpy2.atan2(dotted(m, e2), dotted(m, e1)),
+            heat=y[16],
+            rim=True,
+        )
 
 
 def crossed(a, b):

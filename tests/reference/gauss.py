@@ -134,7 +134,10 @@ class Collocation:
                 return best[2], best[1], taken
             y = end
             most = min(mpfr(3), most + mpfr("0.2"))
-            h *= min(most, max(mpfr("0.5"), mpfr("0.9") * (allowed / (error + mpfr("1e-60"))) ** (mpfr(1) / self.count)))
+            h *= min(
+                most,
+                max(mpfr("0.5"), mpfr("0.9") * (allowed / (error + mpfr("1e-60"))) ** (mpfr(1) / self.count)),
+            )
         raise ArithmeticError("too many steps")
 
     def place(self, rates, y, g, low, high, low_g, high_g):
