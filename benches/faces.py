@@ -269,7 +269,7 @@ def main():
     slowest = max(rows, key=lambda row: row[5])
     most = max(row[6] for row in rows)
     print(
-        f"\n| F1 | {asked.count} random starts of bodies with faces and several circles, on a rim, in the air, flat "
+        f"\n| E18 | {asked.count} random starts of bodies with faces and several circles, on a rim, in the air, flat "
         "and at rest, with Coulomb(0.05 to 1) and restitution 0, 0.3 and 0.9, to t = 200 | to rest or to the last "
         "time, or an error with its reason; none ends where a face lands; energy constant | "
         f"{', '.join(f'{share:.2f}' for share in shares)} % are followed; {faces} end where a face lands; the "

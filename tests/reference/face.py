@@ -248,7 +248,7 @@ def scenes():
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
     dropped = {"height": 0.08, "restitution": 0.5}
     yield Scene(
-        "dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 1.1, 3, 5], **dropped
+        "dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 3, 5], **dropped
     )
     tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3}
     coin = solid(0.1)
