@@ -214,24 +214,17 @@ def coins(count, jobs, limit):
     with multiprocessing.Pool(jobs) as pool:
         for restitution in (0.0, 0.3, 0.5):
             for mu in (0.2, 0.5):
-                rng, found = np.random.default_rng(7), Counter()
-                for _ in range(count):
-                    theta = float(np.arccos(rng.uniform(-1, 1)))
-                    w = 2.0 * rng.normal(size=3)
-                    velocity = (*(0.5 * rng.normal(size=2)), 0.0)
-                    state = sc.dropped(body, 10.0, theta, w1=w[0], w2=w[1], w3=w[2], velocity=velocity)
-                    with warnings.catch_warnings(action="ignore"):
-                        motion = sc.roll(
-                            body, state, [0.0, UNTIL], contact=sc.Coulomb(mu), restitution=restitution
-                        )
-                    found[outcome(motion)] += 1
-                settled = sum(found.values()) - found["not followed"]
-                share = (found["side"] + sum(found[x] for x in ("edge",))) / settled
-                error = np.sqrt(share * (1 - share) / settled)
-                print(
-                    f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} |",
-                    flush=True,
-                )
+                for thickness, known in MEASURED.items():
+                    each = [(number, thickness, restitution, mu, limit) for number in range(count)]
+                    found = Counter(pool.imap_unordered(tossed, each, chunksize=5))
+                    lies = found["side"] + found["face"]
+                    share = found["side"] / lies
+                    error = np.sqrt(share * (1 - share) / lies)
+                    print(
+                        f"| {thickness} | {restitution} | {mu} | {share:.3f} ± {error:.3f} | {known} "
+                        f"| {found['neither']} | {found['not followed']} |",
+                        flush=True,
+                    )
 
 
 def main():

@@ -197,7 +197,7 @@ def follow(model):
             earlier = rocked[-3] if len(rocked) > 2 else None
             if fall < SETTLED and earlier is not None:
                 ratio = fall / earlier[0]
-                t, x, y, heat, vx, vy = (
+                t, x, y, heat, vx, _vy = (
                     p + (p - q) * ratio / (1 - ratio) for p, q in zip(rocked[-1][1], earlier[1], strict=True)
                 )
                 vx = zero if abs(vx) < 1e-11 else vx
@@ -236,7 +236,7 @@ def scenes():
     yield Scene("solid on its ring", block, 0.25, moving(block, (1.5, 0), 1), [1, 3, 6], **few)
     yield Scene("part of the ring presses", tall, 0.45, moving(tall, (1.5, 0), 1), [1, 2, 3], **few)
     glass = tube(1.4)
-    yield Scene("more and more of the ring presses", glass, 0.5, moving(glass, (2, 0.5), 1), [1, 2, 4])
+    yield Scene("more and more of the ring presses", glass, 0.5, moving(glass, (2, 0.5), 1), [1, 2, 4], **few)
     yield Scene(
         "topples as it slides", pillar, 0.7, moving(pillar, (3, 0), 1.5), [0.2, 0.4, 0.6, 0.8], to_rest=False
     )
@@ -246,9 +246,9 @@ def scenes():
     yield Scene("pillar rocks as it slips", pillar, 0.3, (0.15, 0, 0, 0, 0, 0), [1, 2, 3])
     flat = solid(0.4)
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
-    dropped = {"height": 0.08, "restitution": 0.5}
+    dropped = {"height": 0.08, "restitution": 0.5, **few}
     yield Scene("dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 3, 5], **dropped)
-    tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3}
+    tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3, **few}
     coin = solid(0.1)
     yield Scene("coin tossed flat", coin, 0.2, moving(coin, (0.5, -0.6), 3), [0.5, 1.5, 2.2, 4], **tossed)
     still = {"height": 0.2, "lift": -0.1, "restitution": 0.0}
@@ -262,7 +262,7 @@ def scenes():
         [0.5, 2, 4],
         losses={"drilling": 0.15},
     )
-    yield Scene("linear air", can, 0.25, moving(can, (1.2, 0.4), 1.5), [1, 3, 5], losses={"air": 0.05})
+    yield Scene("linear air", can, 0.25, moving(can, (1.2, 0.4), 1.5), [1, 3, 5], losses={"air": 0.05}, **few)
     yield Scene("viscous", tall, 0.2, moving(tall, (1, 0), 2), [1, 2, 3, 4, 5], law="viscous", to_rest=False)
     lap = solid(0.3)
     yield Scene("disc", lap, 0.3, moving(lap, (0.4, 0), 1), [0.5, 1, 1.4], face="disc")

@@ -31,31 +31,6 @@ def complete(kc):
     return k, k * (1 - total)
 
 
-def carlson(x, y, z):
-    """R_F of numbers."""
-    for _ in range(200):
-        a = (x + y + z) / 3
-        if max(abs(a - x), abs(a - y), abs(a - z)) < abs(a) * mpfr("1e-8"):
-            break
-        l = gmpy2.sqrt(x * y) + gmpy2.sqrt(y * z) + gmpy2.sqrt(z * x)
-        x, y, z = (x + l) / 4, (y + l) / 4, (z + l) / 4
-    # to the seventh order of the differences
-    p, q = 1 - x / a, 1 - y / a
-    r = -p - q
-    e2, e3 = p * q - r * r, p * q * r
-    series = (
-        1
-        - e2 / 10
-        + e3 / 14
-        + e2**2 / 24
-        - 3 * e2 * e3 / 44
-        - 5 * e2**3 / 208
-        + 3 * e3**2 / 104
-        + e2**2 * e3 / 16
-    )
-    return series / gmpy2.sqrt(a)
-
-
 def legendre_both(angle, m):
     """F and E of any angle, by descending Landen transformations."""
     pi = gmpy2.const_pi()
@@ -390,7 +365,7 @@ class Closed(Vectors):
                 t=now.t if self.frozen else now.t + t,
                 velocity=[x * left for x in now.velocity],
                 w=w * left,
-                place=[p + x * way for p, x in zip(now.place, now.velocity)],
+                place=[p + x * way for p, x in zip(now.place, now.velocity, strict=False)],
                 psi=now.psi + w * way,
                 heat=now.heat + gone * shared,
                 work=now.work + gone * (1 - shared),

@@ -193,8 +193,8 @@ class Vectors:
         sign = self.sense if self.pure and self.sense else np.array([-1 if x < 0 else 1 for x in w])
         ex, ey = map(kept, self.fixed) if self.pure and self.fixed else self.ahead(vx, vy, sqrt)
         gx, gy = along * ex - sign * across * ey, along * ey + sign * across * ex
-        force = -self.mu * gx, -self.mu * gy
-        moment = -self.mu * self.a * couple * sign
+        force = -mu * gx, -mu * gy
+        moment = -mu * a * couple * sign
         return (
             *force,
             moment,
@@ -293,8 +293,8 @@ class Vectors:
         lam = self.mu * self.z / self.a
         matrix = [
             [over(x) for x in one],
-            [over(x - lam * dx * o) for x, o in zip(xs, one)],
-            [over(y - lam * dy * o) for y, o in zip(ys, one)],
+            [over(x - lam * dx * o) for x, o in zip(xs, one, strict=False)],
+            [over(y - lam * dy * o) for y, o in zip(ys, one, strict=False)],
         ]
         plane = cramer(matrix)
         assert all(
@@ -325,7 +325,7 @@ class Vectors:
             self.partly(*at, key=k if len(w) > 1 else None)
             for k, at in enumerate(zip(vx, vy, w, strict=True))
         ]
-        return [np.array(x) for x in zip(*rows)]
+        return [np.array(x) for x in zip(*rows, strict=False)]
 
     def rates(self, values):
         _t, _x, _y, vx, vy, w, _psi, _heat, _work = values
@@ -396,7 +396,7 @@ class Vectors:
                 name = "rests" if self.pure else "straight"
                 events.append((name, lambda y: y[5] * self.sense))
             else:
-                events.append(("rests", lambda y: self.size(y) - begin * mpfr("1e-27")))
+                events.append(("fades", lambda y: self.size(y) - begin * self.fades))
             name, y, n = self.col.follow(
                 self.rates, y, self.longest(y), events, self.longest, scale=self.size
             )
@@ -539,7 +539,10 @@ class Vectors:
                     return self.mu * n - abs(f)
 
                 events.append(("slips", spare))
-            longest = lambda y: mpfr("0.3")
+
+            def longest(y):
+                return mpfr("0.3")
+
             name, y, n = self.col.follow(
                 self.planar_rates(side, way), y, self.first_step(now), events, longest
             )
