@@ -186,7 +186,7 @@ def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_e
 
 def test_a_body_that_topples_leaves_over_the_point_whose_slip_points_outward():
     case, rows = of("topples as it slides")
-    a, z, i1, _ = body(case)
+    a, z, _i1, _ = body(case)
     begin, v = rows["topples"], mpf(3)
     with mp.workdps(40):
         assert mpf(case.mu) * z > a

@@ -195,7 +195,7 @@ def follow(model):
             earlier = rocked[-3] if len(rocked) > 2 else None
             if fall < SETTLED and earlier is not None:
                 ratio = fall / earlier[0]
-                t, x, y, heat, vx, vy = (
+                t, x, y, heat, vx, _vy = (
                     p + (p - q) * ratio / (1 - ratio) for p, q in zip(rocked[-1][1], earlier[1], strict=True)
                 )
                 vx = zero if abs(vx) < 1e-11 else vx

@@ -37,8 +37,8 @@ def carlson(x, y, z):
         a = (x + y + z) / 3
         if max(abs(a - x), abs(a - y), abs(a - z)) < abs(a) * mpfr("1e-8"):
             break
-        l = gmpy2.sqrt(x * y) + gmpy2.sqrt(y * z) + gmpy2.sqrt(z * x)
-        x, y, z = (x + l) / 4, (y + l) / 4, (z + l) / 4
+        root = gmpy2.sqrt(x * y) + gmpy2.sqrt(y * z) + gmpy2.sqrt(z * x)
+        x, y, z = (x + root) / 4, (y + root) / 4, (z + root) / 4
     # to the seventh order of the differences
     p, q = 1 - x / a, 1 - y / a
     r = -p - q
@@ -178,7 +178,7 @@ class Closed(Vectors):
             at = gmpy2.atan2(gy, gx), half
         middle, half = at
         for _ in range(60):
-            rx, ry, means = residual(middle, half)
+            rx, ry, _means = residual(middle, half)
             d = mpfr("1e-22")
             ax, ay, _ = residual(middle + d, half)
             bx, by, _ = residual(middle, half - d)
@@ -209,7 +209,7 @@ class Closed(Vectors):
                 out.append([x[i] for x in full])
             else:
                 out.append(self.arc(one, other))
-        return [np.array(x) for x in zip(*out)]
+        return [np.array(x) for x in zip(*out, strict=False)]
 
     def disc_means(self, v, s):
         """A disc as its rings: p = 1 + 4 X . x, of which the ring of radius r has the mean 1 and the slope 4 r."""
@@ -227,14 +227,17 @@ class Closed(Vectors):
         inverse, first = 2 * kept[0] / (pi * (v + s)), 2 * kept[1] * (v + s) / pi
         third = 2 * (v + s) ** 3 / pi * ((4 - 2 * m) * kept[1] - (1 - m) * kept[0]) / 3
         f, g, c2, a1, m2 = self.five(v, s, inverse, first, third)
-        total = lambda x: (x * share).sum(axis=1)
+
+        def total(x):
+            return (x * share).sum(axis=1)
+
         return self.linear(total(f), total(r * g), total(r * c2), total(r * a1), total(r * r * m2), 4)
 
     # Motion on the face.
 
     def flow(self, values):
         """Rates by tau, where dt = (|v| + s)/mu dtau."""
-        big, turn, small, x, y, psi, heat, work, t = values
+        big, turn, small, _x, _y, _psi, _heat, _work, _t = values
         v, s = exp(big), exp(small)
         gx, gy, g = self.closure(v, s)
         pace = (v + s) / self.mu
@@ -255,7 +258,7 @@ class Closed(Vectors):
 
     def by_turning(self, values):
         """Rates by the loss of s, with drilling."""
-        v, turn, s, x, y, psi, heat, work, t = values
+        v, turn, s, _x, _y, _psi, _heat, _work, _t = values
         gx, gy, g = self.closure(v, s)
         slow = (self.mu * self.a**2 * g + self.drilling * self.a + self.air * s) / self.i3
         w = s / self.a
@@ -281,7 +284,7 @@ class Closed(Vectors):
         return (gmpy2.exp(y[0]), gmpy2.exp(y[2])) if not self.drilling else (y[0], y[2])
 
     def reach(self, y):
-        v, s = self.speeds(y)
+        _v, _s = self.speeds(y)
         if self.drilling:
             return mpfr("0.2")
         far, fast = abs(y[0] - y[2]), self.flow([np.array([x]) for x in y])
@@ -333,7 +336,7 @@ class Closed(Vectors):
             events = [("sample", lambda y: times[0] - y[8])] if times else []
             if ring:
                 side = -1 if self.part else 1
-                events.append(("border", lambda y: side * self.inside(y)))
+                events.append(("border", lambda y: side * self.inside(y)))  # noqa: B023
             if self.drilling:
                 events.append(("straight", lambda y: y[2]))
             else:
@@ -371,7 +374,7 @@ class Closed(Vectors):
             yield "rests", now
             return
         if v:
-            duration, inertia = v / self.mu, ONE
+            duration, _inertia = v / self.mu, ONE
         else:
             couple = self.mu * self.a * (ONE if self.scene.face != "disc" else mpfr(2) / 3)
             duration = self.i3 * abs(w) / (couple + self.drilling)
@@ -386,7 +389,7 @@ class Closed(Vectors):
                 t=now.t if self.frozen else now.t + t,
                 velocity=[x * left for x in now.velocity],
                 w=w * left,
-                place=[p + x * way for p, x in zip(now.place, now.velocity)],
+                place=[p + x * way for p, x in zip(now.place, now.velocity, strict=False)],
                 psi=now.psi + w * way,
                 heat=now.heat + gone * shared,
                 work=now.work + gone * (1 - shared),
@@ -402,7 +405,7 @@ class Closed(Vectors):
         """Viscous friction: a complex velocity, any pressure."""
 
         def rates(values):
-            t, x, y, vx, vy, w, psi, heat, _ = values
+            _t, _x, _y, vx, vy, w, _psi, _heat, _ = values
             below = 1 + (self.mu * self.z * w) ** 2
             turn = self.mu * self.z * w
             fx, fy = -self.mu * (vx - vy * turn) / below, -self.mu * (vy + vx * turn) / below
@@ -442,7 +445,7 @@ class Closed(Vectors):
 
     def reduced(self, way):
         def rates(values):
-            t, theta, turn, run = values
+            t, theta, turn, _run = values
             out, up = self.lever(theta)
             j = self.i1 + out * out
             if way == 0:
@@ -506,7 +509,7 @@ class Closed(Vectors):
             if times:
                 events.append(("sample", lambda y: times[0] - y[0]))
             if way:
-                events.append(("slip ends", lambda y: way * slip_at(y)))
+                events.append(("slip ends", lambda y: way * slip_at(y)))  # noqa: B023
             else:
 
                 def spare(y):
@@ -642,18 +645,18 @@ class Closed(Vectors):
             )
 
     def slipping(self, y):
-        _, theta, turn, phi, about, p, psi, _, _, vx, vy, _ = y
-        s, c = sin(theta), cos(theta)
+        _, theta, turn, phi, about, p, _psi, _, _, vx, vy, _ = y
+        s, _c = sin(theta), cos(theta)
         w1, w3 = about / (self.i1 * s), p / self.i3
         _, up = self.lever(theta)
         along, across = vx * cos(phi) + vy * sin(phi), vy * cos(phi) - vx * sin(phi)
         return along + up * turn, across + self.z * w1 - self.a * w3, w1
 
     def lagrange(self, values):
-        t, theta, turn, phi, about, p, psi, x, y, vx, vy, heat = values
+        t, theta, turn, phi, about, p, _psi, _x, _y, vx, vy, _heat = values
         s, c = sin(theta), cos(theta)
         out, up = self.lever(theta)
-        u_h, u_2, w1 = self.slipping(values)
+        u_h, u_2, _w1 = self.slipping(values)
         size = sqrt(u_h * u_h + u_2 * u_2)
         dx, dy = u_h / size, u_2 / size
         precession = about / (self.i1 * s * s)

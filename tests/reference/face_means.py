@@ -15,6 +15,7 @@ A width of 1.5 or more stands for a pressure 1 + x.X that presses everywhere: th
 4 centre; the centre is then 1/(2 width) or 1/(4 (width - 0.5)). Inputs are exact doubles, written as hexadecimal.
 """
 
+import itertools
 import pathlib
 import random
 
@@ -51,7 +52,7 @@ def total(sums, left, right, near):
             steps.append(max(least, 3 * steps[-1]))
         ends |= {end for step in steps for end in (place - step, place + step) if left < end < right}
     ends, found = sorted(ends), [mpf(0)] * 5
-    for a, b in zip(ends, ends[1:], strict=False):
+    for a, b in itertools.pairwise(ends):
         for x, weight in RULE:
             terms = sums((a + b) / 2 + (b - a) / 2 * x)
             found = [sum_ + weight * (b - a) / 2 * term for sum_, term in zip(found, terms, strict=True)]

@@ -6,6 +6,7 @@ are linear in the force. An impulse is found among all contacts that may carry i
 """
 
 import functools
+import itertools
 
 import gmpy2
 import numpy as np
@@ -193,8 +194,8 @@ class Vectors:
         inner = [e for e in every if low < e < high]
         ends = [low, *inner, high]
         nodes, weights = legendre(44)
-        angle = np.concatenate([a + (b - a) * nodes for a, b in zip(ends, ends[1:])])
-        share = np.concatenate([(b - a) * weights for a, b in zip(ends, ends[1:])]) / (2 * pi)
+        angle = np.concatenate([a + (b - a) * nodes for a, b in itertools.pairwise(ends)])
+        share = np.concatenate([(b - a) * weights for a, b in itertools.pairwise(ends)]) / (2 * pi)
         return cos(angle), sin(angle), share
 
     def disc(self, vx, vy, w):
@@ -212,7 +213,7 @@ class Vectors:
         sign = self.sense if self.pure else np.where(w > 0, ONE, -ONE)
         dx, dy = -sign * sine, sign * cosine
         # powers of the radius over the face, of which the area is pi
-        m1, m2, m3, m4 = (2 * reach ** (j + 1) / (j + 1) / n for j in (1, 2, 3, 4))
+        m1, m2, m3, _m4 = (2 * reach ** (j + 1) / (j + 1) / n for j in (1, 2, 3, 4))
         one = [m1, px * m1 + cosine * m2, py * m1 + sine * m2]  # of (1, x, y)
         xs = [
             one[1],
@@ -223,18 +224,26 @@ class Vectors:
         lam = self.mu * self.z / self.a
         matrix = [
             [over(x) for x in one],
-            [over(x - lam * dx * o) for x, o in zip(xs, one)],
-            [over(y - lam * dy * o) for y, o in zip(ys, one)],
+            [over(x - lam * dx * o) for x, o in zip(xs, one, strict=False)],
+            [over(y - lam * dy * o) for y, o in zip(ys, one, strict=False)],
         ]
         plane = cramer(matrix)
-        assert all(4 * abs(p) < abs(q) * 4 for p, q in zip(sqrt(plane[1] ** 2 + plane[2] ** 2), plane[0]))
-        p = sum(c[:, None] * x for c, x in zip(plane, one))
-        px_, py_ = (sum(c[:, None] * x for c, x in zip(plane, z)) for z in (xs, ys))
+        assert all(
+            4 * abs(p) < abs(q) * 4
+            for p, q in zip(sqrt(plane[1] ** 2 + plane[2] ** 2), plane[0], strict=False)
+        )
+        p = sum(c[:, None] * x for c, x in zip(plane, one, strict=False))
+        px_, py_ = (sum(c[:, None] * x for c, x in zip(plane, z, strict=False)) for z in (xs, ys))
         force = -self.mu * over(p * dx), -self.mu * over(p * dy)
         couple = -self.mu * self.a * over(px_ * dy - py_ * dx)
         # the slip is w times the radius from the point that does not move
         radius = [m2, px * m2 + cosine * m3, py * m2 + sine * m3]
-        heat = self.mu * self.a * abs(w[:, 0]) * over(sum(c[:, None] * x for c, x in zip(plane, radius)))
+        heat = (
+            self.mu
+            * self.a
+            * abs(w[:, 0])
+            * over(sum(c[:, None] * x for c, x in zip(plane, radius, strict=False)))
+        )
         return (*force, couple, heat, *plane)
 
     def pressed(self, vx, vy, w):
@@ -247,10 +256,10 @@ class Vectors:
             self.partly(*at, key=k if len(w) > 1 else None)
             for k, at in enumerate(zip(vx, vy, w, strict=True))
         ]
-        return [np.array(x) for x in zip(*rows)]
+        return [np.array(x) for x in zip(*rows, strict=False)]
 
     def rates(self, values):
-        t, x, y, vx, vy, w, psi, heat, work = values
+        _t, _x, _y, vx, vy, w, _psi, _heat, _work = values
         one = w * 0 + 1
         fx, fy, couple, warm, *_ = self.pressed(vx, vy, w)
         if self.pure:  # without what is left by rounding
@@ -310,10 +319,10 @@ class Vectors:
                 events.append(("sample", lambda y: times[0] - y[0]))
             if ring and not self.pure:
                 side = -1 if self.part else 1
-                events.append(("border", lambda y: side * self.margin(y)))
+                events.append(("border", lambda y: side * self.margin(y)))  # noqa: B023
             if self.sense == 0:
                 v0 = y[3], y[4]
-                events.append(("rests", lambda y: y[3] * v0[0] + y[4] * v0[1]))
+                events.append(("rests", lambda y: y[3] * v0[0] + y[4] * v0[1]))  # noqa: B023
             elif self.pure or self.drilling:
                 name = "rests" if self.pure else "straight"
                 events.append((name, lambda y: y[5] * self.sense))
@@ -452,7 +461,7 @@ class Vectors:
             if times:
                 events.append(("sample", lambda y: times[0] - y[0]))
             if way:
-                events.append(("slip ends", lambda y: way * self.planar_slip(side, y)))
+                events.append(("slip ends", lambda y: way * self.planar_slip(side, y)))  # noqa: B023
             else:
 
                 def spare(y):
@@ -460,7 +469,10 @@ class Vectors:
                     return self.mu * n - abs(f)
 
                 events.append(("slips", spare))
-            longest = lambda y: mpfr("0.3")
+
+            def longest(y):
+                return mpfr("0.3")
+
             name, y, n = self.col.follow(
                 self.planar_rates(side, way), y, self.first_step(now), events, longest
             )
@@ -503,17 +515,22 @@ class Vectors:
                 rows, right = [], []
 
                 def row(value, **of):
-                    r = [ZERO] * m
+                    r = [ZERO] * m  # noqa: B023
                     for k, x in of.items():
                         r["vx vz turn q p0 p1".split().index(k)] = x
-                    rows.append(r)
-                    right.append(value)
+                    rows.append(r)  # noqa: B023
+                    right.append(value)  # noqa: B023
 
                 names = [f"p{k}" for k in range(len(sides))]
                 row(vx, vx=ONE, q=-ONE)
                 row(vz, vz=ONE, **{p: -ONE for p in names})
                 # lean' changes by (rx P - rz Q)/i1 with rz = -Z
-                row(self.i1 * turn, turn=self.i1, q=-self.z, **{p: -s * self.a for p, s in zip(names, sides)})
+                row(
+                    self.i1 * turn,
+                    turn=self.i1,
+                    q=-self.z,
+                    **{p: -s * self.a for p, s in zip(names, sides, strict=False)},
+                )
                 for s in sides:
                     row(ZERO, vz=ONE, turn=s * self.a)
                 if way == 0:
@@ -626,7 +643,7 @@ class Vectors:
             p = [x * 0 + 1, x]
             for k in range(1, self.count):
                 p.append(((2 * k + 1) * x * p[k] - k * p[k - 1]) / (k + 1))
-            rows.append(sum(c * q for c, q in zip(coefficients, p)))
+            rows.append(sum(c * q for c, q in zip(coefficients, p, strict=False)))
         return np.array(rows)
 
     def space_rates(self, values):
@@ -653,14 +670,18 @@ class Vectors:
             """What a second rate of the axis gives to the height."""
             return -self.a * (h[0] * bend[0] + h[1] * bend[1]) - self.z * bend[2]
 
-        at_rest = lifts([x + y for x, y in zip(crossed(free, e), wheel)]) - self.a * (square - s1**2) / s - 1
+        at_rest = (
+            lifts([x + y for x, y in zip(crossed(free, e), wheel, strict=False)])
+            - self.a * (square - s1**2) / s
+            - 1
+        )
         u = [vx + w[1] * r[2] - w[2] * r[1], vy + w[2] * r[0] - w[0] * r[2]]
         size = sqrt(u[0] ** 2 + u[1] ** 2)
         aim = [-self.mu * u[0] / size, -self.mu * u[1] / size, size * 0 + 1]
         push = self.turned(crossed(r, aim), e)
         normal = -at_rest / (1 + lifts(crossed(push, e)))
         force = [normal * x for x in aim]
-        twist = [x + normal * y for x, y in zip(free, push)]
+        twist = [x + normal * y for x, y in zip(free, push, strict=False)]
         heat = self.mu * normal * size
         return [
             size * 0 + 1,
@@ -703,7 +724,7 @@ class Vectors:
         e2 = [-h[1], h[0], ZERO]
         e1 = [e[2] * h[0], e[2] * h[1], s]
         r = [-self.a * e1[i] - self.z * e[i] for i in range(3)]
-        u = [x + y for x, y in zip([vx, vy, vz], crossed(w, r))]
+        u = [x + y for x, y in zip([vx, vy, vz], crossed(w, r), strict=False)]
         self.strayed = max(abs(u[2]), abs(pz + r[2]), abs(dotted(e, e) - 1), abs(dotted(m, e)))
         return now.at(
             t=t,
