@@ -33,7 +33,8 @@ def pushed(turns: float, table: sc.Coulomb) -> sc.Motion:
 
 def cm(motion: sc.Motion) -> Floats:
     """The way of its centre."""
-    return 100 * metre * (motion.centre[:, :2] - motion.centre[0, :2])
+    way: Floats = 100 * metre * (motion.centre[:, :2] - motion.centre[0, :2])
+    return way
 
 
 def picture() -> None:
