@@ -247,9 +247,7 @@ def scenes():
     flat = solid(0.4)
     yield Scene("planar landing that stays and slides", flat, 0.3, (0.2, 0, 0, 0, 0.5, 0), [0.3, 0.8, 1.2])
     dropped = {"height": 0.08, "restitution": 0.5, **few}
-    yield Scene(
-        "dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 3, 5], **dropped
-    )
+    yield Scene("dropped flat, bounces", can, 0.25, moving(can, (1.5, 0), 1), [0.2, 0.7, 3, 5], **dropped)
     tossed = {"height": 0.3, "lift": 0.5, "restitution": 0.3, **few}
     coin = solid(0.1)
     yield Scene("coin tossed flat", coin, 0.2, moving(coin, (0.5, -0.6), 3), [0.5, 1.5, 2.2, 4], **tossed)
