@@ -10,6 +10,9 @@ const WHIRR_END_SINE: f64 = 1e-22;
 /// there to `FLAT` follows from that law.
 const SLOW_LANDING_SINE: f64 = 1e-10;
 
+/// An inclination at which laws of one rim are evaluated for a face that lies: w1/sin theta is finite there.
+pub(crate) const ALMOST_FLAT: f64 = 1e-100;
+
 /// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of the rotation w1 in the energy of an almost flat face; 1/2 in a whirr.
 #[inline(always)]
 pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {

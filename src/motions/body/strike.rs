@@ -10,9 +10,9 @@
 //! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
 use super::body_walk::{BodyWalk, LONGER};
+use super::face::ALMOST_FLAT;
 use super::fly::{Aloft, Takeoff};
 use super::own::Own;
-use super::stand::ALMOST_FLAT;
 use crate::laws::body::Rim;
 use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::{Hit, PointImpact, Struck, lightness, turned};

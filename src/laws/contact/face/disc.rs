@@ -15,7 +15,7 @@
 //!
 //! Error: 1e-15 of the whole disc, 1e-12 of a part.
 
-use super::part::{Integrals, Part, Pressed, ZEROS, one_less};
+use super::part::{FaceIntegrals, PressedFace, PressedPart, ZEROS, one_less};
 use super::ring::{WholeMeans, nodes, quarter_integrals};
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{here, in_lanes, level};
@@ -82,11 +82,11 @@ pub(super) fn whole(v: f64, s: f64) -> WholeMeans {
 }
 
 /// What a part of the disc gives at the speeds `v` and `s` for a height lam.
-pub(super) fn pressed(part: &Part, lam: f64, v: f64, s: f64) -> Pressed {
+pub(super) fn on_disc(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFace {
     in_lanes!(
         level(),
-        simd => integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
-        else integrals(ZEROS, part, v, s).pressed(lam)
+        simd => disc_integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
+        else disc_integrals(ZEROS, part, v, s).pressed(lam)
     )
 }
 
@@ -122,7 +122,7 @@ fn panel_end(left: f64, last: f64, singular: &[Singular]) -> f64 {
 
 /// The integrals over the part of the disc.
 #[inline(always)]
-fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T> {
+fn disc_integrals<T: SideBySide>(like: T, part: &PressedPart, v: f64, s: f64) -> FaceIntegrals<T> {
     let number = here(
         #[inline(always)]
         |x: f64| like.splat(x),
@@ -164,7 +164,7 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
     ];
     let singular = &singular[..if inside { 9 } else { 5 }];
     let plain = [sine, cosine, cut];
-    let mut sums = Integrals::new(like);
+    let mut sums = FaceIntegrals::new(like);
     let [zero, one, tiny, ratio, over, sine, cosine, cut] =
         [0.0, 1.0, 1e-300, k, q, sine, cosine, cut].map(number);
     let mut panel = here(

@@ -11,7 +11,7 @@
 //! whole face presses, X is in closed form; otherwise Newton's method finds the width and the direction of the pressed
 //! part. For lam > 1 the body topples above a fold of the solutions, whose ratio v/s is found once.
 //!
-//! Error: see [`ring`] and [`disc`]; a test compares with quadrature of 30 digits.
+//! Error: see [`ring`] and [`disc`]; measured beside quadrature of 30 digits (`face_means.csv`).
 
 mod disc;
 mod part;
@@ -20,7 +20,7 @@ mod ring;
 use crate::methods::search::crossing;
 use crate::numbers::codes::coded;
 use core::f64::consts::FRAC_PI_2;
-use part::{Part, Pressed};
+use part::{PressedFace, PressedPart};
 use ring::WholeMeans;
 
 coded! {
@@ -55,7 +55,7 @@ pub(crate) struct FaceFriction {
 }
 
 impl FaceForce {
-    fn of(part: &Part, found: &Pressed) -> Self {
+    fn of(part: &PressedPart, found: &PressedFace) -> Self {
         let turned = [part.off.sin(), part.angle.sin()];
         let [along, across] = turned.map(|x| found.force * x);
         let centre = turned.map(|x| found.centre * x);
@@ -73,7 +73,7 @@ impl FaceForce {
 /// A part whose friction is along X, and the lam of which that is a solution.
 #[derive(Debug, Clone, Copy)]
 struct OnCurve {
-    part: Part,
+    part: PressedPart,
     lam: f64,
     determinant: f64,
 }
@@ -133,12 +133,12 @@ impl FaceFriction {
         if v >= self.fold * s {
             return None;
         }
-        let first = || self.solved(Part::towards(1.0, centre), v, s).or_else(|| self.narrowed(v, s));
+        let first = || self.solved(PressedPart::towards(1.0, centre), v, s).or_else(|| self.narrowed(v, s));
         let found = match last.filter(|x| slope * x[0].hypot(x[1]) > 1.0) {
             None => first(),
             Some(x) => {
                 let apart = |of: &FaceForce| (of.centre[0] - x[0]).hypot(of.centre[1] - x[1]);
-                let near = self.solved(Part::towards(self.width_of(x[0].hypot(x[1])), x), v, s);
+                let near = self.solved(PressedPart::towards(self.width_of(x[0].hypot(x[1])), x), v, s);
                 match near {
                     Some(near) if lam < UNIQUE_BELOW || apart(&near) < SAME_BRANCH => Some(near),
                     _ => near.into_iter().chain(first()).min_by(|a, b| apart(a).total_cmp(&apart(b))),
@@ -160,7 +160,7 @@ impl FaceFriction {
     }
 
     /// The part that presses, by Newton's method from another one.
-    fn solved(&self, mut arc: Part, v: f64, s: f64) -> Option<FaceForce> {
+    fn solved(&self, mut arc: PressedPart, v: f64, s: f64) -> Option<FaceForce> {
         let mut close = false;
         for _ in 0..STEPS_TO_PART {
             let here = self.pressed(&arc, v, s);
@@ -188,7 +188,7 @@ impl FaceFriction {
 
     /// The same, from the first of ever narrower parts whose lam is not smaller. It is negative beyond infinity.
     fn narrowed(&self, v: f64, s: f64) -> Option<FaceForce> {
-        let mut wide = self.on_curve(Part::towards(1.0, [1.0, 0.7]), v, s);
+        let mut wide = self.on_curve(PressedPart::towards(1.0, [1.0, 0.7]), v, s);
         let mut step = 0.2;
         while wide.part.width > NARROWEST && step > TURN * wide.part.width {
             let next = self.on_curve(wide.part.moved(-step, 0.0), v, s);
@@ -209,7 +209,7 @@ impl FaceFriction {
     }
 
     /// The direction of a part of this width whose friction is along X, and the lam that belongs to it.
-    fn on_curve(&self, part: Part, v: f64, s: f64) -> OnCurve {
+    fn on_curve(&self, part: PressedPart, v: f64, s: f64) -> OnCurve {
         let mut found = OnCurve { part, lam: 1.0, determinant: 0.0 };
         for _ in 0..STEPS_TO_PART {
             let here = Self { lam: found.lam, ..*self }.pressed(&found.part, v, s);
@@ -224,10 +224,10 @@ impl FaceFriction {
         found
     }
 
-    fn pressed(&self, arc: &Part, v: f64, s: f64) -> Pressed {
+    fn pressed(&self, arc: &PressedPart, v: f64, s: f64) -> PressedFace {
         match self.form {
-            Face::Ring => ring::pressed(arc, self.lam, v, s),
-            Face::Disc => disc::pressed(arc, self.lam, v, s),
+            Face::Ring => ring::on_ring(arc, self.lam, v, s),
+            Face::Disc => disc::on_disc(arc, self.lam, v, s),
         }
     }
 
@@ -247,7 +247,7 @@ impl FaceFriction {
     /// The largest lam that has a centre of the pressure at the ratio `k`. At a given width the direction of X follows from
     /// the force across, and lam from that along.
     fn largest_lam(&self, k: f64) -> f64 {
-        let mut part = Part::towards(1.0, [1.0, 0.7]);
+        let mut part = PressedPart::towards(1.0, [1.0, 0.7]);
         let mut on_curve = |width: f64| {
             part.width = width;
             let found = self.on_curve(part, k, 1.0);
@@ -304,7 +304,7 @@ pub(crate) fn viscous(c: f64, [a, height]: [f64; 2], v: f64, w: f64) -> FaceForc
 /// The ratio of the speed of the centre to the speed a |w| of the rim with which a body comes to rest that slides and
 /// spins on its face: 0 or infinity if one of them ends before the other in proportion. None if the body topples on the
 /// way there. `lam` is the coefficient of friction times the height of the centre of mass over the radius of the face,
-/// `i3` the axial moment over the square of this radius. Error: 1e-12, beside the tables of a test.
+/// `i3` the axial moment over the square of this radius. Error: 1e-12.
 ///
 /// ```
 /// use spincyl::contact::{Face, end_ratio};
@@ -346,7 +346,7 @@ pub fn end_ratio(form: Face, lam: f64, i3: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use part::Pressed;
+    use part::PressedFace;
 
     const FORMS: [Face; 2] = [Face::Ring, Face::Disc];
 
@@ -367,8 +367,8 @@ mod tests {
     fn means(form: Face, k: f64, width: f64, angle: f64) -> [f64; 4] {
         let (v, s) = (k, 1.0);
         if width < 1.5 {
-            let part = Part { width, angle, off: FRAC_PI_2 - angle };
-            let of: Pressed = friction_of(form, 1.0).pressed(&part, v, s);
+            let part = PressedPart { width, angle, off: FRAC_PI_2 - angle };
+            let of: PressedFace = friction_of(form, 1.0).pressed(&part, v, s);
             // The couple is told for a part that is its own X: without the mean of sin d.
             let aside = -of.residual[1];
             return [of.centre, of.force, aside, of.couple + aside];

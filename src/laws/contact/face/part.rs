@@ -30,13 +30,13 @@ pub(super) const GAUSS_WEIGHTS: [f64; 24] = [
 
 /// A part of the face that presses: `width` = sin^2(b/2), and the angle c of its middle from v, with pi/2 - c.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct PressedPart {
     pub width: f64,
     pub angle: f64,
     pub off: f64,
 }
 
-impl Part {
+impl PressedPart {
     /// The part turned and widened by these amounts.
     pub fn moved(&self, width: f64, angle: f64) -> Self {
         Self { width: self.width + width, angle: self.angle + angle, off: self.off - angle }
@@ -50,20 +50,20 @@ impl Part {
 
 const INTEGRALS: usize = 11;
 /// Numbers that are summed side by side: eight on every machine, so that each adds in the same order.
-pub(super) type Sides = Pair<Pair<Pair<f64>>>;
+pub(super) type ArcSides = Pair<Pair<Pair<f64>>>;
 /// Eight zeros.
-pub(super) const ZEROS: Sides =
+pub(super) const ZEROS: ArcSides =
     Pair(Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)), Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)));
 
-/// Integrals over a part, of numbers in lanes.
-pub(super) struct Integrals<T> {
+/// FaceIntegrals over a part, of numbers in lanes.
+pub(super) struct FaceIntegrals<T> {
     sums: [T; INTEGRALS],
 }
 
 /// A node: its weight, the pressure, 1 - along and across of its place, and sin d and 1 - cos d of its slip. Along and
 /// across are the directions of X.
 #[derive(Clone, Copy)]
-pub(super) struct Rubbing<T> {
+pub(super) struct ElementForce<T> {
     pub weight: T,
     pub pressed: T,
     pub short: T,
@@ -79,7 +79,7 @@ pub(super) fn one_less<T: SideBySide>(sine: T, cosine: T) -> T {
     sine.splat(0.0).select_lt(cosine, sine * sine / size, size)
 }
 
-impl<T: SideBySide> Integrals<T> {
+impl<T: SideBySide> FaceIntegrals<T> {
     #[inline(always)]
     pub fn new(like: T) -> Self {
         Self { sums: [like.splat(0.0); INTEGRALS] }
@@ -95,8 +95,8 @@ impl<T: SideBySide> Integrals<T> {
 
     /// Adds a node.
     #[inline(always)]
-    pub fn rub(&mut self, of: Rubbing<T>) {
-        let Rubbing { weight, pressed, short, across, aside, back } = of;
+    pub fn rub(&mut self, of: ElementForce<T>) {
+        let ElementForce { weight, pressed, short, across, aside, back } = of;
         let terms = [
             pressed,
             pressed * short,
@@ -115,7 +115,7 @@ impl<T: SideBySide> Integrals<T> {
 
     /// The integrals, and what follows from them for a height lam.
     #[inline(always)]
-    pub fn pressed(&self, lam: f64) -> Pressed {
+    pub fn pressed(&self, lam: f64) -> PressedFace {
         let total = here(
             #[inline(always)]
             |i: usize| {
@@ -130,7 +130,7 @@ impl<T: SideBySide> Integrals<T> {
         let [short, aside, back, couple] = [1, 2, 3, 4].map(|i| of[i] * over);
         let by_width = |plain: f64, mean: f64| 2.0 * over * (plain - mean * of[5]);
         let centre = 1.0 - short;
-        Pressed {
+        PressedFace {
             residual: [(1.0 - lam) - short + lam * back, -lam * aside],
             by_width: [lam * by_width(of[8], back) - by_width(of[6], short), -lam * by_width(of[7], aside)],
             by_angle: [lam * over * of[10], centre - lam * over * of[9]],
@@ -143,7 +143,7 @@ impl<T: SideBySide> Integrals<T> {
 
 /// What a part gives: the residual X - lam G in the frame of X, its derivatives by width and angle, and the means.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pressed {
+pub(super) struct PressedFace {
     pub residual: [f64; 2],
     pub by_width: [f64; 2],
     pub by_angle: [f64; 2],
@@ -154,7 +154,7 @@ pub(super) struct Pressed {
     pub couple: f64,
 }
 
-impl Pressed {
+impl PressedFace {
     /// The determinant of the derivatives, which is negative where the centre of the pressure is the nearest one.
     pub fn determinant(&self) -> f64 {
         self.by_width[0] * self.by_angle[1] - self.by_width[1] * self.by_angle[0]

@@ -16,7 +16,9 @@
 //!
 //! Error: 1e-15 of the whole ring, 1e-14 of a part.
 
-use super::part::{GAUSS_PLACES, GAUSS_WEIGHTS, Integrals, Part, Pressed, Rubbing, ZEROS, one_less};
+use super::part::{
+    ElementForce, FaceIntegrals, GAUSS_PLACES, GAUSS_WEIGHTS, PressedFace, PressedPart, ZEROS, one_less,
+};
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{here, in_lanes, level};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4};
@@ -95,7 +97,7 @@ impl WholeMeans {
 }
 
 /// The speeds and the part, with what all nodes share.
-struct Rubs<T> {
+struct RubsAlong<T> {
     /// v cos c, s, and s - v sin c.
     forward: T,
     spin: T,
@@ -105,17 +107,17 @@ struct Rubs<T> {
     one: T,
 }
 
-impl<T: SideBySide> Rubs<T> {
+impl<T: SideBySide> RubsAlong<T> {
     /// A node of weight dt with sin(t/2), cos(t/2) and 1/|u|.
     #[inline(always)]
-    fn at(&self, weight: T, [sh, ch]: [T; 2], over: T) -> Rubbing<T> {
+    fn at(&self, weight: T, [sh, ch]: [T; 2], over: T) -> ElementForce<T> {
         let (twice, one) = (sh + sh, self.one);
         let (across, short) = (twice * ch, twice * sh);
         let aside = (self.base - self.spin * short) * over;
         let ahead = (self.forward - self.spin * across) * over;
         let reach = (self.reach - sh) * (self.reach + sh);
         let back = one_less(aside, ahead);
-        Rubbing { weight, pressed: weight * (reach + reach), short, across, aside, back }
+        ElementForce { weight, pressed: weight * (reach + reach), short, across, aside, back }
     }
 }
 
@@ -130,19 +132,19 @@ pub(super) fn nodes<T: SideBySide>(like: T, left: f64, right: f64, mut each: imp
 }
 
 /// What a part of the ring gives at the speeds `v` and `s` for a height lam.
-pub(super) fn pressed(part: &Part, lam: f64, v: f64, s: f64) -> Pressed {
+pub(super) fn on_ring(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFace {
     let large = v.max(s);
     let (v, s) = (v / large, s / large);
     in_lanes!(
         level(),
-        simd => integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
-        else integrals(ZEROS, part, v, s).pressed(lam)
+        simd => ring_integrals(<f64x8<_> as SimdBase<_>>::splat(simd, 0.0), part, v, s).pressed(lam),
+        else ring_integrals(ZEROS, part, v, s).pressed(lam)
     )
 }
 
 /// The integrals over the part of the ring.
 #[inline(always)]
-fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T> {
+fn ring_integrals<T: SideBySide>(like: T, part: &PressedPart, v: f64, s: f64) -> FaceIntegrals<T> {
     let number = |x: f64| like.splat(x);
     let (c, off) = (part.angle, part.off);
     let reach = part.width.sqrt();
@@ -151,8 +153,8 @@ fn integrals<T: SideBySide>(like: T, part: &Part, v: f64, s: f64) -> Integrals<T
     let base = if c < FRAC_PI_4 { s - v * c.sin() } else { (s - v) + 2.0 * v * so * so };
     let one = number(1.0);
     let [forward, spin, base, reach] = [v * off.sin(), s, base, reach].map(number);
-    let rubs = Rubs { forward, spin, base, reach, one };
-    let mut sums = Integrals::new(like);
+    let rubs = RubsAlong { forward, spin, base, reach, one };
+    let mut sums = FaceIntegrals::new(like);
     let (least, most) = ((v - s).abs(), v + s);
     let [sine, cosine] = [so, co].map(number);
     // The zero of u^2 nearest to the arc, over its half: the ellipse through it tells how fast the rule converges.

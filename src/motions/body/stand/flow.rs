@@ -35,17 +35,21 @@ const SIZE: usize = W2;
 const SHARE: usize = W3;
 
 /// A slide is over where both speeds are below this share of those at its start.
-const OVER: f64 = 1e-14;
+const SLID_OUT: f64 = 1e-14;
 /// At the fold itself there is no centre of the pressure any more.
 const SHORT_OF_FOLD: f64 = 1.0 - 1e-9;
 /// The longest step in tau.
 const LONGEST: f64 = 4.0;
 
+/// The margins of the flow.
+const RESTS: usize = 0;
+const SPIN_ENDS: usize = 1;
+const TOPPLES: usize = 2;
 const ENDS: [Halt; MARGINS] = [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Time, Halt::Time, Halt::Time];
 
 /// How the velocities change.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Course {
+enum Braking {
     /// Both slide and spin rub, in tau.
     Rubs,
     /// Only one of them does, under dry friction.
@@ -63,7 +67,7 @@ pub(crate) struct StandingFlow {
     height: f64,
     up: f64,
     way: f64,
-    course: Course,
+    course: Braking,
     face: FaceFriction,
     /// mu, or c.
     strength: f64,
@@ -93,7 +97,7 @@ impl StandingFlow {
             height: rim.height(angle),
             up: y[COS],
             way: if y[W3] == 0.0 { 0.0 } else { (y[COS] * y[W3]).signum() },
-            course: Course::Soft,
+            course: Braking::Soft,
             face,
             strength: friction.strength(),
             dry: matches!(friction, Friction::Coulomb { .. }),
@@ -105,14 +109,14 @@ impl StandingFlow {
         let [v_h, v_2] = flow.velocity(y);
         let (v, s) = (v_h.hypot(v_2), flow.radius * y[W3].abs());
         flow.course = match friction {
-            Friction::Coulomb { mu, .. } if *mu > 0.0 && v > 0.0 && s > 0.0 => Course::Rubs,
-            Friction::Coulomb { mu, .. } if *mu > 0.0 => Course::Straight,
-            _ => Course::Soft,
+            Friction::Coulomb { mu, .. } if *mu > 0.0 && v > 0.0 && s > 0.0 => Braking::Rubs,
+            Friction::Coulomb { mu, .. } if *mu > 0.0 => Braking::Straight,
+            _ => Braking::Soft,
         };
         if v > 0.0 {
             flow.towards = [v_h / v, v_2 / v];
         }
-        flow.least = (OVER * v.hypot(s)).ln();
+        flow.least = (SLID_OUT * v.hypot(s)).ln();
         flow
     }
 
@@ -130,7 +134,7 @@ impl StandingFlow {
     pub fn enter<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
         let (v, s) = (v_h.hypot(v_2), self.radius * y[W3].abs());
-        if self.course == Course::Rubs {
+        if self.course == Braking::Rubs {
             (all[ALPHA], all[SIZE], all[SHARE]) = (0.0, v.hypot(s).ln(), s.atan2(v));
             (all[UH], all[U2]) = (0.0, 0.0);
         } else {
@@ -148,7 +152,7 @@ impl StandingFlow {
     /// Force and couple at the numbers of a flow in time. Dry friction keeps its direction, beyond rest as well.
     fn along<const N: usize>(&self, y: &[f64; N]) -> [f64; 3] {
         let (v, w) = ([y[UH], y[U2]], self.up * y[W3]);
-        if self.course == Course::Straight {
+        if self.course == Braking::Straight {
             let turns = self.way != 0.0;
             return self.pushed(if turns { [0.0; 2] } else { self.towards }, self.way);
         }
@@ -268,7 +272,7 @@ impl Flow<MARGINS> for StandingFlow {
         *all = [0.0; N];
         let (mut pace, mut spin) = (1.0, y[W3]);
         let mut velocity = [y[UH], y[U2]];
-        if self.course == Course::Rubs {
+        if self.course == Braking::Rubs {
             let (r, [v, s]) = (y[SIZE].exp(), Self::speeds(y));
             let (sin, cos) = y[SHARE].sin_cos();
             let [along, across, couple] = self.rubs([cos, sin]);
@@ -307,32 +311,32 @@ impl Flow<MARGINS> for StandingFlow {
             margin.value = self.margin(y, i);
         }
         match self.course {
-            Course::Rubs => {
-                all[0].slope = rate[SIZE];
-                if all[1].value != 1.0 {
-                    all[1].slope = rate[SHARE];
+            Braking::Rubs => {
+                all[RESTS].slope = rate[SIZE];
+                if all[SPIN_ENDS].value != 1.0 {
+                    all[SPIN_ENDS].slope = rate[SHARE];
                 }
-                if all[2].value != 1.0 {
+                if all[TOPPLES].value != 1.0 {
                     let (sin, cos) = y[SHARE].sin_cos();
-                    all[2].slope = (self.face.fold() * cos + sin) * rate[SHARE];
+                    all[TOPPLES].slope = (self.face.fold() * cos + sin) * rate[SHARE];
                 }
             }
-            Course::Straight => {
-                all[0].slope = if self.way == 0.0 {
+            Braking::Straight => {
+                all[RESTS].slope = if self.way == 0.0 {
                     self.towards[0] * rate[UH] + self.towards[1] * rate[U2]
                 } else {
                     self.way * self.up * rate[W3]
                 };
             }
-            Course::Soft => {
+            Braking::Soft => {
                 let by = 1e-6 / (1.0 + place.rate.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
                 let aside =
                     |by: f64| self.margin(&core::array::from_fn::<f64, N, _>(|i| y[i] + by * rate[i]), 2);
                 if self.strength > 0.0 {
-                    all[2].slope = (aside(by) - aside(-by)) / (2.0 * by);
+                    all[TOPPLES].slope = (aside(by) - aside(-by)) / (2.0 * by);
                 }
                 if self.losses[0] > 0.0 {
-                    all[1].slope = self.way * self.up * rate[W3];
+                    all[SPIN_ENDS].slope = self.way * self.up * rate[W3];
                 }
             }
         }
@@ -342,16 +346,16 @@ impl Flow<MARGINS> for StandingFlow {
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let dry = self.losses[0] > 0.0;
         match (self.course, i) {
-            (Course::Rubs, 0) => y[SIZE] - self.least,
-            (Course::Rubs, 1) if self.losses != [0.0; 3] => y[SHARE],
-            (Course::Rubs, 2) if self.face.fold() < f64::INFINITY => {
+            (Braking::Rubs, 0) => y[SIZE] - self.least,
+            (Braking::Rubs, 1) if self.losses != [0.0; 3] => y[SHARE],
+            (Braking::Rubs, 2) if self.face.fold() < f64::INFINITY => {
                 let (sin, cos) = y[SHARE].sin_cos();
                 self.face.fold() * sin - cos
             }
-            (Course::Straight, 0) if self.way == 0.0 => self.towards[0] * y[UH] + self.towards[1] * y[U2],
-            (Course::Straight, 0) => self.way * self.up * y[W3],
-            (Course::Soft, 1) if dry && y[W3] != 0.0 => self.way * self.up * y[W3],
-            (Course::Soft, 2) if self.strength > 0.0 => {
+            (Braking::Straight, 0) if self.way == 0.0 => self.towards[0] * y[UH] + self.towards[1] * y[U2],
+            (Braking::Straight, 0) => self.way * self.up * y[W3],
+            (Braking::Soft, 1) if dry && y[W3] != 0.0 => self.way * self.up * y[W3],
+            (Braking::Soft, 2) if self.strength > 0.0 => {
                 let [f_h, f_2, _] = self.along(y);
                 self.stands_under([f_h, f_2])
             }
@@ -366,14 +370,14 @@ impl Flow<MARGINS> for StandingFlow {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
         let per = |i: usize| {
-            if matches!(i, W1 | W2 | W3) && self.course == Course::Rubs { per_tol } else { per_speed }
+            if matches!(i, W1 | W2 | W3) && self.course == Braking::Rubs { per_tol } else { per_speed }
         };
         made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         match self.course {
-            Course::Rubs => y[SIZE].exp().max(1.0),
+            Braking::Rubs => y[SIZE].exp().max(1.0),
             _ => y[UH].abs().max(y[U2].abs()).max(y[W3].abs()).max(1.0),
         }
     }
@@ -383,7 +387,7 @@ impl Flow<MARGINS> for StandingFlow {
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        if self.course == Course::Rubs { y[SIZE].exp() / self.strength * f64::EPSILON } else { f64::EPSILON }
+        if self.course == Braking::Rubs { y[SIZE].exp() / self.strength * f64::EPSILON } else { f64::EPSILON }
     }
 
     fn shortest<const N: usize>(&self, _: &[f64; N]) -> f64 {
@@ -391,7 +395,7 @@ impl Flow<MARGINS> for StandingFlow {
     }
 
     fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
-        if self.course == Course::Rubs { LONGEST } else { f64::INFINITY }
+        if self.course == Braking::Rubs { LONGEST } else { f64::INFINITY }
     }
 
     fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
@@ -400,7 +404,7 @@ impl Flow<MARGINS> for StandingFlow {
 
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut all = *y;
-        if self.course == Course::Rubs {
+        if self.course == Braking::Rubs {
             let [v, s] = Self::speeds(y);
             let ((sin, cos), [x, z]) = ((self.way * y[ALPHA]).sin_cos(), self.towards);
             (all[W1], all[W2], all[W3]) = (0.0, 0.0, self.up * self.way * s / self.radius);

@@ -15,6 +15,7 @@ pub(crate) mod flow;
 mod rocks;
 
 use super::body_walk::BodyWalk;
+use super::face::ALMOST_FLAT;
 use super::fly::Takeoff;
 use super::own::Own;
 use super::strike::ROCKED;
@@ -37,13 +38,11 @@ use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
 /// Slower velocities are those of a body at rest.
-const STILL: f64 = 1e-13;
+const UNMOVED: f64 = 1e-13;
 /// The inclination from which a rising body is followed on its rim. It is above that at which a face has landed.
 const RISEN: f64 = 4e-12;
 /// A rim that rises more slowly, beside a spin, comes to nothing; so does one that falls, beside what is lost.
 const HARDLY_RISES: f64 = 1e-6;
-/// An inclination at which laws of one rim are evaluated for a face that lies: w1/sin theta is finite there.
-pub(super) const ALMOST_FLAT: f64 = 1e-100;
 /// A face that comes down in less time than this does so with constant rates.
 const SOON_DOWN: f64 = 1e-5;
 
@@ -158,7 +157,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let friction = self.friction_of_face();
         let spins = self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3];
         let moves = self.at[UH].hypot(self.at[U2] + spins) + spins.abs();
-        if moves <= STILL {
+        if moves <= UNMOVED {
             self.claims(moves);
             self.rests_on_face();
             return Next::Ends(Ending::Stops);

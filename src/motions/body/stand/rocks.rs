@@ -10,7 +10,7 @@
 //!
 //! Error: of the sum, the square of the time that is summed.
 
-use super::STILL;
+use super::UNMOVED;
 use crate::laws::contact::Table;
 use crate::laws::contact::impact::Hit;
 use crate::laws::contact::landing::{FallingFace, falls_flat};
@@ -32,7 +32,7 @@ use crate::motions::{Ending, Kind, Limit};
 use core::f64::consts::TAU;
 
 /// A rocking beside a slip is summed if the slip lasts longer than it by this factor.
-const OUTLASTS: f64 = 10.0;
+const SLIDES_ON: f64 = 10.0;
 /// A rattle in a plane is over where all of its velocities are below this: its next hops are as low as roundings of theta.
 const LAST_RATTLE: f64 = 3e-6;
 /// The rest of a rocking with slips that stop in its hops is looked for below this rate.
@@ -278,7 +278,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         while given < all {
             let flow = self.standing_with(&friction, &losses);
             let [v_h, v_2] = flow.velocity(&self.at);
-            if !flow.changes() || v_h.hypot(v_2) + self.at[W3].abs() <= STILL {
+            if !flow.changes() || v_h.hypot(v_2) + self.at[W3].abs() <= UNMOVED {
                 break;
             }
             if flow.topples(&self.at) {
@@ -411,7 +411,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return Some(self.rests_after_rocking(end, error));
         }
         let up = self.up();
-        let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
+        let theta = if up > 0.0 { crate::motions::body::face::ALMOST_FLAT } else { core::f64::consts::PI };
         let sticks = self.at.slip() == [0.0; 2];
         let falls = up * self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks)[W2];
         if falls <= 0.0 || rises > HARDLY_ROCKS {
@@ -437,7 +437,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let (rises, slip) = (self.at[W2].abs(), self.at[UH]);
             let sticks = self.of.slide.law.dry && slip.abs() <= self.of.slide.over()
                 || matches!(self.ask.table, Table::Rolling { .. });
-            let theta = if up > 0.0 { super::ALMOST_FLAT } else { core::f64::consts::PI };
+            let theta =
+                if up > 0.0 { crate::motions::body::face::ALMOST_FLAT } else { core::f64::consts::PI };
             self.at[W2] = 0.0;
             let rates = self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks);
             let falls = up * rates[W2];
@@ -445,7 +446,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 return None;
             }
             let lasts = 2.0 * rises / falls;
-            if !sticks && self.of.slide.law.dry && slip.abs() < OUTLASTS * self.of.slide.law.strength * lasts
+            if !sticks && self.of.slide.law.dry && slip.abs() < SLIDES_ON * self.of.slide.law.strength * lasts
             {
                 return None;
             }
