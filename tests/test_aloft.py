@@ -102,11 +102,12 @@ def test_what_is_dropped_flat_lands_on_its_face_and_what_tumbles_from_upright_pa
     flat = sc.dropped(can, 0.4, np.array([0.0, np.pi]), w3=3.0)
     for theta in (0.0, np.pi):
         m = sc.roll(can, sc.dropped(can, 0.4, theta, w3=3.0), [0.0, 3.0], contact=GRIP, restitution=0.3)
-        assert abs(m.impacts[0].time - np.sqrt(2 * 0.4 / 9.81)) < 1e-14
-        assert (m.status, m.rests_on.name) == (sc.Ending.STOPS, "FACE" if theta == 0 else "OTHER_FACE")
+        # friction stops its spin in the first bounce, and all bounces last 2 e/(1 - e) times the fall
+        assert m.status == sc.Ending.STOPS
+        assert abs(m.event.time - np.sqrt(2 * 0.4 / 9.81) * (1 + 0.6 / 0.7)) < 1e-13
     many = sc.sweep.roll(can, flat, [0.0, 3.0], contact=GRIP, restitution=0.3, want="end")
-    assert (many.status == m.status).all()
-    assert np.abs(many.end - m.event.time).max() < 1e-12
+    assert (many.status == sc.sweep.Status.STOPS).all()
+    assert np.abs(many.end - m.event.time).max() < 1e-13
     ends = []
     for theta in (0.0, 1e-7):
         start = sc.dropped(can, 0.4, theta, w2=-0.1, velocity=(0.0, 1.0, 0.0))
@@ -118,7 +119,6 @@ def test_what_is_dropped_flat_lands_on_its_face_and_what_tumbles_from_upright_pa
 @pytest.mark.parametrize(
     ("body", "start", "why"),
     [
-        (COIN, sc.State(np.pi, 0.0, 0.0, 1.0), r"theta = 3.14.*: .*on its face"),
         (
             sc.Body.ball(-0.2, 0.4, 0.4),
             sc.State(0.0, 0.0, 0.0, 1.0),
