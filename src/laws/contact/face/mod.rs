@@ -19,7 +19,6 @@ mod ring;
 
 use crate::methods::search::crossing;
 use crate::numbers::codes::coded;
-use core::f64::consts::FRAC_PI_2;
 use part::{PressedFace, PressedPart};
 use ring::WholeMeans;
 
@@ -346,6 +345,7 @@ pub fn end_ratio(form: Face, lam: f64, i3: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::FRAC_PI_2;
     use part::PressedFace;
 
     const FORMS: [Face; 2] = [Face::Ring, Face::Disc];
@@ -450,7 +450,7 @@ mod tests {
             [sums[1] / sums[0], sums[2] / sums[0]]
         };
         let miss = |b: f64| moments(b)[0] - (1.0 - lam);
-        let b = crossing(miss, 1e-3, 3.14, miss(1e-3), miss(3.14));
+        let b = crossing(miss, 1e-3, 3.1, miss(1e-3), miss(3.1));
         let [mean, square] = moments(b);
         square - mean * mean
     }

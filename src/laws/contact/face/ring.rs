@@ -104,14 +104,13 @@ struct RubsAlong<T> {
     base: T,
     /// sin(b/2).
     reach: T,
-    one: T,
 }
 
 impl<T: SideBySide> RubsAlong<T> {
     /// A node of weight dt with sin(t/2), cos(t/2) and 1/|u|.
     #[inline(always)]
     fn at(&self, weight: T, [sh, ch]: [T; 2], over: T) -> ElementForce<T> {
-        let (twice, one) = (sh + sh, self.one);
+        let twice = sh + sh;
         let (across, short) = (twice * ch, twice * sh);
         let aside = (self.base - self.spin * short) * over;
         let ahead = (self.forward - self.spin * across) * over;
@@ -153,7 +152,7 @@ fn ring_integrals<T: SideBySide>(like: T, part: &PressedPart, v: f64, s: f64) ->
     let base = if c < FRAC_PI_4 { s - v * c.sin() } else { (s - v) + 2.0 * v * so * so };
     let one = number(1.0);
     let [forward, spin, base, reach] = [v * off.sin(), s, base, reach].map(number);
-    let rubs = RubsAlong { forward, spin, base, reach, one };
+    let rubs = RubsAlong { forward, spin, base, reach };
     let mut sums = FaceIntegrals::new(like);
     let (least, most) = ((v - s).abs(), v + s);
     let [sine, cosine] = [so, co].map(number);

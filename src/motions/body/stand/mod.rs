@@ -21,16 +21,15 @@ use super::own::Own;
 use super::strike::ROCKED;
 use super::write;
 use crate::error::Error;
+use crate::laws::contact::Table;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
-use crate::laws::contact::{Force, Table};
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
-use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, loses, lost, poses,
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};

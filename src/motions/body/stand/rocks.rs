@@ -21,9 +21,7 @@ use crate::methods::flow::{Flow, Steps};
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::fly::{Aloft, Takeoff};
 use crate::motions::body::own::Own;
-use crate::motions::body::strike::{
-    LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLE_OVER, ROCKED, ROCKED_OUT, gained,
-};
+use crate::motions::body::strike::{LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLE_OVER, ROCKED_OUT, gained};
 use crate::motions::walk::Next;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
