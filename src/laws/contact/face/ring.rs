@@ -7,7 +7,7 @@
 //! ```
 //! Where the whole ring presses the means are complete elliptic integrals B and D, computed by Bulirsch's means (Numer.
 //! Math. 7, 78 (1965)), which lose nothing at either end. Where a part presses they are taken in the frame of X, whose
-//! angle is c, with d the angle of u from X: gg = <(1 - cos d) sin t> - <(1 - cos t) sin d>, as <sin t> = <sin d> = 0.
+//! angle is c, with d the angle of u from X: gg is the mean of (1 - cos d) sin t - (1 - cos t) sin d, as those of sin t and sin d vanish.
 //! All terms are then as small as the sum for a slow spin and for a short arc.
 //!
 //! Quadrature along the arc: a rule of Gauss with 24 nodes in tan(t/4), where u has no zero near; else with T =
