@@ -235,6 +235,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[SIN], self.at[TIME]) = (0.0, time);
         self.of.state = state(&self.at);
         self.claims(doubt);
+        // What alternated at this time is over.
+        self.still = 0;
         self.next = Some(Next::Ends(Ending::Face));
     }
 }
