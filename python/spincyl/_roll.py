@@ -1,6 +1,5 @@
 """`roll`: reads the arguments, computes the motion, and converts it to the units of the body."""
 
-import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeGuard, overload
 
@@ -14,8 +13,6 @@ from spincyl._input.hints import with_hints
 from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import errors_in_seconds, in_si, natural_time
 from spincyl._motion import Motion, rolled
-from spincyl._phases import has_friction
-from spincyl._slip import at_rest_on_face
 from spincyl._state import State
 from spincyl._swing import numbers_of_one
 from spincyl._told import given_up
@@ -236,8 +233,6 @@ def roll(
             losses_of_stone(losses, body)
     else:
         numbers, start = numbers_of_one(one, given, several=True), given
-        if numbers[1][0] in (0.0, math.pi) and has_friction(contact):
-            start = at_rest_on_face(one, given)
     scale, seconds, given_step = body.scale, t, step
     if scale is not None:
         if losses is not None:

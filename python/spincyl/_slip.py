@@ -1,6 +1,5 @@
 """Slip of the contact point over the table, and the corresponding velocity of the centre."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,7 +7,6 @@ import numpy as np
 from spincyl import _core
 from spincyl._circles import lowest_point_of
 from spincyl._input.numbers import Floats, Reals, Result, components, numbered
-from spincyl._input.reprs import is_lazy
 from spincyl._state import State, numbers
 
 if TYPE_CHECKING:
@@ -35,18 +33,6 @@ def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Re
     """The slip for a given horizontal velocity of the centre."""
     moves = _centre_moves(body, state, (0.0, 0.0))
     return along - moves[0], across - moves[1]
-
-
-def at_rest_on_face(body: "Laws", state: State) -> State:
-    """The state with the centre at rest where a body stands on its face and no slip is given."""
-    if state.slip is not None or state.height is not None or is_lazy(state.theta):
-        return state
-    theta, w2 = np.asarray(state.theta), np.asarray(state.w2)
-    stands = ((theta == 0) | (theta == np.pi)) & (w2 == 0)
-    if not stands.any():
-        return state
-    along, across = (np.where(stands, x, 0.0)[()] for x in slip_of(body, state, 0.0, 0.0))
-    return replace(state, slip=(along, across))
 
 
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:

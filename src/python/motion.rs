@@ -285,14 +285,16 @@ pub fn roll<'py>(
     times: PyReadonlyArray1<'py, f64>,
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (times, start, aloft) = (times.as_slice()?, (asked.slip, asked.t0), asked.aloft);
+    let (times, start) = (times.as_slice()?, (asked.slip.unwrap_or_default(), asked.t0));
     let ask = asked.ask()?;
     let loses = asked.couple.is_some() || !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_rows(body.into(), &asked.circles)?;
             let state = State::from(<[f64; 4]>::from(state));
-            let start = Start { state, slip: start.0, time: start.1, aloft };
+            let start = Start { state, slip: start.0, time: start.1, aloft: asked.aloft };
+            let rests = asked.slip.is_none() && ask.table.rubs();
+            let start = if rests { start.at_rest_on_face(&body) } else { start };
             if asked.is_custom() {
                 return under_own_laws(py, (&body, &asked), (&ask, loses), |laws, go_on| {
                     custom::roll_with(&body, start, times, &ask, laws, go_on)

@@ -54,7 +54,8 @@ options! {
     /// The options of a motion, or of many motions.
     pub struct MotionAsked {
         t0: f64 = 0.0,
-        slip: [f64; 2] = [0.0; 2],
+        /// Of a body on its face without one, the centre is at rest under friction.
+        slip: Option<[f64; 2]> = None,
         /// Rows of radius, height and fillet of a body that has several circles.
         circles: Vec<[f64; 3]> = Vec::new(),
         table: u8 = TableKind::Rolling as u8,

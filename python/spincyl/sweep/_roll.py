@@ -42,7 +42,6 @@ from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction, refuse_impacts_on_patch
 from spincyl._roll import is_stone
-from spincyl._slip import at_rest_on_face
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_bodies, kept_contact
@@ -304,8 +303,6 @@ def roll(
         numbers_without_slip(
             states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
         )
-    if has_friction(contact):
-        states = at_rest_on_face(bodies, states)
     of = TABLES[contact] if isinstance(contact, str) else code_of_friction(contact)
     summaries = _core.summaries(of, losses is not None, restitution is not None)
     wanted = _wanted_of_motions(
@@ -372,7 +369,7 @@ def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | Non
     fields |= zip(_STATE, states._numbers, strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
-    if states.slip is not None or isinstance(contact, Coulomb | Viscous):
+    if states.slip is not None:
         fields |= zip(_SLIP, states._slip, strict=True)
     if states.height is not None:
         fields |= {"height": states.height, "lift": states.lift}

@@ -336,11 +336,14 @@ def _todo(store: Store, blocks: list[Block], record: Record, wrong: list[str], l
     """The blocks that are not done; warns if some of them were done before, or if files were damaged."""
     _records.sweep_up(store, record)
     sweep = _records.digest(record)
-    todo = [block for block in blocks if not _is_done(store, block, record, sweep)]
-    damaged = [block for block in todo if _marker(store, block).exists()]
+    # A thread of a call that failed may still write its last block: a mark that appears later is no damage.
+    marked = [_marker(store, block).exists() for block in blocks]
+    done = [_is_done(store, block, record, sweep) for block in blocks]
+    todo = [block for block, is_done in zip(blocks, done, strict=True) if not is_done]
+    damaged = sum(was and not is_done for was, is_done in zip(marked, done, strict=True))
     said = wrong if damaged or len(todo) < len(blocks) else []
     if damaged:
-        said.append(f"{len(damaged)} of {len(blocks)} blocks are missing or damaged and are computed again")
+        said.append(f"{damaged} of {len(blocks)} blocks are missing or damaged and are computed again")
     if lost:
         said.append(f"{store.marks.name} is gone, and all {len(blocks)} blocks are computed again")
     if said:

@@ -3,6 +3,7 @@
 use super::Answer;
 use crate::error::Error;
 use crate::laws::body::{Body, MOST_CIRCLES, beyond};
+use crate::laws::contact::Table;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::many::columns::{LossColumns, Split, at, fit, rows};
@@ -18,7 +19,8 @@ pub struct MotionStarts<'a> {
     pub bodies: [&'a [f64]; 5],
     /// Columns of theta, w1, w2 and w3.
     pub states: [&'a [f64]; 4],
-    /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip.
+    /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip, and that the
+    /// centre of a body on its face is at rest under friction.
     pub slips: Option<[&'a [f64]; 2]>,
     /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
     pub coefficients: Option<[&'a [f64]; 3]>,
@@ -138,10 +140,14 @@ impl<'a> MotionStarts<'a> {
         State::from(self.states.map(|x| at(x, i)))
     }
 
-    pub(super) fn start(&self, i: usize) -> Start {
-        let slip = self.slips.map_or([0.0; 2], |all| all.map(|x| at(x, i)));
+    pub(super) fn start(&self, i: usize, body: &Body, table: &Table) -> Start {
         let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
-        Start { slip, aloft, ..self.state(i).into() }
+        let start = Start::from(self.state(i)).with_aloft(aloft);
+        match self.slips {
+            Some(slips) => start.with_slip(slips.map(|x| at(x, i))),
+            None if table.rubs() => start.at_rest_on_face(body),
+            None => start,
+        }
     }
 
     /// Whether something else than the rim touches the table at the start of motion `i`.

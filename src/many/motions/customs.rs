@@ -96,7 +96,10 @@ impl MotionBlock<'_> {
             let found = body.and_then(|body| {
                 let mut still = || go_on(k);
                 let how = (&ask, job.errors);
-                Ok((body, followed(&body, &starts.start(i), job.times, how, custom, &mut still)?))
+                Ok((
+                    body,
+                    followed(&body, &starts.start(i, &body, &ask.table), job.times, how, custom, &mut still)?,
+                ))
             });
             if let Err(e @ (Error::Couple { .. } | Error::Coefficient { .. })) = found {
                 return Err(e);

@@ -108,7 +108,7 @@ impl<'a> MotionBlock<'a> {
                 if !go_on() {
                     return Ok(());
                 }
-                let (seen, start) = starts.start(i).seen_on(&body);
+                let (seen, start) = starts.start(i, &body, &ask.table).seen_on(&body);
                 let walk = BodyWalk::<N>::of_body(&seen, &ask, self.job.tol, times, &start);
                 let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
                     found.complete_known_errors(self.job.tol);
@@ -124,7 +124,7 @@ impl<'a> MotionBlock<'a> {
             let in_lanes = wide && !starts.has_row(i) && can_roll_in_lanes(&ask.table);
             for &tol in tols {
                 let walk = body.and_then(|body| {
-                    let (seen, start) = starts.start(i).seen_on(&body);
+                    let (seen, start) = starts.start(i, &body, &ask.table).seen_on(&body);
                     BodyWalk::of_body(&seen, &ask, tol, times, &start)
                 });
                 all.walks.push(walk.map(|walk| walk.leaving_rolling_to_caller(in_lanes)));

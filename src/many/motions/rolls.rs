@@ -78,6 +78,7 @@ impl MotionBlock<'_> {
         let other = starts.aloft.is_some() || !starts.losses(row).is_none();
         if glides
             || other
+            || y.theta == 0.0
             || y.w1 == 0.0 && y.w3 == 0.0
             || fillet == 1.0
             || starts.has_row(row)

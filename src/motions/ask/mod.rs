@@ -201,6 +201,18 @@ impl<S> Start<S> {
 }
 
 impl Start {
+    /// Returns this start with the slip at which the centre is at rest, if the body stands on its face and does not tip.
+    #[must_use]
+    pub fn at_rest_on_face(self, body: &Body) -> Self {
+        let State { theta, w2, .. } = self.state;
+        if w2 != 0.0 || self.aloft.is_some() || ![0.0, PI].contains(&theta) {
+            return self;
+        }
+        let told = self.seen_on(body);
+        let slip = centre_velocity(&told.0, &told.1.state, [0.0; 2]).map(|v| 0.0 - v);
+        self.with_slip(if told.0.view().over { slip.map(|u| 0.0 - u) } else { slip })
+    }
+
     /// The body with the circle carrying that does so at the start, and the start as seen from the end of that circle. Both
     /// are told from the lower end of the body.
     pub(crate) fn seen_on(&self, body: &Body) -> (Body, Self) {
