@@ -11,6 +11,7 @@ pub mod exact;
 pub mod measured;
 pub mod motion;
 mod rk4;
+pub(crate) mod slope;
 pub(crate) mod stone;
 pub mod turning;
 pub(crate) mod walk;

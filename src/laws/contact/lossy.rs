@@ -118,7 +118,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         }
         let (shape, of) = (&reduced.shape, reduced.at(angle));
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
-        let [d1, d2, d3] = self.rates.at(s, c, w);
+        let [mut d1, mut d2, mut d3] = self.rates.at(s, c, w);
         let seen = self.losses.seen(&shape.rim, angle, precession, w);
         let tilts = self.losses.tilts();
         let mut per_inertia = one;
@@ -130,6 +130,11 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 );
         }
         let carried = slope * w2 * w2;
+        let pulled = self.pulled(angle);
+        if let Some([m1, m2, m3]) = pulled {
+            [d1, d3] = Self::add_couple(&of, [d1, d3], m1, m3);
+            d2 = m2.mac(per_inertia, d2);
+        }
         let couple = self.losses.total_couple(
             &seen,
             #[inline(always)]
@@ -167,15 +172,35 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
             Contact::Rolling => {
                 let [_, speed, _] = rolling::centre_velocity(shape, angle, w);
                 let across = shape.rim.height(angle) * tilting + lever * w2 * w2 - precession * speed;
+                let m3 = pulled.map_or(m3, |[.., pulled]| m3 + pulled);
                 (rolling::force_along(shape, angle, w, [r1, tilting, r3], m3), across)
             }
         };
+        let (along, across) = self.without_pull(along, across);
         let power = self.losses.power(&seen, pressing);
         Acted { w: [r1, tilting, r3], force: [normal, along, across], power, held: stays }
     }
 }
 
 impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
+    /// The couple of the pull of a tilted table about a contact point that rolls.
+    #[inline(always)]
+    fn pulled(&self, angle: (T, T)) -> Option<[T; 3]> {
+        let Reduced { contact, shape, .. } = self.rates.reduced();
+        if *contact == Contact::Smooth { None } else { self.losses.couple_of_pull(&shape.rim, angle) }
+    }
+
+    /// The friction, which accelerates the centre beside the pull.
+    #[inline(always)]
+    fn without_pull(&self, along: T, across: T) -> (T, T) {
+        match self.losses.pull {
+            Some(pull) if self.rates.reduced().contact == Contact::Rolling => {
+                (along - pull[1], across - pull[0])
+            }
+            _ => (along, across),
+        }
+    }
+
     /// The response of a body that only turns about the vertical, with N = 1, and the couple of rolling resistance that
     /// this needs, with its limit. A rolling contact point is at rest, so that the centre moves on a circle.
     #[inline(always)]
@@ -184,7 +209,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let (rim, i1, i3) = (&reduced.shape.rim, reduced.shape.i1, reduced.shape.i3);
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
         let seen = self.losses.seen(rim, angle, precession, w);
-        let [m1, m2, m3] = self
+        let mut couple = self
             .losses
             .total_couple(
                 &seen,
@@ -192,6 +217,10 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 |_| one,
             )
             .under(one);
+        if let Some(pulled) = self.pulled(angle) {
+            (0..3).for_each(|i| couple[i] = couple[i] + pulled[i]);
+        }
+        let [m1, m2, m3] = couple;
         let far = match reduced.contact {
             Contact::Smooth => zero,
             Contact::Rolling => rim.lever(angle),
@@ -207,6 +236,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let needs = rolling_couple_needed([c * more1 - s * more3, more2], contour);
         let held = [needs, self.losses.coefficient(Law::RollingResistance)];
         let power = self.losses.power(&seen, one);
+        let (along, across) = self.without_pull(along, across);
         Acted { w: [s * turn, zero, c * turn], force: [one, along, across], power, held }
     }
 }

@@ -307,11 +307,14 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
             held[1] = if holds.drilling { most(Law::Drilling) } else { held[1] };
         }
         let [v_h, v_2] = self.centre(angle, w, u);
-        let du = [
+        let mut du = [
             across + precession * v_2 - lever * square - height * dw[1],
             along - precession * v_h + depth * dw[0] - radius * dw[2]
                 + rim.rho * w2 * drilling_of((s, c), w1, w3),
         ];
+        if let Some(pull) = self.losses.as_ref().and_then(|losses| losses.pull) {
+            du = [du[0] + pull[0], du[1] + pull[1]];
+        }
         (SlipResponse { w: dw, u: du, free, room, force, held, kept }, size * (per * s * left))
     }
 

@@ -181,6 +181,8 @@ pub(crate) struct Couples<T, G = ()> {
     pub(super) present: [bool; COUNT],
     /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
     pub ways: Option<Ways<T>>,
+    /// The pull of a tilted table on the centre, along e_h and e2; None on a level table.
+    pub pull: Option<[T; 2]>,
     pub given: G,
 }
 
@@ -271,8 +273,8 @@ impl<G> Couples<f64, G> {
     /// These losses with another couple beside them.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {
-        let Self { coefficients, present, ways, .. } = self;
-        Couples { coefficients, present, ways, given }
+        let Self { coefficients, present, ways, pull, .. } = self;
+        Couples { coefficients, present, ways, pull, given }
     }
 }
 
@@ -311,17 +313,30 @@ impl<T: Real> Couples<T> {
     #[inline(always)]
     pub fn of(losses: &Losses, number: impl Fn(f64) -> T) -> Self {
         let coefficients = losses.coefficients.map(number);
-        Self { coefficients, present: losses.coefficients.map(|x| x != 0.0), ways: None, given: () }
+        Self {
+            coefficients,
+            present: losses.coefficients.map(|x| x != 0.0),
+            ways: None,
+            pull: None,
+            given: (),
+        }
     }
 
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
-        Self { coefficients, present, ways, given: () }
+        Self { coefficients, present, ways, pull: None, given: () }
     }
 }
 
 impl<T: Real, G: Copy> Couples<T, G> {
+    /// These losses on a table that pulls the centre along e_h and e2.
+    #[must_use]
+    #[inline(always)]
+    pub fn pulled(self, pull: [T; 2]) -> Self {
+        Self { pull: Some(pull), ..self }
+    }
+
     /// These losses in another type of number.
     #[inline(always)]
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U, G> {
@@ -337,7 +352,8 @@ impl<T: Real, G: Copy> Couples<T, G> {
         for (to, from) in coefficients.iter_mut().zip(self.coefficients) {
             *to = number(from);
         }
-        Couples { coefficients, present: self.present, ways, given: self.given }
+        let pull = self.pull.map(|[a, b]| [number(a), number(b)]);
+        Couples { coefficients, present: self.present, ways, pull, given: self.given }
     }
 }
 
@@ -364,8 +380,15 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         let given = self.given.couple().copied().unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
         let [a, b, c] = given.pressed;
         let pressed = [a + pressed[0], b + pressed[1], c + pressed[2]];
-        let &Self { coefficients, present, ways, .. } = self;
-        Couples { coefficients, present, ways, given: Some(Couple { pressed, ..given }) }
+        let &Self { coefficients, present, ways, pull, .. } = self;
+        Couples { coefficients, present, ways, pull, given: Some(Couple { pressed, ..given }) }
+    }
+
+    /// The couple of the pull about a contact point that does not slip; None on a level table.
+    #[inline(always)]
+    pub fn couple_of_pull(&self, rim: &Rim<T>, angle: (T, T)) -> Option<[T; 3]> {
+        let [along_h, along_2] = self.pull?;
+        Some([-(rim.depth(angle) * along_2), rim.height(angle) * along_h, rim.radius(angle) * along_2])
     }
 
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
@@ -390,7 +413,8 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
     /// Whether some law acts about the axis of the rocking.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
-        self.given.is_there()
+        self.pull.is_some()
+            || self.given.is_there()
             || self.has_any(
                 #[inline(always)]
                 |law| law.tilts(),

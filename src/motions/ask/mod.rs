@@ -68,6 +68,9 @@ pub struct Ask {
     pub restitution: Option<f64>,
     /// How the table presses on a face on which the body stands.
     pub face: Face,
+    /// The slope of the table, between -pi/2 and pi/2: x points downhill.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub slope: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
     /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
@@ -123,6 +126,12 @@ impl Ask {
         Self { face, ..self }
     }
 
+    /// Returns these options on a table with this slope.
+    #[must_use]
+    pub fn with_slope(self, slope: f64) -> Self {
+        Self { slope, ..self }
+    }
+
     /// Returns these options, with or without an end at rolling.
     #[must_use]
     pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
@@ -147,10 +156,10 @@ impl Ask {
         Self { force, ..self }
     }
 
-    /// Whether energy is conserved and no law of friction acts, so that three first integrals
+    /// Whether energy is conserved and no law of friction acts on a level table, so that three first integrals
     /// determine the motion.
     pub fn conserves(&self) -> bool {
-        !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
+        self.slope == 0.0 && !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
     }
 }
 
@@ -171,12 +180,18 @@ pub struct Start<S = State> {
     /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
     /// the air; this needs a restitution.
     pub aloft: Option<[f64; 2]>,
+    /// The direction phi to which the axis leans at first, from the x axis.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub heading: f64,
+    /// The first place of the contact point.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub place: [f64; 2],
 }
 
 impl<S> From<S> for Start<S> {
     /// The state at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
-        Self { state, slip: [0.0; 2], time: 0.0, aloft: None }
+        Self { state, slip: [0.0; 2], time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
     }
 }
 
@@ -197,6 +212,20 @@ impl<S> Start<S> {
     #[must_use]
     pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
         Self { aloft: aloft.into(), ..self }
+    }
+}
+
+impl<S> Start<S> {
+    /// Returns this start with the axis leaning to this direction phi, from the x axis.
+    #[must_use]
+    pub fn with_heading(self, heading: f64) -> Self {
+        Self { heading, ..self }
+    }
+
+    /// Returns this start with the contact point at this place.
+    #[must_use]
+    pub fn with_place(self, place: [f64; 2]) -> Self {
+        Self { place, ..self }
     }
 }
 

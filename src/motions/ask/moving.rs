@@ -31,6 +31,10 @@ pub trait Moving: Copy + Debug + PartialEq {
     fn turning(pose: &Self::Pose) -> f64;
     /// The largest difference between the numbers of two forces.
     fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
+    /// The state with all speeds multiplied by `pace`, as in other units of time.
+    fn at_pace(&self, pace: f64) -> Self;
+    /// A force multiplied by `weight`.
+    fn force_at(force: &Self::Force, weight: f64) -> Self::Force;
     /// The same state as seen from the other one of two equal rims; None for a stone.
     fn seen_from_other_rim(&self) -> Option<Self> {
         None
@@ -84,6 +88,12 @@ impl Moving for State {
     }
     fn pose_distance(a: &Pose, b: &Pose) -> f64 {
         pose_distance(a, b)
+    }
+    fn at_pace(&self, pace: f64) -> Self {
+        Self { theta: self.theta, w1: pace * self.w1, w2: pace * self.w2, w3: pace * self.w3 }
+    }
+    fn force_at(force: &Force, weight: f64) -> Force {
+        Force { normal: weight * force.normal, along: weight * force.along, across: weight * force.across }
     }
     fn seen_from_other_rim(&self) -> Option<Self> {
         Some(Self { theta: PI - self.theta, w1: self.w1, w2: -self.w2, w3: -self.w3 })

@@ -21,10 +21,10 @@ use crate::error::{Error, room};
 use crate::laws::body::Body;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::{Contact, Table};
-use crate::laws::loss::Couples;
+use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::Flow;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, leans_over, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, poses, pull};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
@@ -62,6 +62,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
     #[cfg(feature = "many")]
     pub(crate) rolls_among: bool,
+    /// The tangent of the slope: the horizontal pull on the centre per weight.
+    pub(super) tilt: f64,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
     /// The numbers after the last landings of a rocking at a border that is no right angle.
@@ -123,8 +125,8 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.made.path.view = body.view();
         if poses(N) && walk.made.path.view.over {
-            // From the lower end, from which a pose is told, phi starts at 0.
-            walk.at[PHI] = PI;
+            // The heading is that from the lower end, from which a pose is told.
+            walk.at[PHI] += PI;
         }
         if body.has_row() {
             walk.made.path.rims = room(times.len())?;
@@ -166,6 +168,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         all
     }
 
+    /// The losses, the couple of the user beside them, and the pull of a slope; None if there is none of these.
+    pub(super) fn couples(&self) -> Option<Couples<f64, G>> {
+        let lost = Couples::with_own(&self.ask.losses, self.of.own);
+        if self.of.tilt == 0.0 {
+            return lost;
+        }
+        let all = lost.unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
+        Some(all.pulled(pull(self.of.tilt, &self.at)))
+    }
+
     /// Moves the walk to the numbers at which a flow has halted.
     pub(super) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
@@ -181,6 +193,10 @@ pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
     let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
     let ((s, c), mut at) = (theta.sin_cos(), [0.0; N]);
     at[..TIME].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
+    if poses(N) {
+        at[PHI] = start.heading;
+        at[X..=Y].copy_from_slice(&start.place);
+    }
     at
 }
 
@@ -190,30 +206,28 @@ impl<G: Own> BodyPhases<G> {
         !ask.losses.is_none() || self.own.has_couple()
     }
 
-    /// The losses, and the couple of the user beside them; None if nothing is lost.
-    pub(super) fn couples(&self, ask: &Ask) -> Option<Couples<f64, G>> {
-        Couples::with_own(&ask.losses, self.own)
-    }
-
     /// The data of a walk under these laws, with steps of the tolerance `tol`.
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
-        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let mut slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        slide.tilt = ask.slope.tan();
         let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
+        let known_ends = !G::IS && !body.is_ball() && ask.slope == 0.0;
         Self {
             body: *body,
             own,
             slide,
             state,
             start: state,
-            integrates: ask.table == Table::Smooth || loses,
+            integrates: ask.table == Table::Smooth || loses || ask.slope != 0.0,
             rolls_briefly: false,
             by_steps: false,
             uniform: false,
             roundings: Roundings::default(),
             #[cfg(feature = "many")]
             rolls_among: false,
+            tilt: ask.slope.tan(),
             lossy: None,
             rocked: Vec::new(),
             lying: None,
@@ -223,10 +237,14 @@ impl<G: Own> BodyPhases<G> {
             struck: 0.0,
             energy: None,
             shown: 0.0,
-            planar: state.w1 == 0.0 && state.w3 == 0.0 && slip[1] == 0.0 && !own.has_couple(),
+            planar: state.w1 == 0.0
+                && state.w3 == 0.0
+                && slip[1] == 0.0
+                && !own.has_couple()
+                && (ask.slope == 0.0 || start.heading == 0.0),
             lately: [0.0; 2],
-            tail: (!G::IS && !body.is_ball() && ask.losses.turn_endlessly()).then(LastTurns::default),
-            nods: (!G::IS && !body.is_ball() && !ask.losses.stop_the_contour()).then(Box::default),
+            tail: (known_ends && ask.losses.turn_endlessly()).then(LastTurns::default),
+            nods: (known_ends && !ask.losses.stop_the_contour()).then(Box::default),
         }
     }
 
@@ -239,6 +257,7 @@ impl<G: Own> BodyPhases<G> {
                 self.nods = self.nods.take().map(|_| Box::default());
             }
             self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
+            self.slide.tilt = self.tilt;
             self.body = body;
         }
     }

@@ -41,6 +41,7 @@ use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
+use crate::motions::slope::Slope;
 use crate::motions::walk::two_runs::{Followed, judged};
 pub(crate) use body_walk::BodyWalk;
 use core::f64::consts::PI;
@@ -61,14 +62,29 @@ pub fn follow(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
     let (body, start) = start.seen_on(body);
-    let (body, start) = (&body, &start);
-    let fine = check_walk(body, start, ask)?;
+    let body = &body;
+    let fine = check_walk(body, &start, ask)?;
     check_times_after(start.time, times)?;
+    let Some(slope) = Slope::of(ask)? else {
+        return judged_walk((body, &start), times, (ask, fine), go_on).map(Into::into);
+    };
+    let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
+    let found = judged_walk((body, &scaled), &since, (&slope.ask(ask), fine), go_on)?;
+    Ok(slope.motion(found, &start, times).into())
+}
+
+/// A walk and its estimated error.
+fn judged_walk(
+    (body, start): (&Body, &Start),
+    times: &[f64],
+    (ask, fine): (&Ask, f64),
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed, Error> {
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     if !SHORT_CODE && spun::knows(body, ask) {
         let mut found = run(fine, times)?;
         found.complete_known_errors(fine);
-        return Ok(found.into());
+        return Ok(found);
     }
     let mut found = judged(fine, times, run)?;
     if body.is_ball() {
@@ -76,7 +92,7 @@ pub fn follow(
         let (error, sines) = (found.motion.error, found.motion.states.iter().map(|y| y.theta.sin()));
         found.motion.pose_error += AXIS_ERROR_SHARE * (error / (error + sines.fold(1.0, f64::min))).min(1.0);
     }
-    Ok(found.into())
+    Ok(found)
 }
 
 /// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
@@ -90,7 +106,7 @@ pub(super) fn walked(
 ) -> Result<Followed, Error> {
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
-    match (SHORT_CODE || ask.pose, !SHORT_CODE && !loses) {
+    match (SHORT_CODE || ask.pose || ask.slope != 0.0, !SHORT_CODE && !loses) {
         (true, true) => walk::<13>((body, start), ask, (tol, integrates), times)?.run(go_on),
         (true, false) => walk::<14>((body, start), ask, (tol, integrates), times)?.run(go_on),
         (false, true) => walk::<9>((body, start), ask, (tol, integrates), times)?.run(go_on),

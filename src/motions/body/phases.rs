@@ -39,7 +39,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return self.of.slide.law.force(y, self.at.slip());
         }
         let (body, contact) = (&self.of.body, self.contact());
-        match self.of.couples(&self.ask) {
+        match self.couples() {
             Some(losses) => Lossy { rates: contact.rates(body), losses }.moves(y).1,
             None => force(contact, body, y),
         }
@@ -47,8 +47,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// w' of a body that rolls, and the power of its losses.
     pub(super) fn rolling_of(&self, y: &State) -> ([f64; 3], f64) {
-        let losses =
-            self.of.couples(&self.ask).unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
+        let losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
         let Acted { w, power, .. } =
             Lossy { rates: Contact::Rolling.rates(&self.of.body), losses }.in_state(y);
         (w, power)
@@ -96,7 +95,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let w = [y.w1, y.w2, y.w3];
                 self.of.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
             }
-            _ if !self.of.loses(&self.ask) => Contact::Rolling.derivative(&self.of.body, y).w2,
+            _ if !self.of.loses(&self.ask) && self.of.tilt == 0.0 => {
+                Contact::Rolling.derivative(&self.of.body, y).w2
+            }
             _ => self.rolling_of(y).0[1],
         };
         y.w2 > 0.0 || (y.w2 == 0.0 && rate > 0.0)
@@ -170,11 +171,11 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
 
     fn rests(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let of = &walk.of;
-        standstill(&of.body, &of.state, &walk.friction(), of.couples(&walk.ask))
+        standstill(&of.body, &of.state, &walk.friction(), walk.couples())
     }
     fn lets_go(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let of = &walk.of;
-        let_go(&of.body, &of.state, &walk.friction(), of.couples(&walk.ask))
+        let_go(&of.body, &of.state, &walk.friction(), walk.couples())
     }
 
     fn no_unique_force(walk: &BodyWalk<'_, N, G>) -> Error {
@@ -288,7 +289,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
             Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law), tol, N),
-            None => BodySlips::of(&Slippery::One(walk.of.slide.of_the_library()), tol, N),
+            None => BodySlips::of(&Slippery::One(walk.of.slide.of_the_library(), walk.of.tilt), tol, N),
         }
     }
 

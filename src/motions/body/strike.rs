@@ -23,7 +23,7 @@ use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::walk::Next;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3, lost};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3, lost, pull};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::PI;
 
@@ -158,7 +158,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
         let left =
             if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
-        self.claims(left.map_or(0.0, |left| left * self.couples(&from, force)));
+        self.claims(left.map_or(0.0, |left| left * self.couple_bound(&from, force)));
         let (stays, bounce) = (left.is_some(), struck.lift);
         if stays && let Some(last) = self.impact(&from, 0.0) {
             struck = last;
@@ -207,7 +207,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
     /// does not depend on that force.
-    fn couples(&self, at: &Aloft, force: f64) -> f64 {
+    fn couple_bound(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
         if self.of.own.has_couple() {
             let own = self.of.own.couple_at(&at.state(), force);
@@ -247,7 +247,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
-            let [along, across] = [along - light.couples[0] * force, across].map(|rate| 2.0 * rate / fall);
+            let [pull_h, pull_2] = pull(self.of.tilt, &self.at);
+            let rates = [along - light.couples[0] * force + pull_h, across + pull_2];
+            let [along, across] = rates.map(|rate| 2.0 * rate / fall);
             let slip = [u_h + along, u_2 + across];
             // In units of the bounce, unless a law of the user has a speed of its own.
             let unit = if self.of.own.varies() { struck.lift } else { 1.0 };
@@ -417,7 +419,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.claims(doubt);
         self.doubts(doubt);
         let from = self.aloft();
-        self.claims(left * LASTS * self.couples(&from, 1.0));
+        self.claims(left * LASTS * self.couple_bound(&from, 1.0));
         let (law, flat) = (self.of.slide.law, self.of.body.border_angle());
         let state = State { theta: self.of.body.theta_end(), ..self.of.state };
         let (v, still) = (law.centre(from.angle, from.w, from.slip), law.centre(flat, from.w, [0.0; 2]));

@@ -89,7 +89,10 @@ impl Followed {
                 _ => pose,
             }
         });
-        let force = ask.force.then(|| doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y)));
+        let force = ask.force.then(|| {
+            let flow = flow.here(y);
+            doubted(&now, state_errors(&now, flow.tol), |y| flow.force(y))
+        });
         self.push(OutputRow { pose, force, ..OutputRow::on_table(now, [0.0; 2], [y[HEAT], lost(y)], kind) });
     }
 }

@@ -44,6 +44,7 @@ pub(crate) fn check_stone(
             within("slip", u, (0.0, 0.0), "no slip on this table")?;
         }
     }
+    within("slope", ask.slope, (0.0, 0.0), "0 for a stone")?;
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     check_patch(ask)?;
@@ -61,5 +62,5 @@ pub(crate) fn check_stone(
         return Err(Error::OutOfRange { name: "t", value, expected });
     }
     check_times_after(time, times)?;
-    Ok((Start { state, slip, time, aloft: None }, fine))
+    Ok((Start { state, slip, time, aloft: None, ..*start }, fine))
 }

@@ -24,6 +24,12 @@ impl Moving for StoneState {
     fn fastest(&self) -> f64 {
         self.w.iter().fold(0.0, |most: f64, x| most.max(x.abs()))
     }
+    fn at_pace(&self, pace: f64) -> Self {
+        Self { vertical: self.vertical, w: self.w.map(|w| pace * w) }
+    }
+    fn force_at(force: &Vector3<f64>, weight: f64) -> Vector3<f64> {
+        weight * force
+    }
     fn pose_distance(a: &StonePose, b: &StonePose) -> f64 {
         let (p, q) = (a.orientation.coords, b.orientation.coords);
         // A quaternion and its opposite are one orientation; the angle between two is twice their distance.

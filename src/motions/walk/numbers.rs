@@ -74,6 +74,16 @@ pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
 }
 
+/// The pull of a table whose slope has this tangent, along e_h and e2; 0 if the pose is not among the numbers.
+#[inline(always)]
+pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
+    if !poses(N) || tilt == 0.0 {
+        return [0.0; 2];
+    }
+    let (sin, cos) = y[PHI].sin_cos();
+    [tilt * cos, -(tilt * sin)]
+}
+
 /// The axis of a ball may have passed the vertical, where s is negative: then the ball leans to the other side, so that s,
 /// w1, w2 and the slip change their signs. Returns whether it does.
 pub(crate) fn leans_over<const N: usize>(y: &mut [f64; N]) -> bool {

@@ -120,8 +120,9 @@ impl<G: Own> AirFlight<G> {
         from: &Aloft,
         (losses, own): (Couples<f64>, G),
         (tol, longer): (f64, f64),
+        tilt: f64,
     ) -> Self {
-        let (free, shape) = (Flight::new(body, from), &body.shape());
+        let (free, shape) = (Flight::new(body, from, tilt), &body.shape());
         let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);

@@ -226,9 +226,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
                 let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
-                Box::new(AirFlight::new(body, &from, (losses, self.of.own), (self.of.slide.tol, longer)))
+                Box::new(AirFlight::new(
+                    body,
+                    &from,
+                    (losses, self.of.own),
+                    (self.of.slide.tol, longer),
+                    self.of.tilt,
+                ))
             }
-            None => Box::new(Flight::new(body, &from)),
+            None => Box::new(Flight::new(body, &from, self.of.tilt)),
         };
         let landings = course.free().landings;
         let leaves = core::array::from_fn(|k| {
@@ -324,7 +330,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (from, law) = (self.aloft(), &self.of.slide.law);
         let [v_h, v_2] = law.centre(from.angle, from.w, from.slip);
         let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
-        let has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
+        let mut has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
+        if self.of.tilt != 0.0 {
+            // The centre has fallen along x.
+            let [phi, _, x, _] = from.pose;
+            has -= self.of.tilt * (x - law.shape.rim.lever(from.angle) * phi.cos());
+        }
         let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
         let whole = has + self.at[HEAT] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));

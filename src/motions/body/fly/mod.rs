@@ -158,10 +158,12 @@ pub(crate) struct Flight {
     napier: [f64; 2],
     /// Whether the body only tumbles in a vertical plane, so that rounding must not make it turn.
     planar: bool,
+    /// The tangent of the slope, with which the centre falls along x.
+    tilt: f64,
 }
 
 impl Flight {
-    pub fn new(body: &Body, given: &Aloft) -> Self {
+    pub fn new(body: &Body, given: &Aloft, tilt: f64) -> Self {
         let shape = body.shape();
         let from = &given.leaving_pole(&shape);
         let (Shape { rim, i1, i3 }, (s, c), [w1, w2, w3]) = (shape, from.angle, from.w);
@@ -205,6 +207,7 @@ impl Flight {
             ratios: [0.0; 2],
             napier: [0.0; 2],
             planar: w1 == 0.0 && w3 == 0.0,
+            tilt,
         };
         let (less, sum) = (0.5 * (a - b), 0.5 * (a + b));
         // On a pole a = b, or a + b = pi.
@@ -302,6 +305,12 @@ impl Flight {
         let (sin0, cos0) = from.pose[0].sin_cos();
         let (begin, lever) = (rim.lever(from.angle), rim.lever(angle));
         let (moved_x, moved_y) = ((forth * cos0 - aside * sin0) * t, (forth * sin0 + aside * cos0) * t);
+        let (moved_x, v_h, v_2) = if self.tilt == 0.0 {
+            (moved_x, v_h, v_2)
+        } else {
+            let ((sin, cos), faster) = (phi.sin_cos(), self.tilt * t);
+            (moved_x + 0.5 * faster * t, v_h + faster * cos, v_2 - faster * sin)
+        };
         Aloft {
             angle,
             w: [w1, w2, w3],

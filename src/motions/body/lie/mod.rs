@@ -359,7 +359,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     fn rests_here(&self) -> Standstill {
         let state = State { w2: 0.0, ..self.of.state };
-        standstill(&self.of.body, &state, &self.friction(), self.of.couples(&self.ask))
+        standstill(&self.of.body, &state, &self.friction(), self.couples())
     }
 
     /// Whether the other rim rises while this rim, which is at rest, carries the body alone.

@@ -33,10 +33,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // Such steps add little to the error.
         let tol =
             if self.of.by_steps { EXACT_TOLERANCE_SHARE * self.of.slide.tol } else { self.of.slide.tol };
-        let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y);
+        let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y).on_slope(
+            self.of.tilt,
+            &self.at,
+            &y,
+        );
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
-        let rests = halt.is_none_or(|halt| halt == Halt::Slips) && flow.has_stopped(&self.of.state);
+        let level = self.of.tilt == 0.0;
+        let rests = halt.is_none_or(|halt| level && halt == Halt::Slips) && flow.has_stopped(&self.of.state);
         self.of.lossy = Some(LossyPhase { flow });
         match halt {
             _ if rests => {
@@ -107,6 +112,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.stops_exactly(Holds { drilling: true, ..Holds::default() });
         }
         let flow = &mut phase.flow;
+        flow.stands_at(&self.at);
         let next = match found {
             Halt::Time | Halt::Pause => return Ok(None),
             Halt::Pole => {

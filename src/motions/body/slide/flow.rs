@@ -13,7 +13,7 @@ use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS};
 use crate::motions::dry::held::margins_of_ways;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
+    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses, pull,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -197,6 +197,10 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
         }
         if poses(N) {
             let pace = all[TIME];
+            if self.tilt != 0.0 {
+                let [pull_h, pull_2] = pull(self.tilt, y);
+                (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
+            }
             let over = contact_velocity(&self.law.shape.rim, (s, c), w2, spin, [u_h, u_2]);
             let pose = pose_rates(y[PHI], [precession, spin], over);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));

@@ -63,6 +63,8 @@ pub(crate) struct Slide<L = ()> {
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
     sure: f64,
     pub tol: f64,
+    /// The tangent of the slope.
+    pub tilt: f64,
 }
 
 impl<L: Own> Slide<L> {
@@ -95,6 +97,7 @@ impl<L: Own> Slide<L> {
             has_laws: !losses.is_none(),
             sure: 0.0,
             tol,
+            tilt: 0.0,
         }
     }
 

@@ -4,13 +4,17 @@ use super::{Own, Slide, contact_velocity};
 use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::friction::LEAST_GROWTH;
 use crate::motions::walk::MOMENT;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, loses, pose_rates, poses};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, loses, pose_rates, poses, pull,
+};
 impl<L: Own> Slide<L> {
     /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
     pub(crate) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
         let at = self.law.towards((s, c), w, [0.0; 2], way);
         self.law.writes(y, &mut all, (&at, 1.0));
+        let [pull_h, pull_2] = pull(self.tilt, y);
+        (all[UH], all[U2]) = (all[UH] + pull_h, all[U2] + pull_2);
         let turning = [w[0] / s, w[2] - c * w[0] / s];
         if poses(N) {
             let over = contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], y.slip());
@@ -33,7 +37,7 @@ impl<L: Own> Slide<L> {
         } else {
             self.law.answers(angle, w, u)
         };
-        let ([s, c], mut y) = ([start[SIN], start[COS]], *start);
+        let ([s, c], mut y, pull) = ([start[SIN], start[COS]], *start, pull(self.tilt, start));
         let mut rates = [0.0; N];
         rates[..8].copy_from_slice(&[
             -(c * w[1]),
@@ -41,8 +45,8 @@ impl<L: Own> Slide<L> {
             at.w[0],
             at.w[1],
             at.w[2],
-            at.u[0],
-            at.u[1],
+            at.u[0] + pull[0],
+            at.u[1] + pull[1],
             1.0,
         ]);
         if rests {

@@ -6,13 +6,14 @@ use crate::laws::contact::slip::Slipping;
 use crate::laws::loss::Ways;
 use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use crate::motions::walk::numbers::{HEAT, PHI, PSI, TIME, X, Y, loses, poses};
-use crate::motions::walk::slow::{SlowRates, SlowSlips, turned};
+use crate::motions::walk::slow::{SlowRates, SlowSlip, SlowSlips, turned};
 use crate::motions::walk::{SlowLaw, SlowSeries};
+use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, Series};
 
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
-    slips: SlowSlips<5>,
+    slips: Slips,
     /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
     /// law was recorded.
     one: Option<Rim<f64>>,
@@ -21,9 +22,25 @@ pub(crate) struct BodySlips {
     lost: Option<usize>,
 }
 
+/// The slips on a level table, or on a slope, where sine and cosine of phi are numbers as well.
+enum Slips {
+    Level(SlowSlips<5>),
+    Tilted(SlowSlips<7>),
+}
+
+impl Slips {
+    fn more(&self, i: usize) -> Series {
+        match self {
+            Self::Level(slips) => slips.more(i),
+            Self::Tilted(slips) => slips.more(i),
+        }
+    }
+}
+
 /// The law of a slip on one rim, or on two rims of which the other already slips.
 pub(crate) enum Slippery {
-    One(Slipping<f64>),
+    /// With the tangent of the slope.
+    One(Slipping<f64>, f64),
     Two(Lying<f64>),
 }
 
@@ -31,7 +48,7 @@ impl BodySlips {
     /// The series for a motion with `count` numbers.
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
-            Slippery::One(law) => Self::on_one(law, tol, count),
+            Slippery::One(law, tilt) => Self::on_one(law, *tilt, tol, count),
             Slippery::Two(law) => Self::on_two(law, tol, count),
         }
     }
@@ -66,44 +83,61 @@ impl BodySlips {
             let still = tape.number(0.0);
             SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
         });
-        Self { slips, one: None, ways: None, lost }
+        Self { slips: Slips::Level(slips), one: None, ways: None, lost }
     }
 
-    fn on_one(law: &Slipping<f64>, tol: f64, count: usize) -> Self {
+    fn on_one(law: &Slipping<f64>, tilt: f64, tol: f64, count: usize) -> Self {
         let mut lost = None;
-        let slips = SlowSlips::of(tol, |tape, [s, c, w1, w2, w3], slip, way| {
-            let number = |x: f64| tape.number(x);
-            let taped = Slipping::of(&law.shape.map(number), number(law.strength), true)
-                .with_losses(law.losses.map(|losses| losses.map(number)));
-            let (w, rim) = ([w1, w2, w3], &taped.shape.rim);
-            let at = taped.towards((s, c), w, slip, way);
-            let [normal, along, across] = at.force;
-            let mut more = vec![-(along * slip[1] + across * slip[0])];
-            let precession = w1 / s;
-            if poses(count) {
-                let spin = w3 - c * precession;
-                let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
-                more.extend([precession, spin, out, on]);
-            }
-            if let Some(losses) = taped.losses.as_ref().filter(|_| loses(count)) {
-                lost = Some(more.len());
-                more.push(losses.power(&losses.seen(rim, (s, c), precession, w), normal));
-            }
-            let [d1, d2, d3] = at.w;
-            SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
-        });
+        let slips = if tilt == 0.0 {
+            Slips::Level(SlowSlips::of(tol, |tape, numbers, slip, way| {
+                Self::rates_on_one(law, tape, numbers, [slip, way], (count, &mut lost))
+            }))
+        } else {
+            Slips::Tilted(SlowSlips::of(tol, |tape, [s, c, w1, w2, w3, sin, cos], slip, way| {
+                let SlowRates { numbers: [ds, dc, d1, d2, d3], slip: [du_h, du_2], more } =
+                    Self::rates_on_one(law, tape, [s, c, w1, w2, w3], [slip, way], (count, &mut lost));
+                let (tilt, turn) = (tape.number(tilt), w1 / s);
+                let numbers = [ds, dc, d1, d2, d3, cos * turn, -(sin * turn)];
+                SlowRates { numbers, slip: [du_h + tilt * cos, du_2 - tilt * sin], more }
+            }))
+        };
         Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
-}
 
-impl<const N: usize> SlowLaw<N> for BodySlips {
-    #[inline(never)]
-    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
-        let start = core::array::from_fn(|i| y[i]);
-        let slow = self.slips.follow(start, (angle, growth), speed)?;
+    /// The rates on one rim of a level table, with the index of that of the lost energy.
+    fn rates_on_one<'a>(
+        law: &Slipping<f64>,
+        tape: &'a Tape,
+        [s, c, w1, w2, w3]: [Taped<'a>; 5],
+        [slip, way]: [[Taped<'a>; 2]; 2],
+        (count, lost): (usize, &mut Option<usize>),
+    ) -> SlowRates<Taped<'a>, 5> {
+        let number = |x: f64| tape.number(x);
+        let taped = Slipping::of(&law.shape.map(number), number(law.strength), true)
+            .with_losses(law.losses.map(|losses| losses.map(number)));
+        let (w, rim) = ([w1, w2, w3], &taped.shape.rim);
+        let at = taped.towards((s, c), w, slip, way);
+        let [normal, along, across] = at.force;
+        let mut more = vec![-(along * slip[1] + across * slip[0])];
+        let precession = w1 / s;
+        if poses(count) {
+            let spin = w3 - c * precession;
+            let (out, on) = (slip[0] + rim.rho * w2, slip[1] + rim.radius((s, c)) * spin);
+            more.extend([precession, spin, out, on]);
+        }
+        if let Some(losses) = taped.losses.as_ref().filter(|_| loses(count)) {
+            *lost = Some(more.len());
+            more.push(losses.power(&losses.seen(rim, (s, c), precession, w), normal));
+        }
+        let [d1, d2, d3] = at.w;
+        SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
+    }
+
+    /// The series of all numbers of a motion from that of a slow slip.
+    fn series<const N: usize, const K: usize>(&self, y: &[f64; N], slow: &SlowSlip<K>) -> Box<SlowSeries<N>> {
         let rate = |i: usize| self.slips.more(i);
         let mut numbers: [Series; N] = core::array::from_fn(|i| Series::of(y[i]));
-        numbers[..5].copy_from_slice(&slow.known);
+        numbers[..5].copy_from_slice(&slow.known[..5]);
         numbers[5..7].copy_from_slice(&slow.slip);
         (numbers[TIME].at[1], numbers[HEAT]) = (1.0, rate(0).integral(y[HEAT]));
         if poses(N) {
@@ -118,7 +152,7 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             numbers[N - 1] = rate(lost).integral(y[N - 1]);
         }
         let (until, ends) = slow.until(&numbers[..9]);
-        Some(Box::new(SlowSeries {
+        Box::new(SlowSeries {
             numbers,
             from: y[TIME],
             until,
@@ -126,7 +160,25 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             pays: slow.pays(until, ends),
             settling: slow.settling,
             angle: slow.angle,
-        }))
+        })
+    }
+}
+
+impl<const N: usize> SlowLaw<N> for BodySlips {
+    #[inline(never)]
+    fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
+        match &mut self.slips {
+            Slips::Level(slips) => {
+                let slow = slips.follow(core::array::from_fn(|i| y[i]), (angle, growth), speed)?;
+                Some(self.series(y, &slow))
+            }
+            Slips::Tilted(slips) => {
+                let (sin, cos) = y[PHI].sin_cos();
+                let start = [y[0], y[1], y[2], y[3], y[4], sin, cos];
+                let slow = slips.follow(start, (angle, growth), speed)?;
+                Some(self.series(y, &slow))
+            }
+        }
     }
 }
 

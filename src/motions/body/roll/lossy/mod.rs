@@ -28,7 +28,7 @@ use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
-use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3};
+use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3, poses, pull};
 use crate::numbers::{Dual, Real};
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
@@ -72,6 +72,8 @@ pub(crate) struct LossyFlow<G = ()> {
     watch: bool,
     /// The patch of contact; None for a point.
     patch: Option<RestingPatch>,
+    /// The tangent of the slope.
+    tilt: f64,
 }
 
 impl<G: Own> LossyFlow<G> {
@@ -102,9 +104,48 @@ impl<G: Own> LossyFlow<G> {
             tol,
             watch: true,
             patch: None,
+            tilt: 0.0,
         };
         lossy.sets_holds(y);
         lossy
+    }
+
+    /// The same flow on a slope, from these numbers.
+    pub fn on_slope<const N: usize>(mut self, tilt: f64, at: &[f64; N], y: &State) -> Self {
+        if tilt != 0.0 {
+            self.tilt = tilt;
+            self.stands_at(at);
+            self.sets_holds(y);
+        }
+        self
+    }
+
+    /// Sets the pull of the slope to that at these numbers, for what depends on a state alone.
+    pub fn stands_at<const N: usize>(&mut self, at: &[f64; N]) {
+        if self.tilt != 0.0 {
+            let pull = pull(self.tilt, at);
+            self.law.losses = self.law.losses.pulled(pull);
+            self.turn(self.ways());
+        }
+    }
+
+    /// The law with the pull of the slope at these numbers; None on a level table.
+    #[inline(always)]
+    fn tilted<const N: usize>(&self, y: &[f64; N]) -> Option<Lossy<f64, G>> {
+        let tilted = poses(N) && self.tilt != 0.0;
+        tilted.then(|| Lossy { losses: self.law.losses.pulled(pull(self.tilt, y)), ..self.law })
+    }
+
+    /// The same flow with the pull of the slope at these numbers.
+    pub fn here<const N: usize>(&self, y: &[f64; N]) -> Self {
+        let mut here = *self;
+        here.stands_at(y);
+        here
+    }
+
+    /// Whether a pull turns a body that only rocks out of its plane.
+    fn is_pulled_aside(&self) -> bool {
+        self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
     }
 
     pub fn holds_drilling(&self) -> bool {
@@ -139,7 +180,7 @@ impl<G: Own> LossyFlow<G> {
         let still = rounded(angle.0, w);
         let along = spin.abs() <= still && self.has(Law::DryContour);
         let about = drilling.abs() <= still && self.can_hold_drilling();
-        if y.w1 == 0.0 && y.w3 == 0.0 || along && about {
+        if (y.w1 == 0.0 && y.w3 == 0.0 || along && about) && !self.is_pulled_aside() {
             self.rocks_only(angle, y.w2);
         } else {
             if along {
@@ -171,8 +212,20 @@ impl<G: Own> LossyFlow<G> {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
+        self.response_under(&self.law, angle, precession, w, held)
+    }
+
+    #[inline(always)]
+    fn response_under(
+        &self,
+        law: &Lossy<f64, G>,
+        angle: (f64, f64),
+        precession: f64,
+        w: [f64; 3],
+        held: Held<f64>,
+    ) -> Acted<f64> {
         let drills = matches!(held, Held::Drilling);
-        let acted = self.law.at(angle, precession, w, held);
+        let acted = law.at(angle, precession, w, held);
         self.patch.filter(|_| drills).map_or(acted, |patch| self.held_by(&patch, acted))
     }
 
@@ -272,7 +325,9 @@ impl<G: Own> LossyFlow<G> {
         if self.only_rocks() {
             return self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0);
         }
-        self.ways().holds.rolling && !turns
+        // On a slope a couple may turn a body that only stands on its rim.
+        let begins = || self.responds((s, c), [0.0; 3]).w.into_iter().any(|rate| rate.abs() > REST);
+        self.ways().holds.rolling && !turns && !(self.tilt != 0.0 && begins())
     }
 
     /// w, with a small speed in the direction in which rolling and rocking begin from rest.
@@ -408,7 +463,7 @@ impl<G: Own> LossyFlow<G> {
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);
-        let acted = self.responds((s, c), [w1, w2, w3]);
+        let acted = self.here(shown).responds((s, c), [w1, w2, w3]);
         if !self.moves || falls > 0.0 && turning_share(i1, s, w1, w2) < 0.25 {
             if w2 * w2 > s || falls == 0.0 {
                 return (falls, falls * falls.max(s));

@@ -16,7 +16,7 @@ use crate::motions::dry::creep::hardly_drills;
 use crate::motions::dry::held::{left_to_rest, margins_of_ways};
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses,
+    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses, pull,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -39,17 +39,30 @@ pub(crate) fn at_rest<const N: usize>(
 
 impl<G: Own> LossyFlow<G> {
     /// phi', w, the response of the body, and psi' of a settled contact.
-    fn settled(&self, angle: (f64, f64), drilling: f64, w2: f64) -> (f64, [f64; 3], Acted<f64>, f64) {
+    fn settled(
+        &self,
+        angle: (f64, f64),
+        drilling: f64,
+        w2: f64,
+        pull: Option<[f64; 2]>,
+    ) -> (f64, [f64; 3], Acted<f64>, f64) {
+        let bare = self.bare;
+        let bare = pull.map_or(bare, |pull| Lossy { losses: bare.losses.pulled(pull), ..bare });
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
         let way = if self.settled { self.settled_way } else { self.ways().contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
-            let acted = self.bare.at(angle, precession, w, held);
+            let acted = bare.at(angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
             balance(&self.law.losses.beside(()), (angle, radius), (drilling, w2), way, act);
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
+    }
+
+    /// The pull of the slope at these numbers.
+    fn pull_at<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        (self.tilt != 0.0).then(|| pull(self.tilt, y))
     }
 
     /// The error of s psi' due to steps where the contact point stops so fast that stability limits the steps.
@@ -62,7 +75,9 @@ impl<G: Own> LossyFlow<G> {
         let y = &place.y;
         let angle = y.angle();
         let (_, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-        let acted = self.responds(angle, w);
+        let tilted = self.tilted(y);
+        let law = tilted.as_ref().unwrap_or(&self.law);
+        let acted = self.response_under(law, angle, w[0] / angle.0, w, self.held(0.0));
         rolling_growth(angle, w, acted.w)
     }
 
@@ -89,7 +104,7 @@ impl<G: Own> LossyFlow<G> {
         pole::passage(angle.0, angle.1, [w[0], w[1]])?;
         let (mut seen, mut rates) = (*y, place.rate.map(|rate| rate / place.rate[TIME]));
         (seen[W1], seen[W3]) = (w[0], w[2]);
-        rates[W1..=W3].copy_from_slice(&self.response(angle, precession, w, self.held(0.0)).w);
+        rates[W1..=W3].copy_from_slice(&self.here(y).response(angle, precession, w, self.held(0.0)).w);
         let mut there = pole::passed(&seen, &rates)?;
         there[P] *= there[SIN];
         Some(there)
@@ -151,12 +166,14 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
+        let tilted = self.tilted(y);
+        let law = tilted.as_ref().unwrap_or(&self.law);
         let (precession, w, acted) = if self.settled {
-            let (precession, w, acted, _) = self.settled((s, c), y[P], w2);
+            let (precession, w, acted, _) = self.settled((s, c), y[P], w2, law.losses.pull);
             (precession, w, acted)
         } else {
             let (precession, w) = self.turning([s, c, y[P], w2, y[W3]]);
-            (precession, w, self.response((s, c), precession, w, self.held(0.0)))
+            (precession, w, self.response_under(law, (s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
         let (turn, free) = if self.moves {
@@ -210,11 +227,21 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
+        if poses(N) && self.tilt != 0.0 {
+            let [pull_h, pull_2] = pull(self.tilt, &place.y);
+            let turn = place.rate[PHI];
+            let pull = [(pull_h, pull_2 * turn), (pull_2, -(pull_h * turn))];
+            let pull = pull.map(|(value, slope)| Dual { value, slope });
+            let tilted = Lossy { losses: self.sloped.losses.pulled(pull), ..self.sloped };
+            return self.margins_of(&tilted, y, self.grips(&place.y));
+        }
         self.margins_of(&self.sloped, y, self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.margins_of(&self.law, core::array::from_fn(|k| y[k]), self.grips(y))[i]
+        let tilted = self.tilted(y);
+        let law = tilted.as_ref().unwrap_or(&self.law);
+        self.margins_of(law, core::array::from_fn(|k| y[k]), self.grips(y))[i]
     }
 
     fn end(&self, i: usize) -> Halt {
@@ -269,7 +296,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
             // Without losses of the library a couple that takes energy is no fault.
             let supplies = place.rate[N - 1] < 0.0 || self.law.losses.present() != [false; COUNT];
             let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-            let normal = || self.response(y.angle(), precession, w, self.held(0.0)).force[0];
+            let normal = || self.here(y).response(y.angle(), precession, w, self.held(0.0)).force[0];
             let at = supplies.then(|| ([y[SIN], y[COS], w[0], w[1], w[2]], normal()));
             if self.law.losses.given.finds_fault(&[], at) {
                 return Some((Halt::Endless, *y));
@@ -298,7 +325,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let rate = self.law.stiffness(angle, slope);
         let within =
             settles_within(&self.law.losses.beside(()), (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
-        let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2).3;
+        let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2, self.pull_at(y)).3;
         let close = s * settled.abs() <= SLOWER * fall
             && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();
         close.then_some((Halt::Settles, *y))
@@ -344,7 +371,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let (_, [w1, _, w3]) = self.turning([s, c, q, y[W2], y[W3]]);
         (shown[W1], shown[W3]) = (w1, w3);
         if self.settled {
-            let (.., spin) = self.settled((s, c), q, y[W2]);
+            let (.., spin) = self.settled((s, c), q, y[W2], self.pull_at(y));
             (shown[W1], shown[W3]) = (s * (q - c * spin), c * q + s * s * spin);
         }
         shown

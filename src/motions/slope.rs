@@ -1,0 +1,125 @@
+//! Motions on a slope, in the units in which the part of gravity across the table is 1.
+//!
+//! ```text
+//! gravity (sin, 0, -cos) of the slope beta along x, y, z      x points downhill, z is the normal of the table
+//! time sqrt(cos beta) t,   velocities over sqrt(cos beta),   forces and energies over cos beta
+//! in these units: a level table with g = 1, and the pull tan(beta) on the centre along x
+//! ```
+//! The walks know the pull alone, which is G = tan(beta) (cos phi, -sin phi) along e_h and e2: it adds to the acceleration
+//! of the slip, and acts on a contact that rolls like the couple r x G about it. Here motions are converted at the
+//! way in and at the way out.
+
+use super::walk::two_runs::Followed;
+use super::{Ask, Moving, Start};
+use crate::error::{Error, room, within};
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::Friction;
+use crate::laws::loss::{Law, Losses};
+use crate::laws::scale::Scale;
+use core::f64::consts::FRAC_PI_2;
+
+/// A slope: the conversion from the units in which its motions are computed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slope {
+    /// Natural units are those in which the part of gravity across the table is 1.
+    scale: Scale,
+}
+
+/// Returns an error for a slope out of range, or on which a law of `ask` is not computed.
+pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
+    let slope = ask.slope;
+    let most = FRAC_PI_2.next_down();
+    within("slope", slope, (-most, most), "between -pi/2 and pi/2, the ends excluded")?;
+    let refuses = |what: &'static str| Err(Error::OutOfRange { name: "slope", value: slope, expected: what });
+    let dry = [Law::DryContour, Law::Drilling].iter().any(|law| ask.losses.coefficient(*law) != 0.0);
+    match () {
+        () if slope == 0.0 => Ok(()),
+        () if ask.table.friction().patch() > 0.0 => refuses("0 with a patch of contact"),
+        () if dry => refuses("0 with dry friction along the contour, or with drilling friction"),
+        () => Ok(()),
+    }
+}
+
+impl Slope {
+    /// The slope of a motion; None on a level table.
+    pub fn of(ask: &Ask) -> Result<Option<Self>, Error> {
+        check_slope(ask)?;
+        if ask.slope == 0.0 {
+            return Ok(None);
+        }
+        Scale::new(1.0, 1.0, ask.slope.cos()).map(|scale| Some(Self { scale }))
+    }
+
+    /// The laws in the units of the slope.
+    pub fn ask(&self, ask: &Ask) -> Ask {
+        let mut losses = Losses::NONE;
+        for (law, coefficient) in ask.losses.iter() {
+            losses = losses.with(law, self.scale.coefficient(law, coefficient));
+        }
+        let table = match ask.table {
+            Table::Rubs(Friction::Viscous { c }) => {
+                Table::Rubs(Friction::Viscous { c: self.scale.metres_per_second(c) })
+            }
+            table => table,
+        };
+        Ask { table, losses, ..*ask }
+    }
+
+    /// The times since `t0` in the units of the slope.
+    pub fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
+        let mut since = room(times.len())?;
+        since.extend(times.iter().map(|t| self.scale.time(t - t0)));
+        Ok(since)
+    }
+
+    /// The initial conditions in the units of the slope, at time 0.
+    pub fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
+        let speed = |u: f64| self.scale.speed(u);
+        Start {
+            state: start.state.at_pace(speed(1.0)),
+            slip: start.slip.map(speed),
+            time: 0.0,
+            aloft: start.aloft.map(|[height, lift]| [height, speed(lift)]),
+            ..*start
+        }
+    }
+
+    /// The motion from `start` at these times, from one in the units of the slope.
+    pub fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
+        let Self { scale } = self;
+        let Followed { mut motion, mut path } = found;
+        let (pace, weight) = (scale.metres_per_second(1.0), scale.newtons(1.0));
+        let later = |t: f64| start.time + scale.seconds(t);
+        let faster = |u: [f64; 2]| u.map(|u| u * pace);
+        motion.times = times[..motion.states.len()].to_vec();
+        motion.states.iter_mut().for_each(|state| *state = state.at_pace(pace));
+        motion.forces.iter_mut().flatten().for_each(|force| *force = S::force_at(force, weight));
+        motion.event.iter_mut().for_each(|event| {
+            (event.time, event.state) = (later(event.time), event.state.at_pace(pace));
+        });
+        motion.error *= (1.0 / pace).max(1.0);
+        path.slip.iter_mut().for_each(|u| *u = faster(*u));
+        path.dissipated.iter_mut().chain(&mut path.work_lost).for_each(|heat| *heat *= weight);
+        for phase in &mut path.phases {
+            phase.time = later(phase.time);
+            phase.state = phase.state.at_pace(pace);
+            (phase.slip, phase.aloft[1]) = (faster(phase.slip), phase.aloft[1] * pace);
+        }
+        (path.heat, path.lost) = (path.heat * weight, path.lost * weight);
+        path.slipping = scale.seconds(path.slipping);
+        path.aloft.iter_mut().for_each(|aloft| aloft[1] *= pace);
+        for hit in &mut path.impacts {
+            hit.time = later(hit.time);
+            hit.states = hit.states.map(|state| state.at_pace(pace));
+            hit.velocities = hit.velocities.map(|v| v.map(|v| v * pace));
+            (hit.impulse, hit.lost) = (hit.impulse.map(|p| p * pace), hit.lost * weight);
+        }
+        for [u_h, u_2, rest @ ..] in &mut path.other_rim {
+            (*u_h, *u_2) = (*u_h * pace, *u_2 * pace);
+            rest.iter_mut().for_each(|force| *force *= weight);
+        }
+        path.last_slip = faster(path.last_slip);
+        path.known_until = later(path.known_until);
+        Followed { motion, path }
+    }
+}
