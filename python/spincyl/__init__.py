@@ -35,6 +35,7 @@ from spincyl._scale import Scale
 from spincyl._stand import spun, tripped
 from spincyl._state import State
 from spincyl._swing import Swing, swing
+from spincyl._table import Table
 from spincyl._throw import dropped, flicked, launch_number, pressed, thrown
 from spincyl._turning import turning_spin
 from spincyl._upward import HOMES
@@ -78,6 +79,7 @@ __all__ = [
     "State",
     "StepWarning",
     "Swing",
+    "Table",
     "View",
     "Viscous",
     "assembled",

@@ -7,12 +7,24 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from spincyl._contact import FACES, AnyContact, Coulomb, code_of, table_for_core
-from spincyl._input.numbers import Floats, Reals, flag, floats, is_scalar, number, one_of, reals, whole
+from spincyl._input.numbers import (
+    Floats,
+    Reals,
+    flag,
+    floats,
+    instance_of,
+    is_scalar,
+    number,
+    one_of,
+    reals,
+    whole,
+)
 from spincyl._phases import check_contact, has_friction
 from spincyl._state import State
 
 if TYPE_CHECKING:
     from spincyl._loss import Loss
+    from spincyl._table import Table
 
 Method: TypeAlias = Literal["exact", "rk4"]
 #: Optional outputs of `roll`.
@@ -40,6 +52,7 @@ class Asked(NamedTuple):
     max_nfev: int | None = None
     spread: bool = False  # whether many motions return their states at all times
     errors: bool = True  # whether the errors of many motions that are integrated are estimated
+    table: "Table | None" = None
 
 
 def options_for_core(
@@ -72,6 +85,9 @@ def options_for_core(
         options["aloft"] = aloft
     if circles:
         options["circles"] = circles
+    if asked.table is not None:
+        slope, heading, *place = map(float, (asked.table.slope, asked.table.phi0, *asked.table.place))
+        options |= {"slope": slope, "heading": heading, "place": place}
     if asked.losses is not None:
         laws, own = asked.losses._built_in, asked.losses._function
         if laws is not None:
@@ -141,6 +157,7 @@ def ask(
     restitution: float | None,
     losses: "Loss | None",
     max_nfev: int | None,
+    table: "Table | None" = None,
 ) -> Asked:
     """Check the arguments of `roll`, in natural units; an error names the argument."""
     times = times_of(t)
@@ -192,4 +209,27 @@ def ask(
     want = NO_OUTPUTS if type(want) is tuple and not want else outputs_wanted(want)
     # by position, since names would take as long as all checks; a test compares the order
     asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+    if table is not None:
+        asked = on_table(asked, table)
     return asked if max_nfev is None else asked._replace(max_nfev=checked_max_nfev(max_nfev))
+
+
+def on_table(asked: Asked, table: "Table") -> Asked:
+    """The same question on a table. The motion on a slope depends on phi, which it has in any case."""
+    from spincyl._table import Table
+
+    table = instance_of("table", table, Table)
+    for name, x in (("slope", table.slope), ("phi0", table.phi0), ("place", table.place[0])):
+        number(name, x)
+    if table.slope == 0:
+        return asked._replace(table=table)
+    for name, value in (("step", asked.step), ("method", asked.method), ("beyond", asked.beyond or None)):
+        if value is not None:
+            raise ValueError(
+                f"{name} = {value!r} cannot be combined with a slope: its motions take steps within tol="
+            )
+    if asked.contact == "rolling" and asked.mu != math.inf:
+        raise ValueError(
+            f"mu = {asked.mu!r} cannot be combined with a slope: give contact=sc.Coulomb({asked.mu!r})"
+        )
+    return asked._replace(table=table, want=asked.want | {"pose"})

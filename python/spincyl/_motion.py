@@ -168,8 +168,16 @@ class Motion(Outputs):
         free = self.contact == "smooth" and self._phases is not None
         contact = Coulomb(0.0) if free else self.contact
         if getattr(self.body, "rims", None) is None:
-            return self._told("energy", self.body.energy(self.states, contact))
-        return self._told("energy", self.body._energy(self._seen, contact, self.rim))
+            found = self.body.energy(self.states, contact)
+        else:
+            found = self.body._energy(self._seen, contact, self.rim)
+        table = self._asked.table
+        if table is not None and table.slope != 0:
+            x, _, z = self.natural.centre.T
+            found = found - (1 - np.cos(table.slope)) * z - np.sin(table.slope) * x
+            if contact == "smooth":
+                found = found + 0.5 * (np.sin(table.slope) * (self.natural.t - self._asked.t0)) ** 2
+        return self._told("energy", found)
 
     @property
     def height(self) -> Floats:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._loss import Loss
+    from spincyl._table import Table
 
 
 class StepWarning(UserWarning):
@@ -69,6 +70,7 @@ def roll(
     restitution: float | None = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
+    table: "Table | None" = None,
 ) -> Motion: ...
 @with_hints
 def roll(
@@ -87,6 +89,7 @@ def roll(
     restitution: float | None = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
+    table: "Table | None" = None,
 ) -> Motion:
     """Compute the motion of a body from an initial state.
 
@@ -146,6 +149,10 @@ def roll(
         ends where it is (`Ending.BOUNDED`). Default: 8 million, or 40,000 per unit of time if that is more;
         no limit for RK4. A larger number also allows more steps that hardly advance the time. The exact
         method needs no evaluations.
+    table : Table, optional
+        Table with a slope, and with the place and the heading of the body at the start. Default: a level
+        table, on which the body starts at x = y = phi = 0. On a slope the motion is integrated, forward in
+        time, and has its pose; its energy includes the height of the centre above the place x = 0.
 
     Returns
     -------
@@ -227,6 +234,8 @@ def roll(
         from spincyl import _ellipsoid_motion as stones
 
         start = stones.start_of_stone(given, contact, step, method, restitution)
+        if table is not None:
+            raise ValueError(f"table = {table!r}: only for bodies of revolution; a stone needs a level table")
         if losses is not None:
             from spincyl._lossy import losses_of_stone
 
@@ -261,6 +270,7 @@ def roll(
             restitution=restitution,
             losses=losses,
             max_nfev=max_nfev,
+            table=table,
         )
         of = one if scale is None else one.natural
         m: Motion = stones.rolled_stone(of, given, asked) if stone else rolled(of, start, asked, numbers)

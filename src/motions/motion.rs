@@ -21,6 +21,7 @@ use crate::laws::contact::{Contact, Table};
 use crate::laws::state::State;
 use crate::motions::exact::event::{self, Limits};
 use crate::motions::exact::method::conserved;
+use crate::motions::slope::check_slope;
 
 /// Computes the motion of `body`, which rolls, from the state `start` at the first of the `times`, up to the event that
 /// ends it.
@@ -89,10 +90,12 @@ fn rolled(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Motion>, Error> {
+    check_slope(ask)?;
+    start.check_place()?;
     let found = if ask.conserves() && !body.has_joints() && !path::on_face(body, &start.state) {
         path::refuse_slip(start.slip)?;
         let (body, start) = start.seen_on(body);
-        conserved(&body, &start, times, ask, go_on)?.told(&body.view())
+        conserved(&body, &start, times, ask, go_on)?.told(&body.view()).placed(&start)
     } else {
         path::follow(body, start, times, ask, go_on)?
     };

@@ -70,6 +70,7 @@ pub fn ensemble<'py>(
         bodies: given.all(MOTION_BODY)?,
         states: given.all(STATE)?,
         slips: given.some(SLIP)?,
+        slopes: given.some(["slope", "phi0"])?,
         coefficients: given.some(TABLE)?,
         losses: given.some(parameters())?.map(LossColumns),
         aloft: given.some(["height", "lift"])?,

@@ -292,7 +292,8 @@ pub fn roll<'py>(
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_rows(body.into(), &asked.circles)?;
             let state = State::from(<[f64; 4]>::from(state));
-            let start = Start { state, slip: start.0, time: start.1, aloft: asked.aloft };
+            let start = Start::from(state).with_slip(start.0).with_time(start.1).with_aloft(asked.aloft);
+            let start = start.with_heading(asked.heading).with_place(asked.place);
             let rests = asked.slip.is_none() && ask.table.rubs();
             let start = if rests { start.at_rest_on_face(&body) } else { start };
             if asked.is_custom() {
@@ -307,7 +308,7 @@ pub fn roll<'py>(
         (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
-            let start = Start { state, slip: start.0, time: start.1, aloft: None };
+            let start = Start::from(state).with_slip(start.0).with_time(start.1);
             if asked.is_custom() {
                 return under_own_laws(py, (&stone, &asked), (&ask, loses), |laws, go_on| {
                     custom::roll_stone(&stone, start, times, &ask, laws, go_on)

@@ -69,6 +69,10 @@ options! {
         restitution: Option<f64> = None,
         /// The height and the vertical velocity of an initial state in the air.
         aloft: Option<[f64; 2]> = None,
+        /// The slope of the table, phi and the place of the contact point at the start.
+        slope: f64 = 0.0,
+        heading: f64 = 0.0,
+        place: [f64; 2] = [0.0; 2],
         stop_at_rolling: bool = false,
         max_nfev: Option<u64> = None,
         pose: bool = false,
@@ -118,6 +122,7 @@ impl MotionAsked {
             beyond: self.beyond,
             restitution: self.restitution,
             face: Face::from_code(self.face).ok_or_else(|| PyValueError::new_err("face: an unknown kind"))?,
+            slope: self.slope,
             stop_at_rolling: self.stop_at_rolling,
             max_evaluations: self.max_nfev,
             pose: self.pose,

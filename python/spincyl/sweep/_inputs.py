@@ -11,6 +11,7 @@ from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, Reals, components, floats, instance_of, optional_library
 from spincyl._loss import LAWS, Loss, Sum, marked_as_si
 from spincyl._scale import Scale
+from spincyl._table import Table
 from spincyl._state import State
 from spincyl.loss import KINDS
 
@@ -34,6 +35,7 @@ _UNITS = (
     | {f"start_slip_{way}": "sqrt(g R)" for way in ("along", "across", "x", "y")}
     | {"start_theta": "rad", "start_height": "R", "start_lift": "sqrt(g R)"}
     | {"contact_mu": "1", "contact_static": "1", "contact_patch": "R", "contact_c": "1/sqrt(g R)"}
+    | {"table_slope": "rad", "table_phi0": "rad"}
     | {f"loss_{name}": row.natural for name, row in LAWS.items()}
 )
 
@@ -75,6 +77,11 @@ def kept_contact(contact: AnyContact) -> dict[str, Reals]:
         return {}
     own = {} if contact.static is contact.mu else {"contact_static": contact.static}
     return {"contact_mu": contact.mu, **own, "contact_patch": contact.patch}
+
+
+def kept_table(table: Table | None) -> dict[str, Reals]:
+    """The slope and the heading of a table, by the names of their coordinates."""
+    return {} if table is None else {"table_slope": table.slope, "table_phi0": table.phi0}
 
 
 def with_inputs(result: "xarray.Dataset", named: dict[str, Any], length: str) -> "xarray.Dataset":
@@ -136,7 +143,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -------
     dict
         Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol"; also "losses",
-        "restitution", "mu", "step", "beyond", "stop_at", "max_nfev" and "errors" if they were given. A call
+        "restitution", "mu", "step", "beyond", "stop_at", "max_nfev", "errors" and "table" if they were given. A call
         of `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and
         states; call ``rows.load()`` first to get bodies and states in memory.
 
@@ -190,6 +197,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
         found["contact"] = Coulomb(mu, static, patch, at.get("face", "ring"))._known(known)
     else:
         found["contact"] = at["contact"]
+    if "table_slope" in given:
+        found["table"] = Table(given["table_slope"], given["table_phi0"])
     laws = [
         marked_as_si(law(given[f"loss_{name}"]), known)
         for name, law in KINDS.items()

@@ -42,9 +42,10 @@ from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction, refuse_impacts_on_patch
 from spincyl._roll import is_stone
+from spincyl._table import Table
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl.sweep._common import in_memory
-from spincyl.sweep._inputs import kept_bodies, kept_contact
+from spincyl.sweep._inputs import kept_bodies, kept_contact, kept_table
 from spincyl.sweep._labels import flags, given_up, refused, uncertain
 from spincyl.sweep._swept import Question, swept
 
@@ -106,6 +107,7 @@ def roll(
     losses: Loss | None = None,
     max_nfev: int | None = None,
     errors: bool = True,
+    table: Table | None = None,
     threads: int | None = None,
     progress: Progress | bool | None = None,
 ) -> "xarray.Dataset":
@@ -185,6 +187,9 @@ def roll(
         computed twice. If false, they are computed once, in half to four fifths of the time, with the same
         states, ends and `status`, and their `error` is NaN; only where first integrals solve the whole
         motion (`Answer.LANES`) `error` is known all the same.
+    table : Table, optional
+        Table with a slope, as in `spincyl.roll`; its `slope` and `phi0` may be arrays that broadcast with the
+        other arrays. Motions on a slope are computed one at a time.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.
@@ -264,6 +269,8 @@ def roll(
             raise ValueError(
                 "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
             )
+        if table is not None:
+            raise ValueError(f"table = {table!r}: only for bodies of revolution")
         stones = _stones.question(
             bodies,
             states,
@@ -297,6 +304,10 @@ def roll(
     asked = asked._replace(
         tol=number("tol", tol), max_nfev=checked_max_nfev(max_nfev), errors=flag("errors", errors)
     )
+    if table is not None:
+        instance_of("table", table, Table)
+        if asked.step is not None or asked.beyond or asked.mu != np.inf or asked.times[-1] < 0:
+            raise ValueError("step, mu, beyond, t < 0: cannot be combined with table=")
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not has_friction(contact) and (restitution is None or states.height is None):
@@ -304,12 +315,13 @@ def roll(
             states, f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
         )
     of = TABLES[contact] if isinstance(contact, str) else code_of_friction(contact)
-    summaries = _core.summaries(of, losses is not None, restitution is not None)
-    wanted = _wanted_of_motions(
-        want, several, tuple(summaries), (of, losses is not None, restitution is not None)
-    )
+    walks = losses is not None or table is not None
+    summaries = _core.summaries(of, walks, restitution is not None)
+    wanted = _wanted_of_motions(want, several, tuple(summaries), (of, walks, restitution is not None))
     asked = asked._replace(spread="states" in wanted)
     fields = _fields(bodies, states, contact, losses)
+    if table is not None:
+        fields |= {"slope": table.slope, "phi0": table.phi0}
     if losses is not None and losses._function is not None:
         asked = asked._replace(losses=losses._natural(scale))
     if not isinstance(contact, str):
@@ -321,7 +333,7 @@ def roll(
     names = [*shown] if {"final", "states"} & {*wanted} else []
     spread = frozenset(names if asked.spread else ())
     names += [name for name in summaries if name in wanted] + ["error", "method", "status"]
-    told = kept_bodies(bodies, states, losses) | kept_contact(contact)
+    told = kept_bodies(bodies, states, losses) | kept_contact(contact) | kept_table(table)
     question = Question(fields, names, spread, asked, wanted, scale, seconds, told)
     result = swept(_fill, question, LABELS, threads=threads, progress=progress)
     result.variables["method"].attrs |= flags(Answer)

@@ -19,6 +19,8 @@ pub struct MotionStarts<'a> {
     pub bodies: [&'a [f64]; 5],
     /// Columns of theta, w1, w2 and w3.
     pub states: [&'a [f64]; 4],
+    /// The slope of the table and phi at the start; `None` on a level table. Motions on a slope are computed alone.
+    pub slopes: Option<[&'a [f64]; 2]>,
     /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
     pub slips: Option<[&'a [f64]; 2]>,
@@ -91,11 +93,20 @@ impl MotionColumns {
 impl<'a> MotionStarts<'a> {
     /// Bodies and states without slip and without losses, with the contact of the job.
     pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
-        Self { bodies, states, slips: None, coefficients: None, losses: None, aloft: None, circles: &[] }
+        Self {
+            bodies,
+            states,
+            slopes: None,
+            slips: None,
+            coefficients: None,
+            losses: None,
+            aloft: None,
+            circles: &[],
+        }
     }
 
     fn columns(&self) -> impl Iterator<Item = &'a [f64]> {
-        let pairs = self.slips.into_iter().chain(self.aloft).flatten();
+        let pairs = self.slips.into_iter().chain(self.aloft).chain(self.slopes).flatten();
         let laws =
             self.coefficients.into_iter().flatten().chain(self.losses.into_iter().flat_map(|all| all.0));
         self.bodies.into_iter().chain(self.states).chain(pairs).chain(laws)
@@ -136,13 +147,18 @@ impl<'a> MotionStarts<'a> {
         Body::of_rows([ell, i1, i3, f64::NAN, fillet, theta_end], self.circles(i))
     }
 
+    /// The slope of motion `i`, and phi at its start.
+    pub(super) fn slope(&self, i: usize) -> [f64; 2] {
+        self.slopes.map_or([0.0; 2], |all| all.map(|x| at(x, i)))
+    }
+
     pub(super) fn state(&self, i: usize) -> State {
         State::from(self.states.map(|x| at(x, i)))
     }
 
     pub(super) fn start(&self, i: usize, body: &Body, table: &Table) -> Start {
         let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
-        let start = Start::from(self.state(i)).with_aloft(aloft);
+        let start = Start::from(self.state(i)).with_aloft(aloft).with_heading(self.slope(i)[1]);
         match self.slips {
             Some(slips) => start.with_slip(slips.map(|x| at(x, i))),
             None if table.rubs() => start.at_rest_on_face(body),

@@ -19,6 +19,7 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::ask::rests_on::axis_up;
 use crate::motions::body::BodyWalk;
+use crate::motions::body::followed;
 use crate::motions::body::spun::knows;
 use crate::motions::walk::Pause;
 use crate::motions::walk::two_runs::{Followed, rougher};
@@ -82,6 +83,29 @@ pub(super) fn size_of_block(count: usize, times: usize) -> usize {
 }
 
 impl<'a> MotionBlock<'a> {
+    /// Computes the motions of the block one at a time, each on its slope.
+    pub(super) fn roll_on_slopes(
+        &self,
+        count: usize,
+        out: &mut MotionOutput<'_>,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<(), Error> {
+        let (starts, job) = (self.starts, self.job);
+        for k in 0..count {
+            let i = self.first + k;
+            let ask = job.ask_of(starts.coefficients(i), starts.losses(i)).with_slope(starts.slope(i)[0]);
+            let found = starts.body(i).and_then(|body| {
+                let start = starts.start(i, &body, &ask.table);
+                Ok((body, followed(&body, &start, job.times, (&ask, job.errors), &mut *go_on)?))
+            });
+            if !go_on() {
+                return Ok(());
+            }
+            self.put_result(out, k, found)?;
+        }
+        Ok(())
+    }
+
     pub(super) fn flow<const N: usize>(
         &self,
         level: Option<Level>,

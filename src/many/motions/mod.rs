@@ -187,7 +187,10 @@ pub(crate) fn roll_among(
     let (count, times) = (starts.len(), job.times.len());
     assert!(starts.fit(), "columns of different lengths");
     assert!(out.fits(count, times), "an array does not fit");
-    let flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
+    let flows = job.ask.table.rubs()
+        || starts.losses.is_some()
+        || job.ask.restitution.is_some()
+        || starts.slopes.is_some();
     job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
         let workers = threads.min(count.div_ceil(FLOWS_PER_BLOCK));
@@ -209,6 +212,7 @@ pub(crate) fn roll_among(
             let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
             let loses = starts.losses.is_some() || starts.has_patch();
             let done = match (flows, loses) {
+                _ if starts.slopes.is_some() => work.roll_on_slopes(count, &mut out, still),
                 (true, true) => work.flow::<10>(level, count, &mut out, still),
                 (true, false) => work.flow::<9>(level, count, &mut out, still),
                 _ => conserved(&work, level, (count, &mut out), still),

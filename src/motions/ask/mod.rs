@@ -216,6 +216,15 @@ impl<S> Start<S> {
 }
 
 impl<S> Start<S> {
+    /// Returns an error for a place or a direction out of range.
+    pub(crate) fn check_place(&self) -> Result<(), Error> {
+        within("phi0", self.heading, (-1e6, 1e6), "at most 1e6 radians")?;
+        for x in self.place {
+            within("place", x, (-1e15, 1e15), "at most 1e15 R from x = y = 0")?;
+        }
+        Ok(())
+    }
+
     /// Returns this start with the axis leaning to this direction phi, from the x axis.
     #[must_use]
     pub fn with_heading(self, heading: f64) -> Self {

@@ -1,14 +1,16 @@
 //! The result of a motion: times and states, the event that ended it, its phases, and the path of the
 //! contact point.
 
-use super::Method;
+use super::{Method, Start};
 use crate::error::{Error, room};
 use crate::laws::body::View;
 pub use crate::laws::contact::impact::Hit;
+use crate::laws::pose::Angle;
 use crate::laws::state::State;
 use crate::methods::flow::Exhausted;
 use crate::motions::Moving;
 use crate::numbers::codes::coded;
+use nalgebra::Point2;
 
 coded! {
     /// The way in which a motion ended. Its number is the status of a result.
@@ -269,6 +271,21 @@ impl<S: Moving> Motion<S> {
     /// The ending of the motion; `Done` without an event.
     pub fn ending(&self) -> Ending {
         self.event.map_or(Ending::Done, |e| e.ending)
+    }
+}
+
+impl Motion {
+    /// The motion on a level table from another place and in another direction.
+    pub(crate) fn placed(mut self, start: &Start) -> Self {
+        let ((sin, cos), [x, y]) = (start.heading.sin_cos(), start.place);
+        if start.heading != 0.0 || start.place != [0.0; 2] {
+            for pose in self.poses.iter_mut().flatten() {
+                let at = pose.contact_point;
+                pose.phi = Angle { rest: pose.phi.rest + start.heading, ..pose.phi }.settled();
+                pose.contact_point = Point2::new(x + at.x * cos - at.y * sin, y + at.x * sin + at.y * cos);
+            }
+        }
+        self
     }
 }
 

@@ -48,7 +48,7 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub slide: Slide<G>,
     /// The state where the current phase begins or has ended, and the initial state.
     pub state: State,
-    pub start: State,
+    pub start: Start,
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
@@ -219,7 +219,7 @@ impl<G: Own> BodyPhases<G> {
             own,
             slide,
             state,
-            start: state,
+            start: *start,
             integrates: ask.table == Table::Smooth || loses || ask.slope != 0.0,
             rolls_briefly: false,
             by_steps: false,

@@ -61,29 +61,44 @@ pub fn follow(
     ask: &Ask,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Motion, Error> {
+    followed(body, start, times, (ask, true), go_on).map(Into::into)
+}
+
+/// The motion of [`follow`]. Its error is NaN unless it `is_judged`, by a second run.
+pub(crate) fn followed(
+    body: &Body,
+    start: &Start,
+    times: &[f64],
+    (ask, is_judged): (&Ask, bool),
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed, Error> {
     let (body, start) = start.seen_on(body);
-    let body = &body;
-    let fine = check_walk(body, &start, ask)?;
+    let fine = check_walk(&body, &start, ask)?;
     check_times_after(start.time, times)?;
     let Some(slope) = Slope::of(ask)? else {
-        return judged_walk((body, &start), times, (ask, fine), go_on).map(Into::into);
+        return judged_walk((&body, &start), times, (ask, fine, is_judged), go_on);
     };
     let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
-    let found = judged_walk((body, &scaled), &since, (&slope.ask(ask), fine), go_on)?;
-    Ok(slope.motion(found, &start, times).into())
+    let found = judged_walk((&body, &scaled), &since, (&slope.ask(ask), fine, is_judged), go_on)?;
+    Ok(slope.motion(found, &start, times))
 }
 
 /// A walk and its estimated error.
 fn judged_walk(
     (body, start): (&Body, &Start),
     times: &[f64],
-    (ask, fine): (&Ask, f64),
+    (ask, fine, is_judged): (&Ask, f64, bool),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed, Error> {
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);
     if !SHORT_CODE && spun::knows(body, ask) {
         let mut found = run(fine, times)?;
         found.complete_known_errors(fine);
+        return Ok(found);
+    }
+    if !is_judged {
+        let mut found = run(fine, times)?;
+        found.motion.error = f64::NAN;
         return Ok(found);
     }
     let mut found = judged(fine, times, run)?;

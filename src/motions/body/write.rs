@@ -7,12 +7,11 @@ use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::pose::{Angle, Pose};
 use crate::laws::state::State;
-use crate::motions::Ask;
-use crate::motions::Kind;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::errors::doubted;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, PSI, SIN, U2, UH, W1, W2, W3, X, Y, lost, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses};
 use crate::motions::walk::two_runs::Followed;
+use crate::motions::{Ask, Kind, Start};
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -74,17 +73,21 @@ impl Followed {
     pub(super) fn lossy<G: Own, const N: usize>(
         &mut self,
         ask: &Ask,
-        (body, start, flow): (&Body, &State, &LossyFlow<G>),
+        (body, from, flow): (&Body, &Start, &LossyFlow<G>),
         y: &[f64; N],
         kind: Kind,
     ) {
-        let now = state(y);
+        let (now, time) = (state(y), y[TIME]);
         let pose = poses(N).then(|| {
             let pose = pose(y);
             match ask.table {
                 Table::Smooth => {
-                    let under = Pose::contact_point_below_centre(body, start, &now, pose.phi.rest);
-                    Pose { contact_point: under, ..pose }
+                    let (phi, [x, y]) = (pose.phi.rest - from.heading, from.place);
+                    let under = Pose::contact_point_below_centre(body, &from.state, &now, phi);
+                    let (sin, cos) = from.heading.sin_cos();
+                    let fallen = 0.5 * ask.slope.tan() * time * time;
+                    let (x, y) = (x + under.x * cos - under.y * sin, y + under.x * sin + under.y * cos);
+                    Pose { contact_point: Point2::new(x + fallen, y), ..pose }
                 }
                 _ => pose,
             }

@@ -13,7 +13,7 @@ mod laws;
 use super::ask::check_times_after;
 use super::walk::two_runs::{Followed, judged};
 use super::{Ask, Method, Motion, Start};
-use crate::error::Error;
+use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
@@ -194,6 +194,7 @@ pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error>
     if ask.beyond {
         return refuse("beyond", 1.0);
     }
+    within("slope", ask.slope, (0.0, 0.0), "0 together with a user-defined law")?;
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
         let expected = "Coulomb friction as the contact of a user-defined law of friction";
         return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });

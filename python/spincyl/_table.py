@@ -1,0 +1,71 @@
+"""The table on which a body moves: its slope, and where on it the body starts."""
+
+from dataclasses import dataclass
+
+from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import Hinting
+from spincyl._input.numbers import Reals, radians, read_only_copy, reals
+from spincyl._input.reprs import repr_of_call
+
+
+@compared_by_value
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Hinting):
+    """A table, level or tilted, for `table=` of `roll` and `sweep.roll`.
+
+    On a slope x points downhill in the table, y to the left of one who looks downhill, and z along its
+    normal. Inclinations and heights are measured from the table, and `Motion.phi` from downhill: on a body
+    that leans downhill it is 0, and a body on its side rolls straight down with phi = -pi/2.
+
+    Parameters
+    ----------
+    slope : float
+        Angle of the table with the horizontal in radians, or a text such as "5 deg"; between -pi/2 and pi/2.
+        In a sweep it may be an array.
+    phi0 : float
+        Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
+        it may be an array.
+    place : pair of float
+        Initial contact point (x, y), in R.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a number is not real, or an angle is beyond pi, as if it were in degrees.
+
+    Notes
+    -----
+    The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
+    (docs/slopes.md). Bodies of revolution roll, slip, fly and bounce there, under every law of friction at a
+    point, and lose energy by rolling resistance, viscous friction and the air.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> ball, still = sc.Body.ball(0.0, 0.4, 0.4), sc.State(1.0, 0.0, 0.0, 0.0)
+    >>> m = sc.roll(ball, still, 3.0, table=sc.Table(0.3), want="pose")
+    >>> round(float(m.centre[-1, 0]), 6)  # 5/14 of sin(0.3) t^2
+    0.949885
+    """
+
+    slope: Reals = 0.0
+    phi0: Reals = 0.0
+    place: tuple[Reals, Reals] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        slope = radians("slope", self.slope, "-pi/2 < slope < pi/2")
+        object.__setattr__(self, "slope", read_only_copy(slope))
+        object.__setattr__(self, "phi0", read_only_copy(radians("phi0", self.phi0)))
+        if not isinstance(self.place, tuple | list) or len(self.place) != 2:
+            raise TypeError(f"place: expected a pair (x, y), not {self.place!r}")
+        place = tuple(read_only_copy(reals("place", x)) for x in self.place)
+        object.__setattr__(self, "place", place)
+
+    def __repr__(self) -> str:
+        given = {"slope": self.slope, "phi0": self.phi0, "place": self.place}
+        level = {"slope": 0.0, "phi0": 0.0, "place": (0.0, 0.0)}
+        return repr_of_call("Table", **{k: x for k, x in given.items() if not _same(x, level[k])})
+
+
+def _same(x: object, y: object) -> bool:
+    return type(x) is type(y) and x == y
