@@ -1,0 +1,317 @@
+//! Motions on a slope: closed laws of balls, the conservation of energy, symmetries, and what rests.
+
+use crate::common::rim::place;
+use crate::common::wander;
+use spincyl::contact::{Friction, slip};
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::path::Kind;
+use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::{Body, Contact, State};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
+    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+}
+
+/// The place of the centre of mass at output `i`: along x and y, and its height above the table.
+fn centre(body: &Body, m: &Motion, i: usize) -> [f64; 3] {
+    let (y, pose) = (m.states[i], m.poses.as_ref().unwrap()[i]);
+    let (at, (sin, cos)) = (place(body, y.theta), pose.phi.radians().sin_cos());
+    let lever = at.lever[0];
+    let high = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft[0]);
+    [pose.contact_point.x - lever * cos, pose.contact_point.y - lever * sin, at.height[0] + high]
+}
+
+fn ball() -> Body {
+    Body::ball(0.0, 0.4, 0.4).unwrap()
+}
+
+const STATE: State = State { theta: 1.0, w1: 0.6, w2: 0.2, w3: -0.5 };
+
+#[test]
+fn a_homogeneous_ball_rolls_down_with_five_sevenths_of_the_pull_whatever_it_spins() {
+    let (t, beta) = (3.0, 0.3f64);
+    let start = Start::from(STATE).with_heading(0.7).with_place([1.0, -2.0]);
+    let m = rolled(&ball(), start, &[0.0, t], &Ask::default().with_slope(beta));
+    let level = rolled(&ball(), start, &[0.0, t], &Ask::default());
+    let [a, b] = [&m, &level].map(|m| centre(&ball(), m, 1));
+    assert!((a[0] - b[0] - 0.5 * t * t * beta.sin() / 1.4).abs() < 1e-12, "{a:?} {b:?}");
+    assert!((a[1] - b[1]).abs() < 1e-12);
+    // The drilling stays.
+    let drilling = |y: &State| y.theta.sin() * y.w1 + y.theta.cos() * y.w3;
+    assert!((drilling(&m.states[1]) - drilling(&STATE)).abs() < 1e-12);
+}
+
+#[test]
+fn the_slip_of_a_ball_is_that_of_a_block_on_a_slope() {
+    // |u| sin(chi) tan(chi/2)^(-mu'/tan beta) stays, with mu' = (7/2) mu and the angle chi of u from downhill.
+    let (mu, beta) = (0.2, 0.3f64);
+    let start = Start::from(STATE).with_slip([0.8, 1.1]).with_heading(0.7);
+    let m = rolled(&ball(), start, &[0.0, 0.5, 1.0, 1.5], &Ask::on(Friction::coulomb(mu)).with_slope(beta));
+    let block = |i: usize| {
+        let [u, v] = m.path.as_ref().unwrap().slip[i];
+        let chi = m.poses.as_ref().unwrap()[i].phi.radians() + v.atan2(u);
+        u.hypot(v) * chi.sin() * (0.5 * chi).tan().abs().powf(-3.5 * mu / beta.tan())
+    };
+    for i in 1..4 {
+        assert!((block(i) / block(0) - 1.0).abs() < 1e-12, "{i}: {}", block(i) / block(0));
+    }
+}
+
+#[test]
+fn a_ball_thrown_across_rolls_where_the_model_of_three_dimensions_says() {
+    let y = State { w1: 0.0, w2: 0.0, w3: 0.0, ..STATE };
+    let ask = Ask::on(Friction::coulomb(0.25)).with_slope(0.3);
+    let m = rolled(&ball(), Start::from(y).with_slip([0.0, 1.0]), &[0.0, 3.0], &ask);
+    let path = m.path.as_ref().unwrap();
+    assert_eq!(path.phases[1].kind, Kind::Rolling);
+    assert!((path.phases[1].time - 1.367_156_766_6).abs() < 1e-10);
+}
+
+#[test]
+fn a_disk_and_a_tube_move_as_the_model_of_three_dimensions_says() {
+    let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.5, w2: 0.0, w3: 1.5 });
+    let m = rolled(&disk, Start::from(y).with_heading(0.4), &[5.0], &Ask::default().with_slope(0.2));
+    let expected = [1.205_471_603_1, 0.593_189_034_3, -0.290_981_649_1, 1.779_528_410_0];
+    for (a, b) in <[f64; 4]>::from(m.states[0]).into_iter().zip(expected) {
+        assert!((a - b).abs() < 1e-10, "{a} {b}");
+    }
+    assert!((m.poses.unwrap()[0].phi.radians() - -1.513_326_536_3).abs() < 1e-10);
+    let (tube, y) = (Body::tube(6.0, 0.8).unwrap(), State { theta: 1.569, w1: 2.5, w2: 0.0, w3: 9.0 });
+    let start = Start::from(y).with_slip([0.0, 6.0 - 12.41 * 2.5 / 6.0]).with_heading(-1.0);
+    let ask = Ask::on(Friction::coulomb(0.3)).with_slope(0.15).with_restitution(0.0);
+    let m = rolled(&tube, start, &[4.5], &ask);
+    let path = m.path.as_ref().unwrap();
+    assert!((path.phases[1].time - 2.102_383_272_6).abs() < 1e-10, "{:?}", path.phases);
+    assert!((path.impacts[0].time - 4.344_993_669_9).abs() < 1e-10, "{:?}", path.impacts);
+}
+
+#[test]
+fn on_a_smooth_slope_the_body_turns_as_on_the_level_and_its_centre_falls() {
+    let (beta, t) = (0.7f64, 4.0);
+    let (body, y) = (Body::solid(0.6).unwrap(), State { theta: 1.1, w1: 0.5, w2: 0.1, w3: 1.5 });
+    let start = Start::from(y).with_heading(0.3).with_place([2.0, 1.0]);
+    let pace = beta.cos().sqrt();
+    let slow = |w: f64| w / pace;
+    let before = State { theta: y.theta, w1: slow(y.w1), w2: slow(y.w2), w3: slow(y.w3) };
+    let level = rolled(
+        &body,
+        Start::from(before).with_heading(0.3).with_place([2.0, 1.0]),
+        &[t * pace],
+        &Ask::on(Contact::Smooth),
+    );
+    let m = rolled(&body, start, &[t], &Ask::on(Contact::Smooth).with_slope(beta));
+    let (a, b) = (m.states[0], level.states[0]);
+    let off = [a.theta - b.theta, a.w1 - pace * b.w1, a.w2 - pace * b.w2, a.w3 - pace * b.w3];
+    assert!(off.iter().all(|x| x.abs() < 1e-12), "{off:?}");
+    let (a, b) = (centre(&body, &m, 0), centre(&body, &level, 0));
+    assert!((a[0] - b[0] - 0.5 * beta.sin() * t * t).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12);
+    // Without friction, but with impacts, it is a slip.
+    let ask = Ask::on(Contact::Smooth).with_slope(beta).with_restitution(0.5);
+    let slid = rolled(&body, start, &[t], &ask);
+    if slid.path.as_ref().unwrap().impacts.is_empty() {
+        let c = centre(&body, &slid, 0);
+        assert!((a[0] - c[0]).abs() < 1e-11 && (a[1] - c[1]).abs() < 1e-11, "{a:?} {c:?}");
+    }
+}
+
+#[test]
+fn jelletts_number_of_a_ball_stays_on_a_slope_under_any_force_at_its_contact() {
+    let body = Body::ball(-0.2, 0.4, 0.42).unwrap();
+    let y = State { theta: 0.5, w1: 1.0, w2: 0.3, w3: 4.0 };
+    let number =
+        |y: &State| body.i1() * y.w1 * y.theta.sin() + body.i3() * y.w3 * (body.ell() + y.theta.cos());
+    for (ask, slip) in [
+        (Ask::on(Friction::coulomb(0.3)), [0.1, 0.2]),
+        (Ask::on(Friction::Viscous { c: 1.0 }), [0.1, 0.2]),
+        (Ask::default(), [0.0; 2]),
+    ] {
+        let m = rolled(
+            &body,
+            Start::from(y).with_slip(slip).with_heading(0.3),
+            &[1.0, 3.0],
+            &ask.with_slope(0.4),
+        );
+        assert_eq!(m.states.len(), 2);
+        for state in &m.states {
+            assert!((number(state) / number(&y) - 1.0).abs() < 1e-11, "{ask:?}: {}", number(state));
+        }
+    }
+}
+
+fn within(next: &mut impl FnMut() -> f64, low: f64, high: f64) -> f64 {
+    low + (high - low) * next()
+}
+
+/// A random body, start and law on a slope of up to 60 degrees.
+fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
+    let body = match (next() * 4.0) as usize {
+        0 => Body::solid(within(next, 0.05, 3.0)),
+        1 => Body::tube(within(next, 0.0, 3.0), next()),
+        2 => Body::rounded_tube(within(next, 0.3, 3.0), 0.5, within(next, 0.05, 0.3)),
+        _ => {
+            let i3 = within(next, 0.3, 0.5);
+            Body::ball(within(next, -0.4, 0.4), i3 * within(next, 0.8, 1.2), i3)
+        }
+    }
+    .unwrap();
+    let theta = within(next, 0.3, 1.3);
+    let [w1, w2, w3] = [(); 3].map(|()| within(next, -2.0, 2.0));
+    let mut start = Start::from(State { theta, w1, w2, w3 }).with_heading(within(next, -PI, PI));
+    let mut ask = match (next() * 3.0) as usize {
+        0 => Ask::default(),
+        1 => Ask::on(Friction::Viscous { c: within(next, 0.1, 2.0) }),
+        _ => {
+            let mu = within(next, 0.05, 0.6);
+            Ask::on(Friction::Coulomb { mu, fixed: mu * within(next, 1.0, 1.5), patch: 0.0 })
+        }
+    };
+    if ask.table.rubs() && next() < 0.7 {
+        start = start.with_slip([within(next, -1.0, 1.0), within(next, -1.0, 1.0)]);
+    }
+    if next() < 0.3 {
+        let losses = Losses::of(Law::RollingResistance, within(next, 0.001, 0.05));
+        ask = ask.with_losses(losses + Losses::of(Law::AirLinear, 0.01));
+    }
+    (body, start, ask.with_slope(within(next, -1.05, 1.05)))
+}
+
+/// Kinetic energy, and the height of the centre in the field of gravity.
+fn energy(body: &Body, ask: &Ask, m: &Motion, i: usize) -> f64 {
+    let ([x, _, z], y) = (centre(body, m, i), m.states[i]);
+    let u = m.path.as_ref().map_or([0.0; 2], |path| path.slip[i]);
+    let lift = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft[1]);
+    let at = place(body, y.theta);
+    let rise = at.lever[0] * y.w2;
+    let moves = 0.5 * ((rise + lift).powi(2) - rise * rise);
+    slip::energy(body, &y, u) - at.height[0] + moves + ask.slope.cos() * z - ask.slope.sin() * x
+}
+
+#[test]
+fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
+    let mut next = wander(2);
+    let (mut followed, mut hops, mut ends) = (0, 0, 0);
+    for _ in 0..400 {
+        let (body, start, mut ask) = drawn(&mut next);
+        if ask.table.rubs() && next() < 0.5 {
+            ask = ask.with_restitution(0.9 * next());
+        }
+        let times: Vec<f64> = (0..=20).map(|k| 0.25 * f64::from(k)).collect();
+        let Ok(m) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
+        let m = m.unwrap();
+        followed += 1;
+        let path = m.path.as_ref().unwrap();
+        (hops, ends) = (hops + usize::from(!path.impacts.is_empty()), ends + usize::from(m.event.is_some()));
+        let whole = |i: usize| {
+            let struck: f64 =
+                path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
+            let lost = path.work_lost.get(i).copied().unwrap_or(0.0);
+            energy(&body, &ask, &m, i) + path.dissipated[i] + lost + struck
+        };
+        for i in 1..m.states.len() {
+            let fastest = <[f64; 4]>::from(m.states[i]).into_iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+            let off = (whole(i) - whole(0)).abs();
+            let claim = 1e-12 * fastest * fastest + 20.0 * fastest * (m.error + m.pose_error);
+            assert!(off < claim, "{off:e} {claim:e} at {}: {body:?} {start:?} {ask:?}", m.times[i]);
+        }
+    }
+    assert!(followed > 380 && hops > 20 && ends > 40, "{followed} {hops} {ends}");
+}
+
+#[test]
+fn the_mirror_image_moves_as_the_mirror_image_and_uphill_is_downhill_turned_round() {
+    let mut next = wander(6);
+    for _ in 0..60 {
+        let (body, start, ask) = drawn(&mut next);
+        let Ok(Some(m)) = roll_with(&body, start, &[2.0], &ask.with_pose(true), || true) else { continue };
+        let State { theta, w1, w2, w3 } = start.state;
+        let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
+            .with_slip([start.slip[0], -start.slip[1]])
+            .with_heading(-start.heading);
+        let turned = start.with_heading(start.heading + PI);
+        let other = rolled(&body, mirrored, &[2.0], &ask);
+        let round = rolled(&body, turned, &[2.0], &ask.with_slope(-ask.slope));
+        let within = 1e-12 + 2.0 * (m.error + other.error + round.error);
+        assert_eq!(m.states.len(), other.states.len());
+        for ((a, b), c) in m.states.iter().zip(&other.states).zip(&round.states) {
+            let off = [a.theta - b.theta, a.w1 + b.w1, a.w2 - b.w2, a.w3 + b.w3];
+            let over = [a.theta - c.theta, a.w1 - c.w1, a.w2 - c.w2, a.w3 - c.w3];
+            assert!(
+                off.iter().chain(&over).all(|x| x.abs() < within),
+                "{off:?} {over:?} {within:e} {body:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_level_table_is_the_same_to_the_last_bit_and_its_path_begins_at_the_place_and_in_the_direction() {
+    let (body, y) = (Body::solid(2.5).unwrap(), State { theta: 1.3, w1: 0.7, w2: 0.05, w3: 0.8 });
+    for ask in [Ask::default(), Ask::on(Friction::coulomb(0.3)), Ask::on(Contact::Smooth)] {
+        let times = [0.0, 1.0, 2.0];
+        let (plain, (sin, cos)) = (rolled(&body, y.into(), &times, &ask), 0.4f64.sin_cos());
+        let start = Start::from(y).with_heading(0.4).with_place([3.0, -1.0]);
+        let there = rolled(&body, start, &times, &ask.with_slope(0.0));
+        assert_eq!(plain.states, there.states);
+        for (a, b) in plain.poses.unwrap().iter().zip(&there.poses.unwrap()) {
+            assert!((b.phi.radians() - a.phi.radians() - 0.4).abs() < 1e-14);
+            let (x, y) = (a.contact_point.x, a.contact_point.y);
+            let off = [
+                b.contact_point.x - (3.0 + x * cos - y * sin),
+                b.contact_point.y - (-1.0 + x * sin + y * cos),
+            ];
+            assert!(off.iter().all(|x| x.abs() < 1e-13), "{ask:?}: {off:?}");
+        }
+    }
+}
+
+#[test]
+fn a_ball_rests_on_a_slope_that_rolling_resistance_holds_and_rolls_down_a_steeper_one() {
+    let still = State { w1: 0.0, w2: 0.0, w3: 0.0, ..STATE };
+    for (delta, beta) in [(0.05, 0.049f64), (0.05, 0.051), (0.3, 0.2), (0.3, 0.35)] {
+        let losses = Losses::of(Law::RollingResistance, delta);
+        let ask = Ask::on(Friction::coulomb(0.8)).with_losses(losses).with_slope(beta);
+        let m = rolled(&ball(), Start::from(still).with_heading(0.3), &[0.0, 2.0], &ask);
+        if beta.tan() < delta {
+            assert_eq!(m.event.map(|event| (event.ending, event.time)), Some((Ending::Stops, 0.0)));
+        } else {
+            let gained = centre(&ball(), &m, 1)[0] - centre(&ball(), &m, 0)[0];
+            let expected = 0.5 * 4.0 * (beta.sin() - delta * beta.cos()) / 1.4;
+            assert!((gained - expected).abs() < 1e-11, "{gained} {expected}");
+        }
+    }
+    // It comes to rest on its way up, and stays there.
+    let losses = Losses::of(Law::RollingResistance, 0.3);
+    let ask = Ask::on(Friction::coulomb(0.8)).with_losses(losses).with_slope(0.2);
+    let m = rolled(&ball(), Start::from(STATE).with_heading(0.3), &[0.0, 50.0], &ask);
+    assert_eq!(m.ending(), Ending::Stops);
+}
+
+#[test]
+fn a_disk_let_go_slips_at_once_where_rolling_would_need_too_much_friction() {
+    let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.0, w2: 0.0, w3: 0.0 });
+    let start = Start::from(y).with_heading(0.7);
+    let rolls = rolled(&disk, start, &[0.0], &Ask::default().with_slope(0.5).with_force(true));
+    let force = rolls.forces.unwrap()[0];
+    let needed = force.friction() / force.normal;
+    for (share, kind) in [(0.999, Kind::Slipping), (1.001, Kind::Rolling)] {
+        let m = rolled(&disk, start, &[0.1], &Ask::on(Friction::coulomb(share * needed)).with_slope(0.5));
+        assert_eq!(m.path.unwrap().phases[0].kind, kind, "{share}");
+    }
+}
+
+#[test]
+fn what_is_not_computed_on_a_slope_is_refused_by_name() {
+    let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.5, w2: 0.0, w3: 1.5 });
+    let patch = Friction::Coulomb { mu: 0.3, fixed: 0.3, patch: 0.01 };
+    for ask in [
+        Ask::default().with_slope(FRAC_PI_2),
+        Ask::default().with_slope(f64::NAN),
+        Ask::on(patch).with_slope(0.1),
+        Ask::default().with_losses(Losses::of(Law::DryContour, 0.01)).with_slope(0.1),
+        Ask::default().with_losses(Losses::of(Law::Drilling, 0.01)).with_slope(0.1),
+    ] {
+        let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
+        assert!(found.is_err_and(|e| e.to_string().starts_with("slope")), "{ask:?}");
+    }
+}
