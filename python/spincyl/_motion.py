@@ -172,7 +172,7 @@ class Motion(Outputs):
         else:
             found = self.body._energy(self._seen, contact, self.rim)
         table = self._asked.table
-        if table is not None and table.slope != 0:
+        if table is not None and self._is_tilted:
             x, _, z = self.natural.centre.T
             found = found - (1 - np.cos(table.slope)) * z - np.sin(table.slope) * x
             if contact == "smooth":
@@ -400,9 +400,14 @@ class Motion(Outputs):
         return rolled(self.body, self.start, asked)
 
     @property
+    def _is_tilted(self) -> bool:
+        """Whether the table has a slope."""
+        return self._asked.table is not None and self._asked.table.slope != 0
+
+    @property
     def _by_steps(self) -> bool:
         """Whether the whole motion was integrated with steps within a tolerance."""
-        return self.losses is not None
+        return self.losses is not None or self._is_tilted
 
     @property
     def _doubt(self) -> str:

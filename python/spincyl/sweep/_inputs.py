@@ -11,8 +11,8 @@ from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, Reals, components, floats, instance_of, optional_library
 from spincyl._loss import LAWS, Loss, Sum, marked_as_si
 from spincyl._scale import Scale
-from spincyl._table import Table
 from spincyl._state import State
+from spincyl._table import Table
 from spincyl.loss import KINDS
 
 if TYPE_CHECKING:
@@ -143,9 +143,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -------
     dict
         Keyword arguments of `roll`: "bodies", "states", "t", "contact" and "tol"; also "losses",
-        "restitution", "mu", "step", "beyond", "stop_at", "max_nfev", "errors" and "table" if they were given. A call
-        of `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy bodies and
-        states; call ``rows.load()`` first to get bodies and states in memory.
+        "restitution", "mu", "step", "beyond", "stop_at", "max_nfev", "errors" and "table" if they were given.
+        A call of `roll` with these arguments repeats the results bit by bit. Lazy coordinates give lazy
+        bodies and states; call ``rows.load()`` first to get bodies and states in memory.
 
     Raises
     ------

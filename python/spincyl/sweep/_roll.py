@@ -42,8 +42,8 @@ from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction, refuse_impacts_on_patch
 from spincyl._roll import is_stone
-from spincyl._table import Table
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
+from spincyl._table import Table
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_bodies, kept_contact, kept_table
 from spincyl.sweep._labels import flags, given_up, refused, uncertain

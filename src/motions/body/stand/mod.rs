@@ -104,6 +104,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (up, at) = (self.up(), self.of.state);
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
+        if self.of.tilt != 0.0 {
+            return self.stands_on_slope();
+        }
         let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
         match next {
             Next::Ends(Ending::Painleve) => Err(Phases::no_unique_force(self)),
@@ -113,6 +116,29 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             next => Ok(next),
         }
+    }
+
+    /// The end of a body that stands still on its face on a slope; its motion there is not computed.
+    fn stands_on_slope(&mut self) -> Result<Next, Error> {
+        let (State { w1, w2, w3, .. }, slope) = (self.of.state, self.of.tilt.abs());
+        let [at, high] = [self.of.body.rim(), self.of.body.shape().rim.height(self.at.angle())];
+        let still = [w1, w2, w3] == [0.0; 3] && self.at.slip() == [0.0; 2];
+        let held = match self.ask.table {
+            Table::Smooth | Table::Rubs(Friction::Viscous { .. }) => false,
+            table => slope <= table.mu(),
+        };
+        // The pressure cannot leave the face.
+        if still && held && slope * high <= at {
+            Ok(Next::Ends(Ending::Stops))
+        } else {
+            Err(self.moves_on_slope())
+        }
+    }
+
+    fn moves_on_slope(&self) -> Error {
+        let expected =
+            "0 for a body on its face, or a slope on which friction holds it and it does not topple";
+        Error::OutOfRange { name: "slope", value: self.ask.slope, expected }
     }
 
     /// Moves the walk on by the time in which its face, which has all but landed, comes down.

@@ -1,0 +1,150 @@
+"""Motions on a slope: what is asked and answered; tests/laws/slope.rs has the laws of the motion."""
+
+import pickle
+
+import numpy as np
+import pytest
+import xarray
+
+import spincyl as sc
+
+DISK, START = sc.Body.solid(0.1), sc.State(1.2, 0.5, 0.0, 1.5)
+TABLE = sc.Table(0.2, phi0=0.4, place=(1.0, -2.0))
+
+
+def test_a_table_is_what_was_given():
+    assert sc.Table("5 deg").slope == np.radians(5) and sc.Table("0.1 rad", phi0="-90deg").phi0 == -np.pi / 2
+    assert repr(TABLE) == "Table(slope=0.2, phi0=0.4, place=(1.0, -2.0))" and repr(sc.Table()) == "Table()"
+    assert eval(repr(TABLE), {"Table": sc.Table}) == TABLE and sc.Table(0.2) != TABLE
+    assert pickle.loads(pickle.dumps(TABLE)) == TABLE
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "word"),
+    [
+        (lambda: sc.Table("steep"), (ValueError, TypeError), "slope"),
+        (lambda: sc.Table(5.0), ValueError, "slope = 5.0: expected"),
+        (lambda: sc.Table(1j), TypeError, "slope"),
+        (lambda: sc.Table(0.1, place=1.0), TypeError, "place: expected a pair"),
+        (lambda: sc.roll(DISK, START, 1.0, table=0.1), TypeError, "table: expected a Table"),
+        (lambda: sc.roll(DISK, START, 1.0, table=sc.Table(np.pi / 2)), ValueError, "slope = 1.57"),
+        (
+            lambda: sc.roll(DISK, START, 1.0, table=sc.Table([0.1, 0.2])),
+            TypeError,
+            "slope: expected a number",
+        ),
+        (lambda: sc.roll(DISK, START, 1.0, table=TABLE, step=0.01), ValueError, "step = 0.01 cannot be"),
+        (
+            lambda: sc.roll(DISK, START, 1.0, table=TABLE, method="exact"),
+            ValueError,
+            "method = 'exact' cannot",
+        ),
+        (lambda: sc.roll(DISK, START, 1.0, table=TABLE, beyond=True), ValueError, "beyond = True cannot be"),
+        (lambda: sc.roll(DISK, START, 1.0, table=TABLE, mu=0.3), ValueError, "mu = 0.3 cannot be"),
+        (lambda: sc.roll(DISK, START, -1.0, table=TABLE), ValueError, "t"),
+        (
+            lambda: sc.roll(DISK, START, 1.0, table=TABLE, contact=sc.Coulomb(0.1, patch=0.01)),
+            ValueError,
+            "slope = 0.2: expected 0 with a patch",
+        ),
+        (
+            lambda: sc.roll(DISK, START, 1.0, table=TABLE, losses=sc.loss.DryContour(0.01)),
+            ValueError,
+            "slope = 0.2: expected 0 with dry friction along",
+        ),
+        (
+            lambda: sc.roll(DISK, sc.spun(DISK, 1.0), 1.0, table=TABLE, contact=sc.Coulomb(0.3)),
+            ValueError,
+            "slope = 0.2: expected 0 for a body on its face",
+        ),
+        (lambda: sc.sweep.roll(DISK, START, 1.0, table=0.2), TypeError, "table: expected a Table"),
+        (lambda: sc.sweep.roll(DISK, START, 1.0, table=TABLE, step=0.01), ValueError, "step, mu, beyond"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_by_name(make, error, word):
+    with pytest.raises(error, match=word):
+        make()
+
+
+def test_a_stone_needs_a_level_table():
+    stone = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
+    with pytest.raises(ValueError, match="table = Table"):
+        sc.roll(stone, stone.spinning(1.0), 1.0, table=TABLE)
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {},
+        {"contact": "smooth"},
+        {"contact": sc.Coulomb(0.2), "restitution": 0.5},
+        {"contact": sc.Viscous(0.3)},
+        {"contact": sc.Coulomb(0.2), "losses": sc.loss.RollingResistance(0.01) + sc.loss.AirLinear(0.02)},
+    ],
+)
+def test_the_energy_of_a_motion_on_a_slope_includes_the_height_above_its_foot(how):
+    m = sc.roll(DISK, START, np.linspace(0, 4, 41), table=TABLE, **how)
+    whole = m.energy.copy()
+    for name in ("dissipated", "work_lost", "lost_in_impacts"):
+        try:
+            whole = whole + getattr(m, name)
+        except AttributeError:
+            continue
+    assert m.t.size > 10 and np.abs(whole - whole[0]).max() < 1e-11 + 20 * m.error
+    assert m.phi[0] == 0.4 and tuple(m.contact_point[0]) == (1.0, -2.0)
+    assert "by steps" in m.message
+
+
+def test_a_measured_body_moves_in_si():
+    coin = sc.measured(outer_diameter="22mm", length="2mm", mass="5g")
+    table = sc.Table("10 deg", phi0=0.4)
+    second = float(np.sqrt(coin.scale.radius / coin.scale.gravity))
+    times = np.array([0.0, 1.0, 2.0])
+    m = sc.roll(coin, START, times * second, table=table)
+    n = sc.roll(coin.natural, START, times, table=table)
+    assert np.allclose(m.w * second, n.w, rtol=1e-12) and np.allclose(m.phi, n.phi, rtol=1e-12)
+    assert np.allclose(m.energy, n.energy * 5e-3 * coin.scale.gravity * coin.scale.radius, rtol=1e-12)
+
+
+def test_other_times_and_outputs_are_those_of_the_same_slope():
+    m = sc.roll(DISK, START, np.linspace(0, 4, 5), table=TABLE)
+    later = m.at([1.0, 4.0])
+    assert np.array_equal(later.theta[-1], m.theta[-1]) and later.phi.size == 2
+    force = m.wanting("force")
+    up = np.cos(TABLE.slope)
+    assert np.abs(force.normal / up - 1).max() < 1.0 and force.friction.min() > 0
+
+
+def test_a_sweep_over_slopes_has_the_motions_that_roll_has():
+    slopes = np.array([-0.3, 0.0, 0.1, 0.5])
+    for how in ({}, {"contact": sc.Coulomb(0.3)}, {"contact": sc.Coulomb(0.2), "restitution": 0.3}):
+        want = ("final", "end")
+        found = sc.sweep.roll(DISK, START, 3.0, table=sc.Table(slopes, phi0=0.4), want=want, tol=1e-12, **how)
+        for i, slope in enumerate(slopes):
+            m = sc.roll(DISK, START, 3.0, table=sc.Table(slope, phi0=0.4), tol=1e-12, **how)
+            last = m.event.state if m.event else m.states
+            apart = [
+                float(found[name][i]) - float(np.ravel(getattr(last, name))[0]) for name in ("theta", "w3")
+            ]
+            assert max(map(abs, apart)) <= 1e-9 + 10 * m.error, (how, slope)
+            assert found["status"].values[i] == m.status
+        again = sc.sweep.roll(**sc.sweep.inputs(found), want=want)
+        assert all(np.array_equal(again[name], found[name], equal_nan=True) for name in again.data_vars)
+
+
+def test_slopes_broadcast_by_name():
+    slope = xarray.DataArray([0.1, 0.2], dims="slope", coords={"slope": [0.1, 0.2]})
+    phi0 = xarray.DataArray([0.0, 1.0, 2.0], dims="phi0")
+    found = sc.sweep.roll(DISK, START, 1.0, table=sc.Table(slope, phi0=phi0))
+    assert dict(found.sizes) == {"slope": 2, "phi0": 3} and np.isfinite(found["theta"]).all()
+
+
+def test_what_stands_on_its_face_stays_if_friction_holds_it_and_its_weight_is_above_the_face():
+    tall, flat = sc.Body.solid(6.0), sc.Body.solid(0.2)
+    still = sc.State(0.0, 0.0, 0.0, 0.0)
+    for body, slope, mu in ((flat, 0.2, 0.3), (tall, 0.1, 0.3)):
+        m = sc.roll(body, still, 5.0, table=sc.Table(slope), contact=sc.Coulomb(mu))
+        assert m.status == sc.Ending.STOPS and m.event.time == 0
+    for body, slope, mu in ((flat, 0.4, 0.3), (tall, 0.2, 0.3)):
+        with pytest.raises(ValueError, match="it does not topple"):
+            sc.roll(body, still, 5.0, table=sc.Table(slope), contact=sc.Coulomb(mu))
