@@ -171,12 +171,11 @@ class Motion(Outputs):
             found = self.body.energy(self.states, contact)
         else:
             found = self.body._energy(self._seen, contact, self.rim)
-        table = self._asked.table
-        if table is not None and self._is_tilted:
-            x, _, z = self.natural.centre.T
-            found = found - (1 - np.cos(table.slope)) * z - np.sin(table.slope) * x
+        if self._slope:
+            (x, _, z), falls = self.natural.centre.T, np.sin(self._slope)
+            found = found - (1 - np.cos(self._slope)) * z - falls * x
             if contact == "smooth":
-                found = found + 0.5 * (np.sin(table.slope) * (self.natural.t - self._asked.t0)) ** 2
+                found = found + 0.5 * (falls * (self.natural.t - self.natural._asked.t0)) ** 2
         return self._told("energy", found)
 
     @property
@@ -400,14 +399,15 @@ class Motion(Outputs):
         return rolled(self.body, self.start, asked)
 
     @property
-    def _is_tilted(self) -> bool:
-        """Whether the table has a slope."""
-        return self._asked.table is not None and self._asked.table.slope != 0
+    def _slope(self) -> float:
+        """The slope of the table, in radians."""
+        table = self._asked.table
+        return 0.0 if table is None else float(table.slope)
 
     @property
     def _by_steps(self) -> bool:
         """Whether the whole motion was integrated with steps within a tolerance."""
-        return self.losses is not None or self._is_tilted
+        return self.losses is not None or self._slope != 0
 
     @property
     def _doubt(self) -> str:

@@ -55,7 +55,7 @@ def mjcf(data: dict[str, Any], looks: Floats) -> str:
   {said.replace("--", "- -")}
 -->
 <mujoco model="spincyl">
-  <option gravity="0 0 {data["gravity"][2]!r}" timestep="{5e-4 * second:.6g}" integrator="implicitfast"
+  <option gravity="{_words(data["gravity"])}" timestep="{5e-4 * second:.6g}" integrator="implicitfast"
           cone="elliptic" impratio="1000" solver="Newton" iterations="100" tolerance="0"
           noslip_iterations="30" noslip_tolerance="0">
     <flag energy="enable"/>

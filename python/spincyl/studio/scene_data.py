@@ -1,7 +1,8 @@
 """Content of the JSON file of a scene: body, table, initial state, and the known answer with errors, in SI.
 
-Vectors are along the axes of the laboratory, z up. The origin of a body is its centre of mass; its axes are
-those of `Motion.orientation`, for a stone those of its ellipsoid. docs/engines.md has the keys.
+Vectors are along the axes of the table, z along its normal; on a slope x points downhill, and gravity is
+turned. The origin of a body is its centre of mass; its axes are those of `Motion.orientation`, for a stone
+those of its ellipsoid. docs/engines.md has the keys.
 """
 
 import math
@@ -51,9 +52,9 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     return {
         "spincyl-scene": VERSION,
         "units": "SI: metres, kilograms, seconds, radians, newtons, joules",
-        "axes": "of the laboratory, z up; quaternions are x, y, z, w and turn the body's axes into these",
+        "axes": "of the table, z its normal; quaternions are x, y, z, w and turn the body's axes into these",
         "scale": {"R": scale.radius, "M": scale.mass, "g": scale.gravity, "second": second},
-        "gravity": [0.0, 0.0, -scale.gravity],
+        "gravity": [scale.gravity * math.sin(m._slope), 0.0, -scale.gravity * math.cos(m._slope)],
         "body": _body(m.body, scale, metre),
         "table": _table(m, metre, second, joule, t0),
         "start": {
@@ -73,7 +74,7 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
     height = m._extra.get("height", np.zeros(m.t.size))
     v = u + np.cross(w, m.centre - np.column_stack([m.contact_point, height]))
     if m.contact == "smooth" and "slip" not in m._extra:
-        v[:, :2] = 0.0  # seen from above, the centre is at rest
+        v[:, 0], v[:, 1] = math.sin(m._slope) * (m.t - m._asked.t0), 0.0  # the centre falls along x
     return w, v
 
 
