@@ -6,6 +6,7 @@ numbers of a third model in doubles. The second half compares `sc.roll` with it.
 """
 
 import json
+import math
 import operator
 import pathlib
 import sys
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 from reference_rows import off, sampled, whole
+from test_lying_reference import phases_of, posed
 from test_stone_reference import contact as stone_contact
 from test_stone_reference import off as stone_off
 from test_stone_reference import rows as stone_rows
@@ -36,8 +38,7 @@ TIGHT = mpf("1e-22")
 LOSSES = {"rolling": sc.loss.RollingResistance, "viscous": sc.loss.ViscousContour}
 #: the phases of the library that begin at a row
 RIM = {"slides": "slipping", "rolls": "rolling", "slips": "slipping", "passes": "slipping"}
-RIM |= {"lift-off": "flying", "rests": None}
-LYING = {"slides": "lying", "pivots": "pivoting", "straight": "rolling on its side"}
+RIM |= {"lift-off": "flying"}
 
 
 def table():
@@ -60,14 +61,18 @@ def table():
 MOTIONS = table()
 
 
-def of_kind(*kinds):
-    found = [case for case in MOTIONS if case.kind in kinds]
+def of_kind(*kinds, known=lambda case: True):
+    found = [case for case in MOTIONS if case.kind in kinds and known(case)]
     return pytest.mark.parametrize("case", found, ids=[case.name for case in found])
 
 
-each_body, each_rim, each_lying, each_stone = map(
-    lambda kinds: of_kind(*kinds), (("rim", "lying"), ("rim",), ("lying",), ("stone",))
-)
+def in_library(case):
+    """A body whose other rim is not there is not one of the library."""
+    return not getattr(case, "beyond", False)
+
+
+each_body, each_lying, each_stone = of_kind("rim", "lying"), of_kind("lying"), of_kind("stone")
+each_motion = of_kind("rim", "lying", known=in_library)
 
 
 def of(name):
@@ -79,7 +84,7 @@ def of(name):
 def start_of(case):
     """The first row, which the table leaves out."""
     start = dict(zip(STATE, map(mpf, case.start), strict=True))
-    if case.kind == "lying":
+    if case.kind == "lying" and case.start[0] == math.pi / 2:
         start["theta"] = mp.pi / 2
     height, lift = getattr(case, "aloft", None) or (0, 0)
     pose = dict(zip(POSE, map(mpf, (case.phi, 0, *case.place)), strict=True))
@@ -145,7 +150,7 @@ def test_the_numbers_of_a_third_model_in_doubles_are_met():
     met(rows["end"], phi=-1.5133265363)
     _, rows = of("ball thrown across")
     met(rows["rolls"], t=1.3671567666)
-    _, rows = of("disk on a turntable")
+    _, rows = of("disk past its side on a turntable")
     met(rows["end"], theta=1.6960250772, phi=-0.5186454092, x=2.8278893543, y=-1.8785024486)
     _, rows = of("tube hops")
     met(rows["lift-off"], t=2.1023832726)
@@ -155,6 +160,9 @@ def test_the_numbers_of_a_third_model_in_doubles_are_met():
     _, rows = of("cylinder pivots")
     met(rows["pivots"], t=2.5423189882, w1=0.0572288376)
     met(rows["straight"], t=2.9371625598, phi=1.2193597459, w3=-0.9756217739)
+    case, rows = of("cylinder rocks to rest")
+    met(next(row for row in case.rows if row.kind == "rocks"), t=3.3420629253)
+    assert abs(float(rows["rocked"].t) - 15.31600) < 1e-5
 
 
 def test_a_homogeneous_ball_slips_as_a_block_and_rolls_with_five_sevenths():
@@ -172,7 +180,9 @@ def test_a_homogeneous_ball_slips_as_a_block_and_rolls_with_five_sevenths():
             if row.t < rows["rolls"].t:
                 assert abs(block(row) / block(start_of(case)) - 1) < TIGHT
         there = Placed(case, rows["rolls"])
-        assert abs(there.velocity[1] - mpf(5) / 7) < TIGHT + 1e-15
+        met = rows["rolls"].t * sigma * (1 - share), 1 - share
+        assert max(abs(x - y) for x, y in zip(there.velocity[:2], met, strict=True)) < TIGHT
+        assert abs(share - mpf(2) / 7) < 1e-15
         for row in case.rows:
             if row.t >= rows["rolls"].t:
                 gone = (row.t - rows["rolls"].t) * sigma * (1 - share)
@@ -223,7 +233,7 @@ def test_what_rolls_straight_is_held_along_its_axis_and_accelerates_uniformly(ca
     with mp.workdps(40):
         ell, _, i3, _ = map(mpf, case.body)
         sigma, gamma = mp.sin(mpf(case.slope)), mp.cos(mpf(case.slope))
-        begun = next(row for row in case.rows if row.kind == "straight")
+        begun = next(row for row in case.rows if row.kind in ("straight", "rocked"))
         pull_h, pull_2 = sigma * mp.cos(begun.phi), -sigma * mp.sin(begun.phi)
         push = i3 * pull_2 / (1 + i3) / 2
         left = [
@@ -233,7 +243,7 @@ def test_what_rolls_straight_is_held_along_its_axis_and_accelerates_uniformly(ca
         for row in case.rows:
             if row.t >= begun.t:
                 assert abs(row.w3 - begun.w3 - pull_2 / (1 + i3) * (row.t - begun.t)) < TIGHT
-                assert row.w1 == 0 and abs(row.phi - begun.phi) < TIGHT
+                assert abs(row.w1) < TIGHT and abs(row.phi - begun.phi) < TIGHT
 
 
 # The library.
@@ -266,19 +276,19 @@ def flies(case):
     return case.kind == "rim" and any(row.kind in ("lift-off", "lands") for row in case.rows)
 
 
-@each_body
+@each_motion
 def test_states_and_poses_are_those_of_the_reference(case):
     m, rows = rolled(case), sampled(case)
     assert m.t.tolist() == [float(row.t) for row in rows]
     most = max(1e-11, m.error)
-    assert off(np.column_stack([m.theta, m.w, m.slip]), rows, STATE).max() <= most
-    poses = np.column_stack([m.phi, m.psi, m.contact_point])
+    states, poses = posed(case, m)
+    assert off(states, rows, STATE).max() <= most
     assert off(whole(poses, rows), rows, POSE).max() <= max(1e-11, m.pose_error)
     if flies(case):
         assert off(np.column_stack([m.lift, m.states.height]), rows, ("u_n", "height")).max() <= most
 
 
-@each_body
+@each_motion
 def test_energy_and_what_is_lost_are_those_of_the_reference(case):
     m, rows = rolled(case), sampled(case)
     most = max(1e-11, m.error)
@@ -300,33 +310,31 @@ def spent(case):
         yield "lost_in_impacts"
 
 
-@each_body
+@each_motion
 def test_phases_begin_where_those_of_the_reference_do(case):
     m = rolled(case)
-    most, kinds = max(1e-11, m.error), RIM if case.kind == "rim" else LYING
-    true = [row for row in case.rows if row.kind in kinds and row.t <= m.t[-1]]
-    hits = {x.time for x in m.impacts} if flies(case) else set()
-    found = [phase for phase in m.phases if phase.time > 0]
-    # in the table a flight has no row of its own after an impact
-    found = [phase for phase in found if phase.kind != "flying" or phase.time not in hits]
-    assert len(found) == len(true)
-    stays = [x.time for x in m.impacts if x.stays] if hits else []
-    for phase, row in zip(found, true, strict=True):
-        if row.kind == "rests":
-            # infinitely many bounces are over within a moment of the last one that the library tells
-            assert phase.time in stays and 0 < float(row.t) - phase.time < 1e-5
-            continue
-        assert phase.kind == kinds[row.kind]
+    most, found = max(1e-11, m.error), [phase for phase in m.phases if phase.time > 0]
+    if case.kind == "lying":
+        true = phases_of(case)
+        if any(row.kind == "rocked" for row in case.rows):  # only its first landings have rows
+            near = [[abs(phase.time - float(row.t)) for phase in found] for row, _ in true]
+            found = [found[int(np.argmin(distances))] for distances in near]
+    else:
+        true = [(row, RIM[row.kind]) for row in case.rows if row.kind in RIM and row.t <= m.t[-1]]
+        # in the table a flight has no row of its own after an impact
+        hits = {x.time for x in m.impacts} if flies(case) else set()
+        found = [phase for phase in found if phase.kind != "flying" or phase.time not in hits]
+    assert [phase.kind for phase in found] == [kind for _, kind in true]
+    for phase, (row, _) in zip(found, true, strict=True):
         assert abs(phase.time - float(row.t)) <= most
-        there = phase.state
-        told = [there.theta, there.w1, there.w2, there.w3, *there.slip]
-        assert off([told], [row], STATE).max() <= most
+        if row.kind != "rocked":
+            there = phase.state
+            told = [there.theta, there.w1, there.w2, there.w3, *there.slip]
+            assert off([told], [row], STATE).max() <= most
 
 
-@of_kind("rim")
+@of_kind("rim", known=flies)
 def test_impacts_are_those_of_the_reference(case):
-    if not flies(case):
-        return
     m = rolled(case)
     most = max(1e-11, m.error)
     times = np.array([float(t) for t, *_ in case.impacts])

@@ -96,7 +96,7 @@ def scenes():
     slides = (1.2, 0.4, 0.1, -1, 0.2, 0.3)
     yield rim("disk slips and rolls", disk, 0.25, slides, 3, 0.3, phi=0.9)
     nutates = (0.6, 1.2, 0.4, 0.3, 0.1, -0.2)
-    yield rim("can slips again", can, 0.1, nutates, 2.4, 0.3, phi=0.5)
+    yield rim("can slips again", can, 0.1, nutates, 3, 0.3, phi=0.5)
     yield rim("can with static friction", can, 0.1, nutates, 2.4, 0.3, phi=0.5, static=0.35)
     yield rim("disk on a film", disk, 0.2, slides, 2.4, 0.8, phi=2.0, law="viscous")
     yield rim("disk let go on a steep slope", disk, 0.6, (1.2, 0, 0, 0), 1.5, 0.2, phi=0.8)
@@ -105,7 +105,7 @@ def scenes():
     yield rim("top on a smooth table", (0.3, 0.5, 0.4, 0.2), 0.4, (0.4, 1, 0.3, 3, 0.2, 0.1), 4, phi=1.0)
     hops = (1.569, 2.5, 0, 9, 0, 6 - 12.41 * 2.5 / 6)
     yield rim("tube hops", paper, 0.15, hops, 4.6, 0.3, phi=-1.0)
-    yield rim("tube hops and bounces", paper, 0.15, hops, 7, 0.3, 0.5, phi=-1.0)
+    yield rim("tube hops and bounces", paper, 0.15, hops, 5.2, 0.3, 0.5, phi=-1.0)
     dropped = (0.6, 0.5, -0.3, 0.8, 0.4, -0.3)
     yield rim("cylinder dropped", solid, 0.35, dropped, 5, 0.2, 0.6, phi=0.6, height=0.5, lift=0.2)
     yield lies("both rims stop at once", tube(2.0, 0.0), 0.2, 0.3, (0.2, 0.4), (0.5, 1.5), -0.8, 9)
@@ -117,12 +117,12 @@ def scenes():
     where = {"place": (1.5, 0), "turning": 0.5}
     past = (1.3, 0.4, 0.1, -1.2)
     yield rim("disk past its side on a turntable", disk, 0, past, 5, beyond=True, **where, **rolls)
-    yield rim("disk rolls on a turntable", disk, 0, (0.9, 0.8, 0.1, 0.7), 4, phi=0.3, **where, **rolls)
+    yield rim("disk rolls on a turntable", disk, 0, kicked, 4, phi=0.3, **where, **rolls)
     tilted_turn = {"place": (1.0, 0.5), "turning": 0.8}
     yield rim(
         "ball on a tilted turntable", ball, 0.1, (1.0, 0.6, 0.2, -0.5), 6, phi=0.7, **tilted_turn, **rolls
     )
-    yield rim("disk slips on a turntable", disk, 0.1, slides, 1.7, 0.3, phi=0.9, **where)
+    yield rim("disk slips on a turntable", disk, 0.1, slides, 3, 0.3, phi=0.9, **where)
 
 
 # The table.

@@ -107,7 +107,8 @@ class Vectors(flight_vectors.Vectors):
             e1 = [e3[2] * h[0], e3[2] * h[1], s]
             e1_rate = [*(axis[2] * h[i] + e3[2] * h_rate[i] for i in (0, 1)), s_rate]
             r, moving = add(r, scaled(-self.rim, e1)), add(moving, scaled(-self.rim, e1_rate))
-            _, fixed, couples = couple(tape, self.losses, (1, 1), w, h, s, self.fillet * s + self.rim)
+            if self.spent():
+                _, fixed, couples = couple(tape, self.losses, (1, 1), w, h, s, self.fillet * s + self.rim)
         r = [r[0], r[1], r[2] - self.fillet]
         swing = self.turned(add(fixed, scaled(-1, cross(w, self.spin_of(w, e3)))), e3)
         carried = add(v, moving)
