@@ -35,7 +35,7 @@ from tables import compared, decimal, renew_json
 from torus import rounded, tube
 
 HERE = pathlib.Path(__file__).parent
-DIGITS = 40
+DIGITS = 50
 WAYS = {
     "rim": (flights.follow, slope_vectors.Vectors, slope_forms.Reduced, flights.NAMES, (11, 12)),
     "lying": (lying.follow, slope_vectors.Lying, slope_forms.Lying, lying.NAMES, (11, 12)),
@@ -107,7 +107,7 @@ def scenes():
     yield rim("tube hops", paper, 0.15, hops, 4.6, 0.3, phi=-1.0)
     yield rim("tube hops and bounces", paper, 0.15, hops, 5.2, 0.3, 0.5, phi=-1.0)
     dropped = (0.6, 0.5, -0.3, 0.8, 0.4, -0.3)
-    yield rim("cylinder dropped", solid, 0.35, dropped, 5, 0.2, 0.6, phi=0.6, height=0.5, lift=0.2)
+    yield rim("cylinder dropped", solid, 0.35, dropped, 4.45, 0.2, 0.6, phi=0.6, height=0.5, lift=0.2)
     yield lies("both rims stop at once", tube(2.0, 0.0), 0.2, 0.3, (0.2, 0.4), (0.5, 1.5), -0.8, 9)
     yield lies("cylinder pivots", tube(1.2, 0.0), 0.45, 0.35, (0.3, 0.2), (0.2, -0.4), 0.7, 4)
     yield rocks("cylinder rocks to rest", tube(0.3, 0.0), 0.1, 0.5, (1.4, 0, 0, 0, 0, 0), 0, 18, brief=0.2)
@@ -117,7 +117,7 @@ def scenes():
     where = {"place": (1.5, 0), "turning": 0.5}
     past = (1.3, 0.4, 0.1, -1.2)
     yield rim("disk past its side on a turntable", disk, 0, past, 5, beyond=True, **where, **rolls)
-    yield rim("disk rolls on a turntable", disk, 0, kicked, 4, phi=0.3, **where, **rolls)
+    yield rim("disk rolls on a turntable", disk, 0, (1.2, 0.5, 0, -2.5), 4, phi=0.3, **where, **rolls)
     tilted_turn = {"place": (1.0, 0.5), "turning": 0.8}
     yield rim(
         "ball on a tilted turntable", ball, 0.1, (1.0, 0.6, 0.2, -0.5), 6, phi=0.7, **tilted_turn, **rolls
