@@ -86,8 +86,9 @@ def options_for_core(
     if circles:
         options["circles"] = circles
     if asked.table is not None:
-        slope, heading, *place = map(float, (asked.table.slope, asked.table.phi0, *asked.table.place))
-        options |= {"slope": slope, "heading": heading, "place": place}
+        table = asked.table
+        slope, turning, heading, *place = map(float, (table.slope, table.turning, table.phi0, *table.place))
+        options |= {"slope": slope, "turning": turning, "heading": heading, "place": place}
     if asked.losses is not None:
         laws, own = asked.losses._built_in, asked.losses._function
         if laws is not None:
@@ -221,15 +222,16 @@ def on_table(asked: Asked, table: "Table") -> Asked:
     table = instance_of("table", table, Table)
     for name, x in (("slope", table.slope), ("phi0", table.phi0), ("place", table.place[0])):
         number(name, x)
-    if table.slope == 0:
+    if table.slope == 0 and table.turning == 0:
         return asked._replace(table=table)
     for name, value in (("step", asked.step), ("method", asked.method), ("beyond", asked.beyond or None)):
         if value is not None:
             raise ValueError(
-                f"{name} = {value!r} cannot be combined with a slope: its motions take steps within tol="
+                f"{name} = {value!r} cannot be combined with a table that is tilted or turns:"
+                " its motions take steps within tol="
             )
     if asked.contact == "rolling" and asked.mu != math.inf:
         raise ValueError(
-            f"mu = {asked.mu!r} cannot be combined with a slope: give contact=sc.Coulomb({asked.mu!r})"
+            f"mu = {asked.mu!r} cannot be combined with such a table: give contact=sc.Coulomb({asked.mu!r})"
         )
     return asked._replace(table=table, want=asked.want | {"pose"})

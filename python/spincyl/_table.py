@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
-from spincyl._input.numbers import Reals, radians, read_only_copy, reals
+from spincyl._input.numbers import Reals, number, radians, read_only_copy, reals
 from spincyl._input.reprs import repr_of_call
 
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Table(Hinting):
-    """A table, level or tilted, for `table=` of `roll` and `sweep.roll`.
+    """A table that is level or tilted, and may turn, for `table=` of `roll` and `sweep.roll`.
 
     On a slope x points downhill in the table, y to the left of one who looks downhill, and z along its
     normal. Inclinations and heights are measured from the table, and `Motion.phi` from downhill: on a body
@@ -22,6 +22,10 @@ class Table(Hinting):
     slope : float
         Angle of the table with the horizontal in radians, or a text such as "5 deg"; between -pi/2 and pi/2.
         In a sweep it may be an array.
+    turning : float
+        Rate at which the table turns about its normal through x = y = 0, counterclockwise as seen from
+        above, in sqrt(g/R); for `roll` only. Slips are over the table; all else is told as seen from the
+        room. Without losses, `restitution=` and a patch of contact.
     phi0 : float
         Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
         it may be an array.
@@ -49,12 +53,14 @@ class Table(Hinting):
     """
 
     slope: Reals = 0.0
+    turning: float = 0.0
     phi0: Reals = 0.0
     place: tuple[Reals, Reals] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         slope = radians("slope", self.slope, "-pi/2 < slope < pi/2")
         object.__setattr__(self, "slope", read_only_copy(slope))
+        object.__setattr__(self, "turning", number("turning", self.turning))
         object.__setattr__(self, "phi0", read_only_copy(radians("phi0", self.phi0)))
         if not isinstance(self.place, tuple | list) or len(self.place) != 2:
             raise TypeError(f"place: expected a pair (x, y), not {self.place!r}")
@@ -62,9 +68,9 @@ class Table(Hinting):
         object.__setattr__(self, "place", place)
 
     def __repr__(self) -> str:
-        given = {"slope": self.slope, "phi0": self.phi0, "place": self.place}
-        level = {"slope": 0.0, "phi0": 0.0, "place": (0.0, 0.0)}
-        return repr_of_call("Table", **{k: x for k, x in given.items() if not _same(x, level[k])})
+        names = ("slope", "turning", "phi0", "place")
+        given, level = {k: getattr(self, k) for k in names}, Table.__dataclass_fields__
+        return repr_of_call("Table", **{k: x for k, x in given.items() if not _same(x, level[k].default)})
 
 
 def _same(x: object, y: object) -> bool:

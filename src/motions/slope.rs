@@ -1,13 +1,19 @@
-//! Motions on a slope, in the units in which the part of gravity across the table is 1.
+//! Motions on a slope, or on a table that turns, in the units in which the part of gravity across the table is 1.
 //!
 //! ```text
 //! gravity (sin, 0, -cos) of the slope beta along x, y, z      x points downhill, z is the normal of the table
 //! time sqrt(cos beta) t,   velocities over sqrt(cos beta),   forces and energies over cos beta
 //! in these units: a level table with g = 1, and the pull tan(beta) on the centre along x
 //! ```
-//! The walks know the pull alone, which is G = tan(beta) (cos phi, -sin phi) along e_h and e2: it adds to the acceleration
+//! The walks know the pull alone, which on a slope is G = tan(beta) (cos phi, -sin phi) along e_h and e2: it adds to the acceleration
 //! of the slip, and acts on a contact that rolls like the couple r x G about it. Here motions are converted at the
 //! way in and at the way out.
+//!
+//! ```text
+//! a table that turns at the rate om about z carries the contact point P with U = om z x P
+//! P' = p = u + (rho w2) e_h + (A psi') e2 + U,   pull += om (p_2, -p_h)
+//! ```
+//! The slip u is that over the table, and U changes with P and with the axes along which u is told.
 
 use super::walk::two_runs::Followed;
 use super::{Ask, Moving, Start};
@@ -32,6 +38,14 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     within("slope", slope, (-most, most), "between -pi/2 and pi/2, the ends excluded")?;
     let refuses = |what: &'static str| Err(Error::OutOfRange { name: "slope", value: slope, expected: what });
     let dry = [Law::DryContour, Law::Drilling].iter().any(|law| ask.losses.coefficient(*law) != 0.0);
+    within("turning", ask.turning, (-1e6, 1e6), "at most 1e6 sqrt(g/R)")?;
+    if ask.turning != 0.0 {
+        let alone = ask.losses.is_none() && ask.restitution.is_none() && ask.table != Table::Smooth;
+        if !alone || ask.table.friction().patch() > 0.0 {
+            let expected = "0 with losses, with a restitution, with a patch of contact, or on a smooth table";
+            return Err(Error::OutOfRange { name: "turning", value: ask.turning, expected });
+        }
+    }
     match () {
         () if slope == 0.0 => Ok(()),
         () if ask.table.friction().patch() > 0.0 => refuses("0 with a patch of contact"),
@@ -44,7 +58,7 @@ impl Slope {
     /// The slope of a motion; None on a level table.
     pub fn of(ask: &Ask) -> Result<Option<Self>, Error> {
         check_slope(ask)?;
-        if ask.slope == 0.0 {
+        if ask.is_level() {
             return Ok(None);
         }
         Scale::new(1.0, 1.0, ask.slope.cos()).map(|scale| Some(Self { scale }))
@@ -62,7 +76,7 @@ impl Slope {
             }
             table => table,
         };
-        Ask { table, losses, ..*ask }
+        Ask { table, losses, turning: self.scale.angular_velocity(ask.turning), ..*ask }
     }
 
     /// The times since `t0` in the units of the slope.

@@ -71,6 +71,7 @@ options! {
         aloft: Option<[f64; 2]> = None,
         /// The slope of the table, phi and the place of the contact point at the start.
         slope: f64 = 0.0,
+        turning: f64 = 0.0,
         heading: f64 = 0.0,
         place: [f64; 2] = [0.0; 2],
         stop_at_rolling: bool = false,
@@ -123,6 +124,7 @@ impl MotionAsked {
             restitution: self.restitution,
             face: Face::from_code(self.face).ok_or_else(|| PyValueError::new_err("face: an unknown kind"))?,
             slope: self.slope,
+            turning: self.turning,
             stop_at_rolling: self.stop_at_rolling,
             max_evaluations: self.max_nfev,
             pose: self.pose,

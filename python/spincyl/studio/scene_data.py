@@ -46,6 +46,8 @@ _MU = 1.0, 1.5, 1e3
 
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
+    if m._turning_table:
+        raise ValueError("m: a scene needs a table that does not turn")
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
     known = _known_answer(m, metre, second, joule, w=w, v=v, t0=t0)

@@ -305,7 +305,8 @@ def roll(
         tol=number("tol", tol), max_nfev=checked_max_nfev(max_nfev), errors=flag("errors", errors)
     )
     if table is not None:
-        instance_of("table", table, Table)
+        if instance_of("table", table, Table).turning != 0:
+            raise ValueError(f"table = {table!r}: a table that turns is only for roll")
         if asked.step is not None or asked.beyond or asked.mu != np.inf or asked.times[-1] < 0:
             raise ValueError("step, mu, beyond, t < 0: cannot be combined with table=")
     if restitution is None:

@@ -71,6 +71,10 @@ pub struct Ask {
     /// The slope of the table, between -pi/2 and pi/2: x points downhill.
     #[cfg_attr(feature = "serde", serde(default))]
     pub slope: f64,
+    /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are over the table, and
+    /// the other numbers of a motion are those in the laboratory.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub turning: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
     /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
@@ -126,6 +130,12 @@ impl Ask {
         Self { face, ..self }
     }
 
+    /// Returns these options on a table that turns at this rate.
+    #[must_use]
+    pub fn with_turning(self, turning: f64) -> Self {
+        Self { turning, ..self }
+    }
+
     /// Returns these options on a table with this slope.
     #[must_use]
     pub fn with_slope(self, slope: f64) -> Self {
@@ -156,10 +166,15 @@ impl Ask {
         Self { force, ..self }
     }
 
+    /// Whether the table is level and at rest.
+    pub fn is_level(&self) -> bool {
+        self.slope == 0.0 && self.turning == 0.0
+    }
+
     /// Whether energy is conserved and no law of friction acts on a level table, so that three first integrals
     /// determine the motion.
     pub fn conserves(&self) -> bool {
-        self.slope == 0.0 && !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
+        self.is_level() && !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
     }
 }
 

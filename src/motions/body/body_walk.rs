@@ -24,7 +24,7 @@ use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::Flow;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, poses, pull};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, poses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
@@ -64,6 +64,8 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(crate) rolls_among: bool,
     /// The tangent of the slope: the horizontal pull on the centre per weight.
     pub(super) tilt: f64,
+    /// The rate at which the table turns.
+    pub(super) turning: f64,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
     /// The numbers after the last landings of a rocking at a border that is no right angle.
@@ -171,11 +173,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The losses, the couple of the user beside them, and the pull of a slope; None if there is none of these.
     pub(super) fn couples(&self) -> Option<Couples<f64, G>> {
         let lost = Couples::with_own(&self.ask.losses, self.of.own);
-        if self.of.tilt == 0.0 {
+        if self.ask.is_level() {
             return lost;
         }
         let all = lost.unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
-        Some(all.pulled(pull(self.of.tilt, &self.at)))
+        Some(all.pulled(self.of.slide.pull(&self.at)))
     }
 
     /// Moves the walk to the numbers at which a flow has halted.
@@ -211,16 +213,16 @@ impl<G: Own> BodyPhases<G> {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
         let mut slide = Slide::new(body, &friction, &ask.losses, tol, own);
-        slide.tilt = ask.slope.tan();
+        (slide.tilt, slide.turning) = (ask.slope.tan(), ask.turning);
         let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
-        let known_ends = !G::IS && !body.is_ball() && ask.slope == 0.0;
+        let known_ends = !G::IS && !body.is_ball() && ask.is_level();
         Self {
             body: *body,
             own,
             slide,
             state,
             start: *start,
-            integrates: ask.table == Table::Smooth || loses || ask.slope != 0.0,
+            integrates: ask.table == Table::Smooth || loses || !ask.is_level(),
             rolls_briefly: false,
             by_steps: false,
             uniform: false,
@@ -228,6 +230,7 @@ impl<G: Own> BodyPhases<G> {
             #[cfg(feature = "many")]
             rolls_among: false,
             tilt: ask.slope.tan(),
+            turning: ask.turning,
             lossy: None,
             rocked: Vec::new(),
             lying: None,
@@ -241,7 +244,8 @@ impl<G: Own> BodyPhases<G> {
                 && state.w3 == 0.0
                 && slip[1] == 0.0
                 && !own.has_couple()
-                && (ask.slope == 0.0 || start.heading == 0.0),
+                && (ask.slope == 0.0 || start.heading == 0.0)
+                && ask.turning == 0.0,
             lately: [0.0; 2],
             tail: (known_ends && ask.losses.turn_endlessly()).then(LastTurns::default),
             nods: (known_ends && !ask.losses.stop_the_contour()).then(Box::default),
@@ -257,7 +261,7 @@ impl<G: Own> BodyPhases<G> {
                 self.nods = self.nods.take().map(|_| Box::default());
             }
             self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
-            self.slide.tilt = self.tilt;
+            (self.slide.tilt, self.slide.turning) = (self.tilt, self.turning);
             self.body = body;
         }
     }

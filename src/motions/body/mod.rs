@@ -121,7 +121,7 @@ pub(super) fn walked(
 ) -> Result<Followed, Error> {
     // `SHORT_CODE` compiles one kind of walk only, with the pose and the lost energy.
     let loses = !ask.losses.is_none() || ask.table.friction().patch() > 0.0;
-    match (SHORT_CODE || ask.pose || ask.slope != 0.0, !SHORT_CODE && !loses) {
+    match (SHORT_CODE || ask.pose || !ask.is_level(), !SHORT_CODE && !loses) {
         (true, true) => walk::<13>((body, start), ask, (tol, integrates), times)?.run(go_on),
         (true, false) => walk::<14>((body, start), ask, (tol, integrates), times)?.run(go_on),
         (false, true) => walk::<9>((body, start), ask, (tol, integrates), times)?.run(go_on),

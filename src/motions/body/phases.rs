@@ -95,7 +95,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let w = [y.w1, y.w2, y.w3];
                 self.of.slide.law.towards(y.theta.sin_cos(), w, [0.0; 2], towards(alpha)).w[1]
             }
-            _ if !self.of.loses(&self.ask) && self.of.tilt == 0.0 => {
+            _ if !self.of.loses(&self.ask) && self.ask.is_level() => {
                 Contact::Rolling.derivative(&self.of.body, y).w2
             }
             _ => self.rolling_of(y).0[1],
@@ -289,7 +289,11 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
             Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law), tol, N),
-            None => BodySlips::of(&Slippery::One(walk.of.slide.of_the_library(), walk.of.tilt), tol, N),
+            None => BodySlips::of(
+                &Slippery::One(walk.of.slide.of_the_library(), [walk.of.tilt, walk.of.turning]),
+                tol,
+                N,
+            ),
         }
     }
 

@@ -39,7 +39,7 @@ pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
         Table::Rubs(Friction::Coulomb { patch, .. }) => patch == 0.0,
         Table::Rubs(Friction::Viscous { .. }) => false,
     };
-    body.is_uniform_ball() && ask.slope == 0.0 && dry && !ask.pose && ask.losses.is_none()
+    body.is_uniform_ball() && ask.is_level() && dry && !ask.pose && ask.losses.is_none()
 }
 
 /// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the

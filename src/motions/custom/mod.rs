@@ -195,6 +195,7 @@ pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error>
         return refuse("beyond", 1.0);
     }
     within("slope", ask.slope, (0.0, 0.0), "0 together with a user-defined law")?;
+    within("turning", ask.turning, (0.0, 0.0), "0 together with a user-defined law")?;
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
         let expected = "Coulomb friction as the contact of a user-defined law of friction";
         return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });

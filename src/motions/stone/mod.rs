@@ -45,6 +45,7 @@ pub(crate) fn check_stone(
         }
     }
     within("slope", ask.slope, (0.0, 0.0), "0 for a stone")?;
+    within("turning", ask.turning, (0.0, 0.0), "0 for a stone")?;
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     check_patch(ask)?;

@@ -84,6 +84,16 @@ pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
     [tilt * cos, -(tilt * sin)]
 }
 
+/// The velocity of a table that turns at this rate under the contact point, along e_h and e2.
+#[inline(always)]
+pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N]) -> [f64; 2] {
+    if !poses(N) || turning == 0.0 {
+        return [0.0; 2];
+    }
+    let (sin, cos) = y[PHI].sin_cos();
+    [turning * (y[X] * sin - y[Y] * cos), turning * (y[X] * cos + y[Y] * sin)]
+}
+
 /// The axis of a ball may have passed the vertical, where s is negative: then the ball leans to the other side, so that s,
 /// w1, w2 and the slip change their signs. Returns whether it does.
 pub(crate) fn leans_over<const N: usize>(y: &mut [f64; N]) -> bool {

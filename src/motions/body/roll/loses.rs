@@ -33,14 +33,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // Such steps add little to the error.
         let tol =
             if self.of.by_steps { EXACT_TOLERANCE_SHARE * self.of.slide.tol } else { self.of.slide.tol };
-        let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y).on_slope(
-            self.of.tilt,
+        let flow = LossyFlow::new(on, mu, (&losses, self.of.own), tol, &y).on_patch(&friction, &y).on_table(
+            [self.of.tilt, self.of.turning],
             &self.at,
             &y,
         );
         let halt = flow.at_start(&self.of.state);
         // The friction that would hold a moving contact point is not that of a body at rest.
-        let level = self.of.tilt == 0.0;
+        let level = self.ask.is_level();
         let rests = halt.is_none_or(|halt| level && halt == Halt::Slips) && flow.has_stopped(&self.of.state);
         self.of.lossy = Some(LossyPhase { flow });
         match halt {

@@ -13,7 +13,8 @@ use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS};
 use crate::motions::dry::held::margins_of_ways;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses, pull,
+    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, carried, loses, pose_rates, poses,
+    pull,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -197,11 +198,13 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
         }
         if poses(N) {
             let pace = all[TIME];
-            if self.tilt != 0.0 {
-                let [pull_h, pull_2] = pull(self.tilt, y);
+            let mut over = contact_velocity(&self.law.shape.rim, (s, c), w2, spin, [u_h, u_2]);
+            if self.tilt != 0.0 || self.turning != 0.0 {
+                let with = carried(self.turning, y);
+                let [pull_h, pull_2] = self.pulled_along(pull(self.tilt, y), over, with);
                 (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
+                over = [over[0] + with[0], over[1] + with[1]];
             }
-            let over = contact_velocity(&self.law.shape.rim, (s, c), w2, spin, [u_h, u_2]);
             let pose = pose_rates(y[PHI], [precession, spin], over);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }

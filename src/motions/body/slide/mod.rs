@@ -27,7 +27,7 @@ use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Law, Losses};
 use crate::laws::state::State;
 use crate::motions::dry::creep::Creeping;
-use crate::motions::walk::numbers::{BodyNumbers, COS, Halt, SIN, W1, W2, W3};
+use crate::motions::walk::numbers::{BodyNumbers, COS, Halt, SIN, W1, W2, W3, carried, pull};
 use crate::numbers::Dual;
 pub(super) use creeps::is_still;
 pub(crate) use flow::longest;
@@ -63,8 +63,9 @@ pub(crate) struct Slide<L = ()> {
     /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
     sure: f64,
     pub tol: f64,
-    /// The tangent of the slope.
+    /// The tangent of the slope, and the rate at which the table turns.
     pub tilt: f64,
+    pub turning: f64,
 }
 
 impl<L: Own> Slide<L> {
@@ -98,7 +99,25 @@ impl<L: Own> Slide<L> {
             sure: 0.0,
             tol,
             tilt: 0.0,
+            turning: 0.0,
         }
+    }
+
+    /// The pull on the centre along e_h and e2, of a slope and of a table that turns.
+    pub fn pull<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
+        let tilted = pull(self.tilt, y);
+        if self.turning == 0.0 {
+            return tilted;
+        }
+        let ((s, c), [w1, w2, w3]) = (y.angle(), y.w());
+        let over = contact_velocity(&self.law.shape.rim, (s, c), w2, w3 - c * w1 / s, y.slip());
+        self.pulled_along(tilted, over, carried(self.turning, y))
+    }
+
+    /// The same where the contact point moves with these velocities over the table and with it.
+    #[inline(always)]
+    fn pulled_along(&self, [pull_h, pull_2]: [f64; 2], over: [f64; 2], with: [f64; 2]) -> [f64; 2] {
+        [pull_h + self.turning * (over[1] + with[1]), pull_2 - self.turning * (over[0] + with[0])]
     }
 
     /// The law without those of the user.

@@ -5,7 +5,7 @@ use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::friction::LEAST_GROWTH;
 use crate::motions::walk::MOMENT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, loses, pose_rates, poses, pull,
+    BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, carried, loses, pose_rates, poses,
 };
 impl<L: Own> Slide<L> {
     /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
@@ -13,11 +13,15 @@ impl<L: Own> Slide<L> {
         let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
         let at = self.law.towards((s, c), w, [0.0; 2], way);
         self.law.writes(y, &mut all, (&at, 1.0));
-        let [pull_h, pull_2] = pull(self.tilt, y);
+        let [pull_h, pull_2] = self.pull(y);
         (all[UH], all[U2]) = (all[UH] + pull_h, all[U2] + pull_2);
         let turning = [w[0] / s, w[2] - c * w[0] / s];
         if poses(N) {
-            let over = contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], y.slip());
+            let (over, with) = (
+                contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], y.slip()),
+                carried(self.turning, y),
+            );
+            let over = [over[0] + with[0], over[1] + with[1]];
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], turning, over));
         }
         if loses(N) {
@@ -37,7 +41,7 @@ impl<L: Own> Slide<L> {
         } else {
             self.law.answers(angle, w, u)
         };
-        let ([s, c], mut y, pull) = ([start[SIN], start[COS]], *start, pull(self.tilt, start));
+        let ([s, c], mut y, pull) = ([start[SIN], start[COS]], *start, self.pull(start));
         let mut rates = [0.0; N];
         rates[..8].copy_from_slice(&[
             -(c * w[1]),
@@ -57,7 +61,11 @@ impl<L: Own> Slide<L> {
         let precession = w[0] / s;
         if poses(N) {
             let turning = [precession, w[2] - c * precession];
-            let over = contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], u);
+            let (over, with) = (
+                contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], u),
+                carried(self.turning, start),
+            );
+            let over = [over[0] + with[0], over[1] + with[1]];
             rates[PHI..PHI + 4].copy_from_slice(&pose_rates(start[PHI], turning, over));
         }
         if loses(N) {

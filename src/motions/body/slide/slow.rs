@@ -22,10 +22,11 @@ pub(crate) struct BodySlips {
     lost: Option<usize>,
 }
 
-/// The slips on a level table, or on a slope, where sine and cosine of phi are numbers as well.
+/// The slips on a level table, or on one that is tilted or turns, where sine and cosine of phi and the place are numbers
+/// as well.
 enum Slips {
     Level(SlowSlips<5>),
-    Tilted(SlowSlips<7>),
+    Tilted(SlowSlips<9>),
 }
 
 impl Slips {
@@ -39,8 +40,8 @@ impl Slips {
 
 /// The law of a slip on one rim, or on two rims of which the other already slips.
 pub(crate) enum Slippery {
-    /// With the tangent of the slope.
-    One(Slipping<f64>, f64),
+    /// With the tangent of the slope and the rate at which the table turns.
+    One(Slipping<f64>, [f64; 2]),
     Two(Lying<f64>),
 }
 
@@ -48,7 +49,7 @@ impl BodySlips {
     /// The series for a motion with `count` numbers.
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
-            Slippery::One(law, tilt) => Self::on_one(law, *tilt, tol, count),
+            Slippery::One(law, table) => Self::on_one(law, *table, tol, count),
             Slippery::Two(law) => Self::on_two(law, tol, count),
         }
     }
@@ -86,19 +87,24 @@ impl BodySlips {
         Self { slips: Slips::Level(slips), one: None, ways: None, lost }
     }
 
-    fn on_one(law: &Slipping<f64>, tilt: f64, tol: f64, count: usize) -> Self {
+    fn on_one(law: &Slipping<f64>, [tilt, turning]: [f64; 2], tol: f64, count: usize) -> Self {
         let mut lost = None;
-        let slips = if tilt == 0.0 {
+        let slips = if tilt == 0.0 && turning == 0.0 {
             Slips::Level(SlowSlips::of(tol, |tape, numbers, slip, way| {
                 Self::rates_on_one(law, tape, numbers, [slip, way], (count, &mut lost))
             }))
         } else {
-            Slips::Tilted(SlowSlips::of(tol, |tape, [s, c, w1, w2, w3, sin, cos], slip, way| {
-                let SlowRates { numbers: [ds, dc, d1, d2, d3], slip: [du_h, du_2], more } =
+            Slips::Tilted(SlowSlips::of(tol, |tape, [s, c, w1, w2, w3, sin, cos, x, y], slip, way| {
+                let SlowRates { numbers: [ds, dc, d1, d2, d3], slip: [du_h, du_2], mut more } =
                     Self::rates_on_one(law, tape, [s, c, w1, w2, w3], [slip, way], (count, &mut lost));
-                let (tilt, turn) = (tape.number(tilt), w1 / s);
-                let numbers = [ds, dc, d1, d2, d3, cos * turn, -(sin * turn)];
-                SlowRates { numbers, slip: [du_h + tilt * cos, du_2 - tilt * sin], more }
+                let (tilt, om, turn) = (tape.number(tilt), tape.number(turning), w1 / s);
+                // The velocity of the contact point, over the table and with it.
+                let (out, on) = (more[3] + om * (x * sin - y * cos), more[4] + om * (x * cos + y * sin));
+                (more[3], more[4]) = (out, on);
+                let moves = [out * cos - on * sin, out * sin + on * cos];
+                let numbers = [ds, dc, d1, d2, d3, cos * turn, -(sin * turn), moves[0], moves[1]];
+                let slip = [du_h + tilt * cos + om * on, du_2 - tilt * sin - om * out];
+                SlowRates { numbers, slip, more }
             }))
         };
         Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
@@ -174,7 +180,7 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
             }
             Slips::Tilted(slips) => {
                 let (sin, cos) = y[PHI].sin_cos();
-                let start = [y[0], y[1], y[2], y[3], y[4], sin, cos];
+                let start = [y[0], y[1], y[2], y[3], y[4], sin, cos, y[X], y[Y]];
                 let slow = slips.follow(start, (angle, growth), speed)?;
                 Some(self.series(y, &slow))
             }

@@ -32,7 +32,7 @@ use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
-use crate::motions::{Ending, Kind};
+use crate::motions::{Ask, Ending, Kind};
 use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
@@ -104,7 +104,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (up, at) = (self.up(), self.of.state);
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
-        if self.of.tilt != 0.0 {
+        if !self.ask.is_level() {
             return self.stands_on_slope();
         }
         let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
@@ -125,7 +125,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let still = [w1, w2, w3] == [0.0; 3] && self.at.slip() == [0.0; 2];
         let held = match self.ask.table {
             Table::Smooth | Table::Rubs(Friction::Viscous { .. }) => false,
-            table => slope <= table.mu(),
+            table => slope <= table.mu() && self.ask.turning == 0.0,
         };
         // The pressure cannot leave the face.
         if still && held && slope * high <= at {
@@ -136,9 +136,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     fn moves_on_slope(&self) -> Error {
+        let Ask { slope, turning, .. } = self.ask;
         let expected =
             "0 for a body on its face, or a slope on which friction holds it and it does not topple";
-        Error::OutOfRange { name: "slope", value: self.ask.slope, expected }
+        let (name, value) = if turning == 0.0 { ("slope", slope) } else { ("turning", turning) };
+        Error::OutOfRange { name, value, expected }
     }
 
     /// Moves the walk on by the time in which its face, which has all but landed, comes down.

@@ -26,9 +26,10 @@ use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, Ways, rounded
 use crate::laws::state::{State, drilling_of};
 use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::body::own::Own;
+use crate::motions::body::slide::contact_velocity;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
-use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3, poses, pull};
+use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3, carried, poses, pull};
 use crate::numbers::{Dual, Real};
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
@@ -72,8 +73,9 @@ pub(crate) struct LossyFlow<G = ()> {
     watch: bool,
     /// The patch of contact; None for a point.
     patch: Option<RestingPatch>,
-    /// The tangent of the slope.
+    /// The tangent of the slope, and the rate at which the table turns.
     tilt: f64,
+    om: f64,
 }
 
 impl<G: Own> LossyFlow<G> {
@@ -105,35 +107,58 @@ impl<G: Own> LossyFlow<G> {
             watch: true,
             patch: None,
             tilt: 0.0,
+            om: 0.0,
         };
         lossy.sets_holds(y);
         lossy
     }
 
-    /// The same flow on a slope, from these numbers.
-    pub fn on_slope<const N: usize>(mut self, tilt: f64, at: &[f64; N], y: &State) -> Self {
-        if tilt != 0.0 {
-            self.tilt = tilt;
+    /// The same flow on a slope, or on a table that turns, from these numbers.
+    pub fn on_table<const N: usize>(mut self, [tilt, om]: [f64; 2], at: &[f64; N], y: &State) -> Self {
+        (self.tilt, self.om) = (tilt, om);
+        if self.is_pulled() {
             self.stands_at(at);
             self.sets_holds(y);
         }
         self
     }
 
-    /// Sets the pull of the slope to that at these numbers, for what depends on a state alone.
+    /// Whether the table is tilted or turns.
+    #[inline(always)]
+    fn is_pulled(&self) -> bool {
+        self.tilt != 0.0 || self.om != 0.0
+    }
+
+    /// Sets the pull of the table to that at these numbers, which all flows share, for what depends on a state alone.
     pub fn stands_at<const N: usize>(&mut self, at: &[f64; N]) {
-        if self.tilt != 0.0 {
-            let pull = pull(self.tilt, at);
+        if self.is_pulled() {
+            let [s, c] = [at[SIN], at[COS]];
+            let pull = self.pull_at(at, (s, c), at[W2], at[W3] - c * at[P] / s);
             self.law.losses = self.law.losses.pulled(pull);
             self.turn(self.ways());
         }
     }
 
-    /// The law with the pull of the slope at these numbers; None on a level table.
+    /// The pull on the centre along e_h and e2, for this w2 and psi'.
+    fn pull_at<const N: usize>(&self, y: &[f64; N], angle: (f64, f64), w2: f64, spin: f64) -> [f64; 2] {
+        let [pull_h, pull_2] = pull(self.tilt, y);
+        if self.om == 0.0 {
+            return [pull_h, pull_2];
+        }
+        let ([with_h, with_2], rim) = (carried(self.om, y), &self.law.rates.reduced().shape.rim);
+        let over = contact_velocity(rim, angle, w2, spin, [with_h, with_2]);
+        [pull_h + self.om * over[1], pull_2 - self.om * over[0]]
+    }
+
+    /// The law with the pull of the table at these numbers of the flow; None on a level table.
     #[inline(always)]
     fn tilted<const N: usize>(&self, y: &[f64; N]) -> Option<Lossy<f64, G>> {
-        let tilted = poses(N) && self.tilt != 0.0;
-        tilted.then(|| Lossy { losses: self.law.losses.pulled(pull(self.tilt, y)), ..self.law })
+        (poses(N) && self.is_pulled()).then(|| {
+            let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
+            let spin = if self.moves { w[2] - y[COS] * precession } else { 0.0 };
+            let pull = self.pull_at(y, (y[SIN], y[COS]), y[W2], spin);
+            Lossy { losses: self.law.losses.pulled(pull), ..self.law }
+        })
     }
 
     /// The same flow with the pull of the slope at these numbers.
@@ -327,7 +352,7 @@ impl<G: Own> LossyFlow<G> {
         }
         // On a slope a couple may turn a body that only stands on its rim.
         let begins = || self.responds((s, c), [0.0; 3]).w.into_iter().any(|rate| rate.abs() > REST);
-        self.ways().holds.rolling && !turns && !(self.tilt != 0.0 && begins())
+        self.ways().holds.rolling && !turns && !(self.is_pulled() && begins())
     }
 
     /// w, with a small speed in the direction in which rolling and rocking begin from rest.

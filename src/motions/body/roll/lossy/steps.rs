@@ -16,7 +16,7 @@ use crate::motions::dry::creep::hardly_drills;
 use crate::motions::dry::held::{left_to_rest, margins_of_ways};
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, loses, pose_rates, poses, pull,
+    BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, X, Y, carried, loses, pose_rates, poses,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -60,9 +60,27 @@ impl<G: Own> LossyFlow<G> {
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
-    /// The pull of the slope at these numbers.
-    fn pull_at<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
-        (self.tilt != 0.0).then(|| pull(self.tilt, y))
+    /// The pull of the table with its slope.
+    fn sloped_pull<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
+        let dual = |value: f64, slope: f64| Dual { value, slope };
+        let ((sin, cos), turn) = (place.y[PHI].sin_cos(), place.rate[PHI]);
+        let (sin, cos) = (dual(sin, cos * turn), dual(cos, -(sin * turn)));
+        let tilted = [dual(self.tilt, 0.0) * cos, dual(-self.tilt, 0.0) * sin];
+        if self.om == 0.0 {
+            return tilted;
+        }
+        let [x, y] = [X, Y].map(|i| dual(place.y[i], place.rate[i]));
+        let y5: [Dual<f64>; 5] = core::array::from_fn(|i| dual(place.y[i], place.rate[i]));
+        let (precession, w) = self.turning(y5);
+        let (om, rim) = (dual(self.om, 0.0), &self.sloped.rates.reduced().shape.rim);
+        let out = rim.rho * w[1] + om * (x * sin - y * cos);
+        let on = rim.radius((y5[0], y5[1])) * (w[2] - y5[1] * precession) + om * (x * cos + y * sin);
+        [tilted[0] + om * on, tilted[1] - om * out]
+    }
+
+    /// The pull of the table on a body whose contact has settled, so that psi' hardly moves it; None on a level table.
+    fn settled_pull<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        self.is_pulled().then(|| self.pull_at(y, y.angle(), y[W2], 0.0))
     }
 
     /// The error of s psi' due to steps where the contact point stops so fast that stability limits the steps.
@@ -188,10 +206,14 @@ impl<G: Own> LossyFlow<G> {
         if poses(N) {
             let spin = if self.moves || self.settled { w[2] - c * precession } else { 0.0 };
             let reduced = self.law.rates.reduced();
-            let over = match reduced.contact {
+            let mut over = match reduced.contact {
                 Contact::Rolling => [reduced.shape.rim.rho * w2, reduced.shape.rim.radius((s, c)) * spin],
                 Contact::Smooth => [0.0; 2],
             };
+            if self.om != 0.0 {
+                let with = carried(self.om, y);
+                over = [over[0] + with[0], over[1] + with[1]];
+            }
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [precession, spin], over));
         }
         if self.paced {
@@ -227,12 +249,8 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        if poses(N) && self.tilt != 0.0 {
-            let [pull_h, pull_2] = pull(self.tilt, &place.y);
-            let turn = place.rate[PHI];
-            let pull = [(pull_h, pull_2 * turn), (pull_2, -(pull_h * turn))];
-            let pull = pull.map(|(value, slope)| Dual { value, slope });
-            let tilted = Lossy { losses: self.sloped.losses.pulled(pull), ..self.sloped };
+        if poses(N) && self.is_pulled() {
+            let tilted = Lossy { losses: self.sloped.losses.pulled(self.sloped_pull(place)), ..self.sloped };
             return self.margins_of(&tilted, y, self.grips(&place.y));
         }
         self.margins_of(&self.sloped, y, self.grips(&place.y))
@@ -325,7 +343,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let rate = self.law.stiffness(angle, slope);
         let within =
             settles_within(&self.law.losses.beside(()), (s, fall), rate, s * spin / self.tol)? * 0.01 * noise;
-        let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2, self.pull_at(y)).3;
+        let settled = self.settled(angle, drilling_of((s, c), w[0], w[2]), w2, self.settled_pull(y)).3;
         let close = s * settled.abs() <= SLOWER * fall
             && s * (spin - settled).abs() <= within + 1e-8 * s * settled.abs();
         close.then_some((Halt::Settles, *y))
@@ -371,7 +389,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let (_, [w1, _, w3]) = self.turning([s, c, q, y[W2], y[W3]]);
         (shown[W1], shown[W3]) = (w1, w3);
         if self.settled {
-            let (.., spin) = self.settled((s, c), q, y[W2], self.pull_at(y));
+            let (.., spin) = self.settled((s, c), q, y[W2], self.settled_pull(y));
             (shown[W1], shown[W3]) = (s * (q - c * spin), c * q + s * s * spin);
         }
         shown
