@@ -259,8 +259,9 @@ def rolled(case):
     theta, w1, w2, w3, *slip = case.start
     aloft = dict(zip(("height", "lift"), getattr(case, "aloft", None) or (), strict=False))
     ell, i1, i3, fillet = case.body
-    start = sc.State(theta, w1, w2, w3, slip=tuple(slip), phi=case.phi, place=tuple(case.place), **aloft)
-    how = {"contact": law_of(case), "table": sc.Table(slope=case.slope, turning=case.turning)}
+    start = sc.State(theta, w1, w2, w3, slip=tuple(slip), **aloft)
+    table = sc.Table(case.slope, turning=case.turning, phi0=case.phi, place=tuple(case.place))
+    how = {"contact": law_of(case), "table": table}
     if case.losses:
         how["losses"] = reduce(operator.add, (LOSSES[name](x) for name, x in case.losses.items()))
     if case.kind == "lying" or flies(case):
