@@ -1,6 +1,6 @@
 """The table on which a body moves: its slope, and where on it the body starts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
@@ -53,9 +53,9 @@ class Table(Hinting):
     """
 
     slope: Reals = 0.0
-    turning: float = 0.0
-    phi0: Reals = 0.0
-    place: tuple[Reals, Reals] = (0.0, 0.0)
+    turning: float = field(default=0.0, kw_only=True)
+    phi0: Reals = field(default=0.0, kw_only=True)
+    place: tuple[Reals, Reals] = field(default=(0.0, 0.0), kw_only=True)
 
     def __post_init__(self) -> None:
         slope = radians("slope", self.slope, "-pi/2 < slope < pi/2")

@@ -198,7 +198,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     else:
         found["contact"] = at["contact"]
     if "table_slope" in given:
-        found["table"] = Table(given["table_slope"], given["table_phi0"])
+        found["table"] = Table(given["table_slope"], phi0=given["table_phi0"])
     laws = [
         marked_as_si(law(given[f"loss_{name}"]), known)
         for name, law in KINDS.items()
