@@ -32,6 +32,8 @@ SCENES = (
     "tipped_bottle",
     "sliding_puck",
     "pushed_can",
+    "race_downhill",
+    "turntable",
     "rattleback",
     "rising_egg",
 )

@@ -18,6 +18,7 @@ import near_steady_tube
 import numpy as np
 import pushed_can
 import pytest
+import race_downhill
 import rattleback
 import rising_egg
 import rocking_can
@@ -25,6 +26,7 @@ import rolled_cup
 import sliding_puck
 import tippe_top_turns
 import tipped_bottle
+import turntable
 
 import spincyl as sc
 
@@ -303,6 +305,35 @@ def test_a_can_topples_only_with_enough_friction_and_speed_and_a_fast_spin_keeps
     ):  # fmt: skip
         m = pushed_can.pushed(speed, turns, sc.Coulomb(mu))
         assert low <= np.degrees(m.theta.max()) <= high, (mu, speed, turns)
+
+
+def test_the_shape_wins_a_race_and_where_all_slip_they_arrive_at_the_same_time():
+    says(
+        race_downhill, "a solid ball, then a disk, a hollow ball, and last a hoop",
+        "Where all of them slip they arrive at the same time",
+    )  # fmt: skip
+    times = [race_downhill.arrival(race_downhill.race(name, 10.0, 0.3)) for name in race_downhill.runners]
+    assert (np.diff(times) > 0.03).all()
+    steep = [race_downhill.arrival(race_downhill.race(name, 60.0, 0.3)) for name in race_downhill.runners]
+    assert np.ptp(steep) < 1e-6
+    # v^2 = 2 g s (sin - mu cos)
+    pull = 9.80665 * (np.sin(np.pi / 3) - 0.3 * np.cos(np.pi / 3))
+    assert steep[0] == pytest.approx(np.sqrt(2 / pull), abs=1e-4)
+
+
+def test_a_ball_on_a_turntable_goes_round_at_two_sevenths_of_its_rate_and_a_hollow_one_at_two_fifths():
+    says(
+        turntable, "at two sevenths of the rate of the table, and a hollow one at two fifths",
+        "It drifts across",
+    )  # fmt: skip
+    turn = 2 * np.pi * turntable.second / turntable.rate
+    for body, share in ((turntable.ball, 2 / 7), (turntable.hollow, 2 / 5)):
+        for speed in (0.0, 0.5):
+            once = turntable.once_round(turntable.rolled(body, speed))
+            assert turn / once == pytest.approx(share, abs=1e-4)
+    m = turntable.rolled(turntable.ball, 0.2, np.radians(0.5))
+    down, across, _ = (m.centre[-1] - m.centre[1500]) * turntable.metre
+    assert abs(down) < 1e-3 * across
 
 
 def test_a_rattleback_turns_back_and_the_other_way_takes_more_than_four_times_as_long():

@@ -54,6 +54,16 @@ class Asked(NamedTuple):
     errors: bool = True  # whether the errors of many motions that are integrated are estimated
     table: "Table | None" = None
 
+    @property
+    def slope(self) -> float:
+        """The slope of the table, in radians."""
+        return 0.0 if self.table is None else float(self.table.slope)
+
+    @property
+    def turning(self) -> float:
+        """The rate at which the table turns, in sqrt(g/R)."""
+        return 0.0 if self.table is None else self.table.turning
+
 
 def options_for_core(
     asked: Asked,

@@ -171,15 +171,8 @@ class Motion(Outputs):
             found = self.body.energy(self.states, contact)
         else:
             found = self.body._energy(self._seen, contact, self.rim)
-        if self._turning_table:
-            v_h, v_2 = self.body.centre_velocity(self.states)
-            with_h, with_2 = self._carried
-            found = found + with_h * (v_h + 0.5 * with_h) + with_2 * (v_2 + 0.5 * with_2)
-        if self._slope:
-            (x, _, z), falls = self.natural.centre.T, np.sin(self._slope)
-            found = found - (1 - np.cos(self._slope)) * z - falls * x
-            if contact == "smooth":
-                found = found + 0.5 * (falls * (self.natural.t - self.natural._asked.t0)) ** 2
+        if "beside" in self._extra:
+            found = found + self._extra["beside"]
         return self._told("energy", found)
 
     @property
@@ -403,33 +396,9 @@ class Motion(Outputs):
         return rolled(self.body, self.start, asked)
 
     @property
-    def _slope(self) -> float:
-        """The slope of the table, in radians."""
-        table = self._asked.table
-        return 0.0 if table is None else float(table.slope)
-
-    @property
-    def _turning_table(self) -> float:
-        """The rate at which the table turns, in sqrt(g/R)."""
-        return 0.0 if self._asked.table is None else self._asked.table.turning
-
-    @property
-    def _carried(self) -> tuple[Floats, Floats]:
-        """The velocity of a table that turns under the contact point, along e_h and e2, in sqrt(g R)."""
-        (x, y), rate = self.natural.contact_point.T, self._turning_table
-        sin, cos = np.sin(self.phi), np.cos(self.phi)
-        return rate * (x * sin - y * cos), rate * (x * cos + y * sin)
-
-    @property
-    def work_table(self) -> Floats:
-        """(n,) work of a table that turns since the first time, M g R or J."""
-        gained: Floats = self.energy - self.energy[0]
-        return gained + self.dissipated if "dissipated" in self._extra else gained
-
-    @property
     def _by_steps(self) -> bool:
         """Whether the whole motion was integrated with steps within a tolerance."""
-        return self.losses is not None or self._slope != 0 or self._turning_table != 0
+        return self.losses is not None or "beside" in self._extra
 
     @property
     def _doubt(self) -> str:

@@ -49,7 +49,7 @@ class Table(Hinting):
     >>> ball, still = sc.Body.ball(0.0, 0.4, 0.4), sc.State(1.0, 0.0, 0.0, 0.0)
     >>> m = sc.roll(ball, still, 3.0, table=sc.Table(0.3), want="pose")
     >>> round(float(m.centre[-1, 0]), 6)  # 5/14 of sin(0.3) t^2
-    0.949885
+    0.949886
     """
 
     slope: Reals = 0.0

@@ -16,8 +16,9 @@
 //! The slip u is that over the table, and U changes with P and with the axes along which u is told.
 
 use super::walk::two_runs::Followed;
-use super::{Ask, Moving, Start};
+use super::{Ask, Motion, Moving, Start};
 use crate::error::{Error, room, within};
+use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::loss::{Law, Losses};
@@ -52,6 +53,20 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
         () if dry => refuses("0 with dry friction along the contour, or with drilling friction"),
         () => Ok(()),
     }
+}
+
+/// What the energy has beside that on a level table at rest, in M g R: the fall of the centre downhill, and the velocity with
+/// which a table that turns carries it. On a smooth slope the centre has fallen for a time. None without a pose.
+pub(crate) fn energy_beside(body: &Body, ask: &Ask, m: &Motion, i: usize) -> Option<f64> {
+    let of = m.sample(i);
+    let (centre, velocity, point) = (of.centre(body)?, of.velocity(body)?, of.pose?.contact_point);
+    let (sin, cos) = ask.slope.sin_cos();
+    let [x, y] = [-(ask.turning * point.y), ask.turning * point.x];
+    let carried = x * (velocity.x + 0.5 * x) + y * (velocity.y + 0.5 * y);
+    let begun = m.path.as_ref().and_then(|path| path.phases.first()).map_or(of.time, |phase| phase.time);
+    let free = ask.table == Table::Smooth && ask.restitution.is_none();
+    let falls = if free { sin * (of.time - begun) } else { 0.0 };
+    Some(carried + 0.5 * falls * falls - (1.0 - cos) * centre.z - sin * centre.x)
 }
 
 impl Slope {

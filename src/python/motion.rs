@@ -16,6 +16,7 @@ use crate::motions::body::stand::flow::couple_on_face;
 use crate::motions::custom;
 use crate::motions::exact::Swing;
 use crate::motions::motion;
+use crate::motions::slope::energy_beside;
 use crate::motions::stone;
 use crate::motions::turning;
 use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, Path, RestsOn, Sample, Start};
@@ -84,6 +85,10 @@ trait StateArrays: Moving + Sized {
     fn couple_on_face(_: &Self::Body, _: &Ask) -> CoupleOfSlip<Self> {
         Box::new(|_, _| f64::NAN)
     }
+    /// What the energy at an index has beside that on a level table at rest; None there.
+    fn beside(_: &Motion<Self>, _: &Self::Body, _: &Ask, _: usize) -> Option<f64> {
+        None
+    }
     /// What a body of revolution rests on.
     fn rests_on(_: &Motion<Self>, _: &Self::Body) -> RestsOn {
         RestsOn::None
@@ -131,6 +136,10 @@ impl StateArrays for State {
 
     fn couple_on_face(body: &Body, ask: &Ask) -> CoupleOfSlip<Self> {
         Box::new(couple_on_face(body, ask))
+    }
+
+    fn beside(m: &Motion, body: &Body, ask: &Ask, i: usize) -> Option<f64> {
+        energy_beside(body, ask, m, i)
     }
 
     fn rests_on(m: &Motion, body: &Body) -> RestsOn {
@@ -211,6 +220,9 @@ fn motion_columns<S: StateArrays>(
     {
         rows.add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
         rows.add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
+    }
+    if !ask.is_level() && m.poses.is_some() {
+        rows.add("beside", 0, &|i, to| to.push(S::beside(m, body, ask, i).unwrap_or(f64::NAN)))?;
     }
     let friction = ask.table.friction();
     if let Some(path) = &m.path

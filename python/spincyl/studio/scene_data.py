@@ -46,7 +46,7 @@ _MU = 1.0, 1.5, 1e3
 
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
-    if m._turning_table:
+    if m._asked.turning:
         raise ValueError("m: a scene needs a table that does not turn")
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
@@ -56,7 +56,7 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
         "units": "SI: metres, kilograms, seconds, radians, newtons, joules",
         "axes": "of the table, z its normal; quaternions are x, y, z, w and turn the body's axes into these",
         "scale": {"R": scale.radius, "M": scale.mass, "g": scale.gravity, "second": second},
-        "gravity": [scale.gravity * math.sin(m._slope), 0.0, -scale.gravity * math.cos(m._slope)],
+        "gravity": [scale.gravity * math.sin(m._asked.slope), 0.0, -scale.gravity * math.cos(m._asked.slope)],
         "body": _body(m.body, scale, metre),
         "table": _table(m, metre, second, joule, t0),
         "start": {
@@ -76,7 +76,7 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
     height = m._extra.get("height", np.zeros(m.t.size))
     v = u + np.cross(w, m.centre - np.column_stack([m.contact_point, height]))
     if m.contact == "smooth" and "slip" not in m._extra:
-        v[:, 0], v[:, 1] = math.sin(m._slope) * (m.t - m._asked.t0), 0.0  # the centre falls along x
+        v[:, 0], v[:, 1] = math.sin(m._asked.slope) * (m.t - m._asked.t0), 0.0  # the centre falls along x
     return w, v
 
 

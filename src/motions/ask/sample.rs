@@ -154,7 +154,7 @@ impl Sample {
         self.pose.map(|pose| axes(pose.phi.rest, 0.0) * Vector3::new(along, across, rise))
     }
 
-    /// Kinetic and potential energy in M g R, with heights above the table, if poses were requested.
+    /// Kinetic and potential energy in M g R, with heights above a level table at rest, if poses were requested.
     pub fn energy(&self, body: &Body) -> Option<f64> {
         let turning = self.state.angular_velocity().dot(&self.state.angular_momentum(body));
         self.velocity(body).zip(self.centre(body)).map(|(v, at)| 0.5 * (turning + v.norm_squared()) + at.z)

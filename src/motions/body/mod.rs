@@ -76,10 +76,10 @@ pub(crate) fn followed(
     let fine = check_walk(&body, &start, ask)?;
     check_times_after(start.time, times)?;
     let Some(slope) = Slope::of(ask)? else {
-        return judged_walk((&body, &start), times, (ask, fine, is_judged), go_on);
+        return judged_walk((&body, &start), times, (ask, fine), is_judged, go_on);
     };
     let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
-    let found = judged_walk((&body, &scaled), &since, (&slope.ask(ask), fine, is_judged), go_on)?;
+    let found = judged_walk((&body, &scaled), &since, (&slope.ask(ask), fine), is_judged, go_on)?;
     Ok(slope.motion(found, &start, times))
 }
 
@@ -87,7 +87,8 @@ pub(crate) fn followed(
 fn judged_walk(
     (body, start): (&Body, &Start),
     times: &[f64],
-    (ask, fine, is_judged): (&Ask, f64, bool),
+    (ask, fine): (&Ask, f64),
+    is_judged: bool,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed, Error> {
     let mut run = |tol: f64, times: &[f64]| walked((body, start), ask, (tol, false), times, go_on);

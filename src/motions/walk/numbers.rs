@@ -5,6 +5,7 @@
 //! pose and lost energy only if they are computed
 //! ```
 
+use crate::laws::body::Rim;
 use core::f64::consts::PI;
 
 /// The reason for which a flow halts.
@@ -92,6 +93,30 @@ pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N]) -> [f64; 2] {
     }
     let (sin, cos) = y[PHI].sin_cos();
     [turning * (y[X] * sin - y[Y] * cos), turning * (y[X] * cos + y[Y] * sin)]
+}
+
+/// The velocity of the contact point over the table, along e_h and e2.
+#[inline(always)]
+pub(crate) fn contact_velocity(
+    rim: &Rim<f64>,
+    angle: (f64, f64),
+    w2: f64,
+    spin: f64,
+    [u_h, u_2]: [f64; 2],
+) -> [f64; 2] {
+    [u_h + rim.rho * w2, u_2 + rim.radius(angle) * spin]
+}
+
+/// The sum of two vectors.
+#[inline(always)]
+pub(crate) fn sum([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    [a + c, b + d]
+}
+
+/// The pull of a table that turns at this rate on a body whose contact point runs along e_h and e2, added to another one.
+#[inline(always)]
+pub(crate) fn driven(turning: f64, [pull_h, pull_2]: [f64; 2], [out, on]: [f64; 2]) -> [f64; 2] {
+    [pull_h + turning * on, pull_2 - turning * out]
 }
 
 /// The axis of a ball may have passed the vertical, where s is negative: then the ball leans to the other side, so that s,

@@ -10,13 +10,12 @@
 
 use super::super::body_walk::BodyWalk;
 use super::super::own::Own;
-use super::super::slide::contact_velocity;
 use crate::laws::contact::standstill::Standstill;
 use crate::laws::loss::Law;
 use crate::laws::state::{State, spin_of};
 use crate::motions::Ending;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, loses, pose_rates, poses,
+    BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, contact_velocity, loses, pose_rates, poses,
 };
 use crate::motions::walk::{Next, Phases};
 

@@ -1,7 +1,7 @@
 //! A slip as a flow: its rates, the margins at which it ends, and the lengths and errors of its steps.
 
 use super::standstill::vanished;
-use super::{Own, Slide, contact_velocity};
+use super::{Own, Slide};
 use crate::laws::body::{Shape, landing_angle, rounding_at};
 use crate::laws::contact::slip::{FollowsSpeed, SlipResponse, Slipping};
 use crate::laws::loss::{Holds, Law, OwnCouple};
@@ -13,7 +13,7 @@ use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS};
 use crate::motions::dry::held::margins_of_ways;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, carried, loses, pose_rates, poses,
+    BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, driven, loses, pose_rates, poses,
     pull,
 };
 use crate::numbers::{Dual, Real};
@@ -184,7 +184,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        let [s, c, w1, w2, w3, u_h, u_2] = core::array::from_fn(|i| y[i]);
+        let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
         let ([precession, spin], power) = if self.settled {
             self.settled_rates(y, all)
         } else {
@@ -198,14 +198,12 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
         }
         if poses(N) {
             let pace = all[TIME];
-            let mut over = contact_velocity(&self.law.shape.rim, (s, c), w2, spin, [u_h, u_2]);
+            let runs = self.runs(y, spin);
             if self.tilt != 0.0 || self.turning != 0.0 {
-                let with = carried(self.turning, y);
-                let [pull_h, pull_2] = self.pulled_along(pull(self.tilt, y), over, with);
+                let [pull_h, pull_2] = driven(self.turning, pull(self.tilt, y), runs);
                 (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
-                over = [over[0] + with[0], over[1] + with[1]];
             }
-            let pose = pose_rates(y[PHI], [precession, spin], over);
+            let pose = pose_rates(y[PHI], [precession, spin], runs);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }
     }

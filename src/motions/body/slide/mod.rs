@@ -21,13 +21,15 @@ mod standstill;
 
 use super::face::FLAT;
 use super::own::Own;
-use crate::laws::body::{Body, Rim, leaves};
+use crate::laws::body::{Body, leaves};
 use crate::laws::contact::Force;
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Law, Losses};
 use crate::laws::state::State;
 use crate::motions::dry::creep::Creeping;
-use crate::motions::walk::numbers::{BodyNumbers, COS, Halt, SIN, W1, W2, W3, carried, pull};
+use crate::motions::walk::numbers::{
+    BodyNumbers, COS, Halt, SIN, W1, W2, W3, carried, contact_velocity, driven, pull, sum,
+};
 use crate::numbers::Dual;
 pub(super) use creeps::is_still;
 pub(crate) use flow::longest;
@@ -109,15 +111,15 @@ impl<L: Own> Slide<L> {
         if self.turning == 0.0 {
             return tilted;
         }
-        let ((s, c), [w1, w2, w3]) = (y.angle(), y.w());
-        let over = contact_velocity(&self.law.shape.rim, (s, c), w2, w3 - c * w1 / s, y.slip());
-        self.pulled_along(tilted, over, carried(self.turning, y))
+        let ((s, c), [w1, _, w3]) = (y.angle(), y.w());
+        driven(self.turning, tilted, self.runs(y, w3 - c * w1 / s))
     }
 
-    /// The same where the contact point moves with these velocities over the table and with it.
+    /// The velocity of the contact point, over the table and with it, along e_h and e2.
     #[inline(always)]
-    fn pulled_along(&self, [pull_h, pull_2]: [f64; 2], over: [f64; 2], with: [f64; 2]) -> [f64; 2] {
-        [pull_h + self.turning * (over[1] + with[1]), pull_2 - self.turning * (over[0] + with[0])]
+    fn runs<const N: usize>(&self, y: &[f64; N], spin: f64) -> [f64; 2] {
+        let over = contact_velocity(&self.law.shape.rim, y.angle(), y[W2], spin, y.slip());
+        if self.turning == 0.0 { over } else { sum(over, carried(self.turning, y)) }
     }
 
     /// The law without those of the user.
@@ -177,16 +179,4 @@ impl<L: Own> Slide<L> {
             None
         }
     }
-}
-
-/// The velocity of the contact point over the table, along e_h and e2.
-#[inline(always)]
-pub(crate) fn contact_velocity(
-    rim: &Rim<f64>,
-    angle: (f64, f64),
-    w2: f64,
-    spin: f64,
-    [u_h, u_2]: [f64; 2],
-) -> [f64; 2] {
-    [u_h + rim.rho * w2, u_2 + rim.radius(angle) * spin]
 }

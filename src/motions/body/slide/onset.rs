@@ -1,11 +1,11 @@
 //! The first moment of a slip that has no series, in a straight line.
 
-use super::{Own, Slide, contact_velocity};
+use super::{Own, Slide};
 use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::friction::LEAST_GROWTH;
 use crate::motions::walk::MOMENT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, carried, loses, pose_rates, poses,
+    BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, loses, pose_rates, poses, sum,
 };
 impl<L: Own> Slide<L> {
     /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
@@ -17,11 +17,7 @@ impl<L: Own> Slide<L> {
         (all[UH], all[U2]) = (all[UH] + pull_h, all[U2] + pull_2);
         let turning = [w[0] / s, w[2] - c * w[0] / s];
         if poses(N) {
-            let (over, with) = (
-                contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], y.slip()),
-                carried(self.turning, y),
-            );
-            let over = [over[0] + with[0], over[1] + with[1]];
+            let over = self.runs(y, turning[1]);
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], turning, over));
         }
         if loses(N) {
@@ -41,18 +37,9 @@ impl<L: Own> Slide<L> {
         } else {
             self.law.answers(angle, w, u)
         };
-        let ([s, c], mut y, pull) = ([start[SIN], start[COS]], *start, self.pull(start));
+        let ([s, c], mut y, [u_h, u_2]) = ([start[SIN], start[COS]], *start, sum(at.u, self.pull(start)));
         let mut rates = [0.0; N];
-        rates[..8].copy_from_slice(&[
-            -(c * w[1]),
-            s * w[1],
-            at.w[0],
-            at.w[1],
-            at.w[2],
-            at.u[0] + pull[0],
-            at.u[1] + pull[1],
-            1.0,
-        ]);
+        rates[..8].copy_from_slice(&[-(c * w[1]), s * w[1], at.w[0], at.w[1], at.w[2], u_h, u_2, 1.0]);
         if rests {
             let growth = if L::IS { growth.max(LEAST_GROWTH) } else { growth };
             (rates[UH], rates[U2]) = (growth * way[0], growth * way[1]);
@@ -61,11 +48,7 @@ impl<L: Own> Slide<L> {
         let precession = w[0] / s;
         if poses(N) {
             let turning = [precession, w[2] - c * precession];
-            let (over, with) = (
-                contact_velocity(&self.law.shape.rim, (s, c), w[1], turning[1], u),
-                carried(self.turning, start),
-            );
-            let over = [over[0] + with[0], over[1] + with[1]];
+            let over = self.runs(start, turning[1]);
             rates[PHI..PHI + 4].copy_from_slice(&pose_rates(start[PHI], turning, over));
         }
         if loses(N) {

@@ -13,7 +13,7 @@ use crate::numbers::{Real, Series};
 
 /// The series of a body's slow slips.
 pub(crate) struct BodySlips {
-    slips: Slips,
+    slips: RecordedSlips,
     /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
     /// law was recorded.
     one: Option<Rim<f64>>,
@@ -24,12 +24,12 @@ pub(crate) struct BodySlips {
 
 /// The slips on a level table, or on one that is tilted or turns, where sine and cosine of phi and the place are numbers
 /// as well.
-enum Slips {
+enum RecordedSlips {
     Level(SlowSlips<5>),
     Tilted(SlowSlips<9>),
 }
 
-impl Slips {
+impl RecordedSlips {
     fn more(&self, i: usize) -> Series {
         match self {
             Self::Level(slips) => slips.more(i),
@@ -84,28 +84,34 @@ impl BodySlips {
             let still = tape.number(0.0);
             SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
         });
-        Self { slips: Slips::Level(slips), one: None, ways: None, lost }
+        Self { slips: RecordedSlips::Level(slips), one: None, ways: None, lost }
     }
 
     fn on_one(law: &Slipping<f64>, [tilt, turning]: [f64; 2], tol: f64, count: usize) -> Self {
         let mut lost = None;
         let slips = if tilt == 0.0 && turning == 0.0 {
-            Slips::Level(SlowSlips::of(tol, |tape, numbers, slip, way| {
+            RecordedSlips::Level(SlowSlips::of(tol, |tape, numbers, slip, way| {
                 Self::rates_on_one(law, tape, numbers, [slip, way], (count, &mut lost))
             }))
         } else {
-            Slips::Tilted(SlowSlips::of(tol, |tape, [s, c, w1, w2, w3, sin, cos, x, y], slip, way| {
-                let SlowRates { numbers: [ds, dc, d1, d2, d3], slip: [du_h, du_2], mut more } =
-                    Self::rates_on_one(law, tape, [s, c, w1, w2, w3], [slip, way], (count, &mut lost));
-                let (tilt, om, turn) = (tape.number(tilt), tape.number(turning), w1 / s);
-                // The velocity of the contact point, over the table and with it.
-                let (out, on) = (more[3] + om * (x * sin - y * cos), more[4] + om * (x * cos + y * sin));
-                (more[3], more[4]) = (out, on);
-                let moves = [out * cos - on * sin, out * sin + on * cos];
-                let numbers = [ds, dc, d1, d2, d3, cos * turn, -(sin * turn), moves[0], moves[1]];
-                let slip = [du_h + tilt * cos + om * on, du_2 - tilt * sin - om * out];
-                SlowRates { numbers, slip, more }
-            }))
+            RecordedSlips::Tilted(SlowSlips::of(
+                tol,
+                |tape, [s, c, w1, w2, w3, sin, cos, x, y], slip, way| {
+                    let SlowRates { numbers: [ds, dc, d1, d2, d3], slip: [du_h, du_2], mut more } =
+                        Self::rates_on_one(law, tape, [s, c, w1, w2, w3], [slip, way], (count, &mut lost));
+                    let (tilt, om, turn) = (tape.number(tilt), tape.number(turning), w1 / s);
+                    // The velocity of the contact point, over the table and with it.
+                    let [_, _, _, out, on, ..] = &mut more[..] else {
+                        unreachable!("a slope needs the pose")
+                    };
+                    (*out, *on) = (*out + om * (x * sin - y * cos), *on + om * (x * cos + y * sin));
+                    let (out, on) = (*out, *on);
+                    let moves = [out * cos - on * sin, out * sin + on * cos];
+                    let numbers = [ds, dc, d1, d2, d3, cos * turn, -(sin * turn), moves[0], moves[1]];
+                    let slip = [du_h + tilt * cos + om * on, du_2 - tilt * sin - om * out];
+                    SlowRates { numbers, slip, more }
+                },
+            ))
         };
         Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
@@ -174,13 +180,14 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
     #[inline(never)]
     fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>> {
         match &mut self.slips {
-            Slips::Level(slips) => {
+            RecordedSlips::Level(slips) => {
                 let slow = slips.follow(core::array::from_fn(|i| y[i]), (angle, growth), speed)?;
                 Some(self.series(y, &slow))
             }
-            Slips::Tilted(slips) => {
+            RecordedSlips::Tilted(slips) => {
                 let (sin, cos) = y[PHI].sin_cos();
-                let start = [y[0], y[1], y[2], y[3], y[4], sin, cos, y[X], y[Y]];
+                let [s, c, w1, w2, w3]: [f64; 5] = core::array::from_fn(|i| y[i]);
+                let start = [s, c, w1, w2, w3, sin, cos, y[X], y[Y]];
                 let slow = slips.follow(start, (angle, growth), speed)?;
                 Some(self.series(y, &slow))
             }

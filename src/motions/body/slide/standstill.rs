@@ -3,7 +3,7 @@
 use super::{Own, Slide};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::motions::dry::creep::rests_below;
-use crate::motions::walk::numbers::{BodyNumbers, SIN, TIME, U2, UH, W2};
+use crate::motions::walk::numbers::{BodyNumbers, SIN, TIME, U2, UH, W2, sum};
 use crate::motions::walk::slip_over;
 /// Error of the end of a slip that is extrapolated, in tolerances. It is far below this bound: with a bound of 1 it was at most
 /// 0.1, and no claim of 432 random motions was too small; with a bound of 100 it was up to 7, and two claims were.
@@ -66,9 +66,8 @@ impl<L: Own> Slide<L> {
         let beside = |by: f64, share: f64| [share * (u - by * v), share * (v + by * u)];
         let bends = |y: &[f64; N], by: f64, share: f64| {
             let [u, v] = beside(by, share);
-            let (at, pull) = (self.acts(y.angle(), y.w(), [u, v]).u, self.pull(y));
-            let at = [at[0] + pull[0], at[1] + pull[1]];
-            (u * at[1] - v * at[0]) / (share * square)
+            let [along, aside] = sum(self.acts(y.angle(), y.w(), [u, v]).u, self.pull(y));
+            (u * aside - v * along) / (share * square)
         };
         // A slip that leaves its direction the faster, the slower it is, may pass by zero, however near.
         let returns = (bends(&place.y, -BESIDE, 1.0) - bends(&place.y, BESIDE, 1.0)) / (2.0 * BESIDE);

@@ -26,10 +26,11 @@ use crate::laws::loss::{COUNT, Couples, GRACE, Holds, Law, Losses, Ways, rounded
 use crate::laws::state::{State, drilling_of};
 use crate::motions::body::face::{FLAT, turning_share};
 use crate::motions::body::own::Own;
-use crate::motions::body::slide::contact_velocity;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
-use crate::motions::walk::numbers::{COS, Halt, P, SIN, U2, UH, W2, W3, carried, poses, pull};
+use crate::motions::walk::numbers::{
+    COS, Halt, P, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses, pull,
+};
 use crate::numbers::{Dual, Real};
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
@@ -141,13 +142,12 @@ impl<G: Own> LossyFlow<G> {
 
     /// The pull on the centre along e_h and e2, for this w2 and psi'.
     fn pull_at<const N: usize>(&self, y: &[f64; N], angle: (f64, f64), w2: f64, spin: f64) -> [f64; 2] {
-        let [pull_h, pull_2] = pull(self.tilt, y);
+        let tilted = pull(self.tilt, y);
         if self.om == 0.0 {
-            return [pull_h, pull_2];
+            return tilted;
         }
-        let ([with_h, with_2], rim) = (carried(self.om, y), &self.law.rates.reduced().shape.rim);
-        let over = contact_velocity(rim, angle, w2, spin, [with_h, with_2]);
-        [pull_h + self.om * over[1], pull_2 - self.om * over[0]]
+        let (with, rim) = (carried(self.om, y), &self.law.rates.reduced().shape.rim);
+        driven(self.om, tilted, contact_velocity(rim, angle, w2, spin, with))
     }
 
     /// The law with the pull of the table at these numbers of the flow; None on a level table.

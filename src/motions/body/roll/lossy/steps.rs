@@ -17,6 +17,7 @@ use crate::motions::dry::held::{left_to_rest, margins_of_ways};
 use crate::motions::dry::settled::{Balance, CLOSE, EFFORT, SLOWER, Turned, balance, settles_within};
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, P, PHI, SIN, TIME, W1, W2, W3, X, Y, carried, loses, pose_rates, poses,
+    sum,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -211,8 +212,7 @@ impl<G: Own> LossyFlow<G> {
                 Contact::Smooth => [0.0; 2],
             };
             if self.om != 0.0 {
-                let with = carried(self.om, y);
-                over = [over[0] + with[0], over[1] + with[1]];
+                over = sum(over, carried(self.om, y));
             }
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [precession, spin], over));
         }
