@@ -45,6 +45,7 @@ mod resting;
 mod rounded_motions;
 mod several_held;
 mod slip;
+mod slope_lying;
 mod stability;
 mod standing;
 mod steady_states;

@@ -37,11 +37,10 @@ impl Slips {
     }
 }
 
-/// The law of a slip on one rim, or on two rims of which the other already slips.
+/// The law of a slip on one rim, or on two rims of which the other already slips, with the tangent of the slope.
 pub(crate) enum Slippery {
-    /// With the tangent of the slope.
     One(Slipping<f64>, f64),
-    Two(Lying<f64>),
+    Two(Lying<f64>, f64),
 }
 
 impl BodySlips {
@@ -49,7 +48,7 @@ impl BodySlips {
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
             Slippery::One(law, tilt) => Self::on_one(law, *tilt, tol, count),
-            Slippery::Two(law) => Self::on_two(law, tol, count),
+            Slippery::Two(law, tilt) => Self::on_two(law, *tilt, tol, count),
         }
     }
 
@@ -58,32 +57,55 @@ impl BodySlips {
         self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
-    fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
+    fn on_two(law: &Lying<f64>, tilt: f64, tol: f64, count: usize) -> Self {
         let mut lost = None;
-        let slips = SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
-            let taped = law.map(|x| tape.number(x));
-            let y = [w1, w3, slip[0], slip[1]];
-            let [mu, _] = taped.strength;
-            let [u, v] = taped.other_slip(y);
-            let size = (u * u + v * v).sqrt();
-            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
-            let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
-            let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
-            let angle = taped.border.angle;
-            if poses(count) {
-                let spin = spin_of(angle, w1, w3);
-                let radius = taped.border.circles[0].radius;
-                more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
-            }
-            if loses(count) {
-                lost = Some(more.len());
-                let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
-                more.push(at.couple[1] * rolling - at.couple[0] * drilling);
-            }
-            let still = tape.number(0.0);
-            SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
-        });
-        Self { slips: Slips::Level(slips), one: None, ways: None, lost }
+        let level = Lying { pull: None, ..*law };
+        let slips = if tilt == 0.0 {
+            Slips::Level(SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
+                Self::rates_on_two(&level.map(|x| tape.number(x)), tape, [w1, w3], [slip, way], (count, &mut lost))
+            }))
+        } else {
+            Slips::Tilted(SlowSlips::of(tol, |tape, [_, _, w1, _, w3, sin, cos], slip, way| {
+                let mut taped = level.map(|x| tape.number(x));
+                let tilt = tape.number(tilt);
+                taped.pull = Some([tilt * cos, -(tilt * sin)]);
+                let SlowRates { numbers: [a, b, d1, d2, d3], slip, more } =
+                    Self::rates_on_two(&taped, tape, [w1, w3], [slip, way], (count, &mut lost));
+                let turn = w1 / taped.border.angle.0;
+                SlowRates { numbers: [a, b, d1, d2, d3, cos * turn, -(sin * turn)], slip, more }
+            }))
+        };
+        Self { slips, one: None, ways: None, lost }
+    }
+
+    /// The rates on two rims, with the index of that of the lost energy.
+    fn rates_on_two<'a>(
+        taped: &Lying<Taped<'a>>,
+        tape: &'a Tape,
+        [w1, w3]: [Taped<'a>; 2],
+        [slip, way]: [[Taped<'a>; 2]; 2],
+        (count, lost): (usize, &mut Option<usize>),
+    ) -> SlowRates<Taped<'a>, 5> {
+        let y = [w1, w3, slip[0], slip[1]];
+        let [mu, _] = taped.strength;
+        let [u, v] = taped.other_slip(y);
+        let size = (u * u + v * v).sqrt();
+        let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
+        let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
+        let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
+        let angle = taped.border.angle;
+        if poses(count) {
+            let spin = spin_of(angle, w1, w3);
+            let radius = taped.border.circles[0].radius;
+            more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
+        }
+        if loses(count) {
+            *lost = Some(more.len());
+            let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
+            more.push(at.couple[1] * rolling - at.couple[0] * drilling);
+        }
+        let still = tape.number(0.0);
+        SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
     }
 
     fn on_one(law: &Slipping<f64>, tilt: f64, tol: f64, count: usize) -> Self {
