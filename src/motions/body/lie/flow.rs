@@ -4,6 +4,7 @@
 //! y = (1, 0, w1, 0, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
 //! both slip   dt = k/(k + soft) dsigma,   k = |u||u'|/(|u| + |u'|)        smooth up to u = 0 or u' = 0
 //! margins     N', N,  (mu_s N)^2 - F^2,  |w1| of a pivot,  |w1| or its hold,  |w3| or its hold
+//! rolls on a slope   the least of c^2, c'^2 and (c + c')^2 - F_h^2 in place of the third
 //! ```
 //! [`contact::lying`](crate::laws::contact) has the equations. Error: the tolerance of the steps.
 

@@ -61,7 +61,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let falls = -self.hop_rates(&begin, 0.0, sticks)[W2];
         let mut lasts = 2.0 * rises / falls;
         let [u, v] = self.at.slip();
-        let friction = self.of.slide.law.strength * lasts * OUTLASTS;
+        let friction = (self.of.slide.law.strength + self.of.tilt.abs()) * lasts * OUTLASTS;
         if !(0.0..SOON).contains(&lasts) || !sticks && self.of.slide.law.dry && u.hypot(v) < friction {
             return false;
         }

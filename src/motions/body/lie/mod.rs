@@ -6,6 +6,8 @@
 //! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
 //! a body that turns fast, whose centre is not between the two, leaves the table with both
 //! rolls straight at constant speed, or until dry losses stop it
+//! on a slope, at rest on both: rolls straight if c + c' >= |F_h|, c = sqrt((mu_s N)^2 - F_2^2);  else see `two_at_rest`
+//!   one sticks, to w1 = 0: the same test;   rolls straight, to w3 = 0: turns round, or rests if dry losses hold it
 //! ```
 //! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
 //!

@@ -3,6 +3,7 @@
 //! ```text
 //! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
+//! on a slope gamma of both hops differ, by -+ G_h; a rim at rest may slip off in each hop: then three cycles show the ratio
 //! ```
 //! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
 //! summed, and that time, times the angle by which a slow slip turns.
@@ -101,7 +102,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     #[inline(never)]
     pub(crate) fn shrinks_out(&mut self) -> Option<([f64; N], f64)> {
         let (on_face, up) = (self.is_on_face(), self.up());
-        if !self.of.body.has_row() && !on_face {
+        // A rim at rest may slip off in each hop down a slope.
+        let sloped = self.of.tilt != 0.0 && !self.of.body.has_row();
+        if !self.of.body.has_row() && !on_face && !sloped {
             return None;
         }
         let all = &mut self.of.rocked;
@@ -121,8 +124,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let steady = |ratio: f64, known: f64| (ratio / known - 1.0).abs();
         let lasted = (now[TIME] - before[TIME]) / (before[TIME] - first[TIME]);
         let unlike = steady(before[W2] / first[W2], ratio).max(steady(lasted, ratio));
-        let turned = on_face || other[COS].signum() != now[COS].signum();
-        let slips = [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
+        let turned = on_face || sloped || other[COS].signum() != now[COS].signum();
+        let slips = sloped || [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
         if !(turned && slips && ratio < MOST_RATIO && unlike < UNLIKE) {
             return None;
         }
