@@ -202,7 +202,12 @@ impl<T: Real> Lying<T> {
     }
 
     /// The motion under these normal forces, this friction and this couple.
-    pub(super) fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, _, m3]: [T; 3]) -> Lain<T> {
+    pub(super) fn under(
+        &self,
+        [w1, w3, u_h, u_2]: Flat<T>,
+        force: [[T; 3]; 2],
+        [m1, _, m3]: [T; 3],
+    ) -> Lain<T> {
         let (Shape { i1, i3, .. }, (s, _), [here, _]) = (self.shape, self.border.angle, self.border.circles);
         let [[_, low, low_h], [_, up, up_h]] = force;
         let [t1, t3] = self.torque([low, up]);

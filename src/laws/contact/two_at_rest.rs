@@ -13,7 +13,7 @@ use super::lying::{Lain, Lying};
 use crate::laws::body::{Border, Shape};
 
 /// The largest number of steps of the search.
-const STEPS: usize = 200_000;
+const STEPS: usize = 100_000;
 
 /// How both circles begin to move.
 #[derive(Debug, Clone, Copy)]

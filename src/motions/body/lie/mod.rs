@@ -59,8 +59,9 @@ const STOPS_AT_ONCE: f64 = 1e-6;
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
-/// The share by which friction that has just ceased to hold both rims is smaller than what they need.
-const RELEASED: f64 = 1e-9;
+/// The shares by which friction that has just ceased to hold both rims is smaller than what they need: the next one where
+/// the search does not end with the one before.
+const RELEASED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
@@ -246,19 +247,28 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let lower = flow.lain(&self.at).force.iter().position(|force| force[0] < 0.0);
             return lower.map_or(Next::Ends(Ending::Slip), |lower| self.rises_on(lower == 1, true));
         }
-        self.slips_from_rest(flow, 0.0)
+        self.slips_from_rest(flow, false)
     }
 
-    /// The phase of a body on a slope whose rims are at rest, where friction, smaller by the share `less`, cannot hold both.
+    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just let one go.
     #[inline(never)]
-    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, less: f64) -> Next {
+    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: bool) -> Next {
         flow.stance = Stance::Slips;
         flow.holds_all(&self.at);
         let w = [self.at[W1], self.at[W3]];
         let begins = |flow: &LyingFlow<G>| {
-            let mut law = flow.law_here(&self.at);
-            law.strength = law.strength.map(|mu| mu * (1.0 - less));
-            law.begins(w, [flow.fixed * (1.0 - less); 2])
+            let law = flow.law_here(&self.at);
+            if !released {
+                return law.begins(w, [flow.fixed; 2]);
+            }
+            let less = |share: f64| law.strength.map(|mu| mu * (1.0 - share));
+            let under = |mu: [f64; 2]| Lying { strength: mu, ..law }.begins(w, mu);
+            if law.strength != [flow.fixed; 2] {
+                return under(law.strength);
+            }
+            RELEASED
+                .into_iter()
+                .find_map(|share| under(less(share)).filter(|begun| begun.moves != [false; 2]))
         };
         let mut found = begins(&flow);
         if found.is_some_and(|begun| flow.lets_roll(&begun.lain)) {
@@ -275,7 +285,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sets_state();
         self.claims(NUDGED);
         let stance = match begun.moves {
-            [false, false] if less > 0.0 => return Next::Ends(Ending::Landing),
+            [false, false] if released => return Next::Ends(Ending::Landing),
             [false, false] => {
                 self.rolls_along(&flow.law);
                 return self.begins_stance(flow, Stance::Rolls);
@@ -580,7 +590,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
                 if phase.flow.stance == Stance::Rolls && self.of.tilt != 0.0 {
-                    self.slips_from_rest(phase.flow, RELEASED)
+                    self.slips_from_rest(phase.flow, true)
                 } else if phase.flow.stance == Stance::Rolls {
                     self.begins_stance(phase.flow, Stance::Rolls)
                 } else {
@@ -692,7 +702,10 @@ fn row_of<G: Own, const N: usize>(
         if flow.law.pull.is_some() {
             // The shares in which both rims hold as much as they can.
             let most = flow.holds_along(&forces);
-            forces.iter_mut().zip(most).for_each(|(force, share)| force[2] += pull * share / (most[0] + most[1]));
+            forces
+                .iter_mut()
+                .zip(most)
+                .for_each(|(force, share)| force[2] += pull * share / (most[0] + most[1]));
         } else {
             forces.iter_mut().for_each(|[normal, _, along]| *along += *normal * pull);
         }

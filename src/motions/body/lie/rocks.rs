@@ -90,7 +90,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let fastest = [W1, W3, UH, U2].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
         // A slope turns a slip as well.
-        let turns = left * (fastest + (self.of.slide.law.strength * TURNS_SLIP + self.of.tilt.abs()) / slowest);
+        let turns =
+            left * (fastest + (self.of.slide.law.strength * TURNS_SLIP + self.of.tilt.abs()) / slowest);
         // A hop that is lost in the roundings of theta has no later one.
         let lost = self.of.body.has_row() && begin[W2] < LOST_HOP && left < TURNED;
         let sums = left * fastest < SOON_OVER && turns < TURNED;

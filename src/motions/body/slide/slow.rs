@@ -62,7 +62,13 @@ impl BodySlips {
         let level = Lying { pull: None, ..*law };
         let slips = if tilt == 0.0 {
             Slips::Level(SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
-                Self::rates_on_two(&level.map(|x| tape.number(x)), tape, [w1, w3], [slip, way], (count, &mut lost))
+                Self::rates_on_two(
+                    &level.map(|x| tape.number(x)),
+                    tape,
+                    [w1, w3],
+                    [slip, way],
+                    (count, &mut lost),
+                )
             }))
         } else {
             Slips::Tilted(SlowSlips::of(tol, |tape, [_, _, w1, _, w3, sin, cos], slip, way| {
