@@ -171,6 +171,9 @@ fn a_body_with_its_axis_downhill_lies_still_slides_or_tips_over_its_lower_rim() 
     }
 }
 
+/// A slower slip is a rounding error.
+const STILL: f64 = 1e-12;
+
 /// A body, a start on both rims, mu and the slope.
 fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let body = Body::solid(0.3 * 20f64.powf(r())).unwrap();
@@ -227,18 +230,15 @@ fn what_is_let_go_at_rest_sticks_slips_pivots_or_rises_as_coulomb_says_at_both_r
             assert!(path.rims[0] == lower && m.states[0].theta < FRAC_PI_2 && m.states[0].w2 > 0.0, "{case}");
             continue;
         }
-        let moves = rims.iter().filter(|(u, _)| *u != [0.0; 2]).count();
-        assert_eq!(moves, found_moves(kind), "{case}");
+        let moves = rims.iter().filter(|([u, v], _)| u.hypot(*v) > STILL).count();
+        assert_eq!(moves, moving(kind), "{case}");
         for ([u, v], [n, f_h, f_2]) in rims {
             assert!(n >= 0.0, "{case}");
             let speed = u.hypot(v);
-            if speed == 0.0 {
+            if speed < STILL {
                 assert!(f_h.hypot(f_2) <= mu * n * (1.0 + 1e-9), "{case}");
             } else {
-                assert!(
-                    speed > 1e-9 && (f_h * speed + mu * n * u).hypot(f_2 * speed + mu * n * v) < 1e-9 * speed,
-                    "{case}"
-                );
+                assert!((f_h * speed + mu * n * u).hypot(f_2 * speed + mu * n * v) < 1e-9 * speed, "{case}");
             }
         }
     }
@@ -246,7 +246,7 @@ fn what_is_let_go_at_rest_sticks_slips_pivots_or_rises_as_coulomb_says_at_both_r
 }
 
 /// The number of rims that slip.
-fn found_moves(kind: Kind) -> usize {
+fn moving(kind: Kind) -> usize {
     match kind {
         Kind::Lying => 2,
         Kind::Pivoting => 1,
