@@ -9,6 +9,7 @@
 //! both slip      F = -N d,  d = mu u/|u| or c u:   N = (K + q)/(p + q),   p = g - Z d_h,  q = Z d_h' - g'
 //! one sticks     v_h = 0,  F_h = -Om v_2 at that circle alone;  F_2 from u_2' = 0
 //! both stick     w_z = 0:  w = w_h h,  (I1 c^2 + I3 s^2 + Z^2) w_h' = m.h,  F_h = cot Z w_h^2 in all: round the apex
+//! a slope pulls with G_h and G_2: v' also has G;  F_h = -Om v_2 - G_h of one that sticks;  m.h - Z G_2 and F_h - G_h of both
 //! dry losses hold w_z or w_h: then n.(w1', w3') = 0, which takes n from the mobility M = diag(1/I1, 1/I3)
 //! ```
 //! For two equal rims theta = pi/2, L = -L' = g = ell, A = Z = 1, and the body that rolls moves along a straight line. A
@@ -38,6 +39,8 @@ pub(crate) struct Lying<T> {
     pub losses: Option<Couples<T>>,
     /// The couple of a user-defined law in the state for which this law is made.
     pub own: Option<[T; 3]>,
+    /// The pull of a tilted table on the centre, along e_h and e2; None on a level table.
+    pub pull: Option<[T; 2]>,
 }
 
 /// Forces and accelerations on both circles.
@@ -82,6 +85,7 @@ impl Lying<f64> {
             dry,
             losses: Couples::some(losses),
             own: None,
+            pull: None,
         }
     }
 
@@ -105,6 +109,7 @@ impl<T: Real> Lying<T> {
             dry: self.dry,
             losses: self.losses.as_ref().map(|losses| losses.map(&number)),
             own: self.own.map(|m| m.map(&number)),
+            pull: self.pull.map(|pull| pull.map(&number)),
         }
     }
 
@@ -131,7 +136,7 @@ impl<T: Real> Lying<T> {
     }
 
     /// K, with the couple of the user about e2.
-    fn lift(&self, w1: T, w3: T) -> T {
+    pub(super) fn lift(&self, w1: T, w3: T) -> T {
         let (s, c) = self.border.angle;
         let lift = self.shape.i3 * w1 * w3 - self.shape.i1 * (c / s) * w1 * w1;
         self.own.map_or(lift, |[_, m2, _]| lift + m2)
@@ -145,7 +150,7 @@ impl<T: Real> Lying<T> {
 
     /// The couples m1, m2 and m3 of the losses under these normal forces. Only a user-defined law may have m2, which then
     /// takes no power.
-    fn couple(&self, w: [T; 2], loads: [T; 2]) -> [T; 3] {
+    pub(super) fn couple(&self, w: [T; 2], loads: [T; 2]) -> [T; 3] {
         let [m1, m3] = self.couple_of_losses(w, loads);
         match self.own {
             Some([o1, o2, o3]) => [m1 + o1, o2, m3 + o3],
@@ -197,7 +202,12 @@ impl<T: Real> Lying<T> {
     }
 
     /// The motion under these normal forces, this friction and this couple.
-    fn under(&self, [w1, w3, u_h, u_2]: Flat<T>, force: [[T; 3]; 2], [m1, _, m3]: [T; 3]) -> Lain<T> {
+    pub(super) fn under(
+        &self,
+        [w1, w3, u_h, u_2]: Flat<T>,
+        force: [[T; 3]; 2],
+        [m1, _, m3]: [T; 3],
+    ) -> Lain<T> {
         let (Shape { i1, i3, .. }, (s, _), [here, _]) = (self.shape, self.border.angle, self.border.circles);
         let [[_, low, low_h], [_, up, up_h]] = force;
         let [t1, t3] = self.torque([low, up]);
@@ -208,7 +218,11 @@ impl<T: Real> Lying<T> {
         }
         let (turns, aside) = (w1 / s, u_2 - here.depth * w1 + here.radius * w3);
         let across = low + up - turns * u_h + here.depth * d1 - here.radius * d3;
-        Lain { force, w, u: [low_h + up_h + turns * aside, across], couple: self.parts(couple) }
+        let mut u = [low_h + up_h + turns * aside, across];
+        if let Some([pull_h, pull_2]) = self.pull {
+            u = [u[0] + pull_h, u[1] + pull_2];
+        }
+        Lain { force, w, u, couple: self.parts(couple) }
     }
 
     /// Motion with both circles slipping, for the given friction per normal force (sign reversed).
@@ -252,7 +266,10 @@ impl<T: Real> Lying<T> {
         let (zero, one, Border { angle, height, circles, .. }) = (w1.splat(0.0), w1.splat(1.0), self.border);
         let (sticks, slips) = if other { (1, 0) } else { (0, 1) };
         let (at, far) = (circles[sticks], circles[slips]);
-        let along = w1 / angle.0 * (at.depth * w1 - at.radius * w3);
+        let mut along = w1 / angle.0 * (at.depth * w1 - at.radius * w3);
+        if let Some([pull_h, _]) = self.pull {
+            along = along - pull_h;
+        }
         let (push, span) = (self.lift(w1, w3) - height * along, at.lever - far.lever);
         let mut loads = [zero; 2];
         loads[sticks] = (push - far.lever) / span;
@@ -262,8 +279,11 @@ impl<T: Real> Lying<T> {
         let across = self.strength[slips] * loads[slips] * one.splat(way);
         let along_arm = |[d1, d3]: [T; 2]| at.depth * d1 - at.radius * d3;
         let arm = |of: CircleDown<T>| self.turned([of.depth, zero - of.radius]);
-        let pull = (one + along_arm(arm(far))) * across + along_arm(self.turned([m1, m3]));
-        let holds = zero - pull / (one + along_arm(arm(at)));
+        let mut free = (one + along_arm(arm(far))) * across + along_arm(self.turned([m1, m3]));
+        if let Some([_, pull_2]) = self.pull {
+            free = free + pull_2;
+        }
+        let holds = zero - free / (one + along_arm(arm(at)));
         let mut force = [[zero; 3]; 2];
         force[sticks] = [loads[sticks], holds, along];
         force[slips] = [loads[slips], across, zero];
@@ -284,13 +304,21 @@ impl<T: Real> Lying<T> {
         if let Some([_, m2, _]) = self.own {
             push = push + m2;
         }
+        let mut aside = None;
+        if let Some([pull_h, pull_2]) = self.pull {
+            push = push + height * pull_h;
+            aside = Some(pull_2);
+        }
         let loads = [(push - there.lever) / span, (here.lever - push) / span];
         let [turns, mut rolls] = self.parts(self.couple([c * rolling, zero - s * rolling], loads));
         if self.held()[1] {
-            rolls = zero;
+            rolls = aside.map_or(zero, |aside| zero - height * aside);
         }
-        let d = zero - rolls / inertia;
-        let (all, apart) = (zero - height * d, (i1 - i3) * s * c * d - turns);
+        let d = zero - aside.map_or(rolls, |aside| rolls + height * aside) / inertia;
+        let (mut all, apart) = (zero - height * d, (i1 - i3) * s * c * d - turns);
+        if let Some(aside) = aside {
+            all = all - aside;
+        }
         let across = [(apart - there.lever * all) / span, (here.lever * all - apart) / span];
         let force = [[loads[0], across[0], zero], [loads[1], across[1], zero]];
         Lain { force, w: [c * d, zero - s * d], u: [zero; 2], couple: [zero, rolls] }
@@ -300,7 +328,8 @@ impl<T: Real> Lying<T> {
     pub fn pulls_to_apex(&self, [w1, w3, ..]: Flat<T>) -> T {
         let (s, c) = self.border.angle;
         let rolling = rolling_of((s, c), w1, w3);
-        c / s * self.border.height * rolling * rolling
+        let pull = c / s * self.border.height * rolling * rolling;
+        self.pull.map_or(pull, |[pull_h, _]| pull - pull_h)
     }
 }
 
@@ -357,7 +386,8 @@ mod tests {
         let torque = arms[0].cross(&forces[0]) + arms[1].cross(&forces[1]) + Vector3::from(m);
         let d = Vector3::new(at.w[0], 0.0, at.w[1]);
         let off = inertia(d) + turns.cross(&inertia(w)) - torque;
-        let gained = forces[0] + forces[1] - z - turns.cross(&v);
+        let [pull_h, pull_2] = law.pull.unwrap_or_default();
+        let gained = forces[0] + forces[1] - z + h * pull_h + across * pull_2 - turns.cross(&v);
         (off, arms.map(|arm| gained + d.cross(&arm)).map(|u| [u.dot(&h), u.dot(&across)]))
     }
 
@@ -374,6 +404,9 @@ mod tests {
                     .with(Law::Drilling, 0.01);
             }
             let mut law = Lying::on(&body, &Friction::coulomb(draws.within(0.05, 0.4)), &losses);
+            if draws.next() < 0.5 {
+                law.pull = Some([draws.within(-0.5, 0.5), draws.within(-0.5, 0.5)]);
+            }
             let mut y: Flat<f64> = core::array::from_fn(|_| draws.within(-2.0, 2.0));
             let (w_z, w_h) =
                 (drilling_of(law.border.angle, y[0], y[1]), rolling_of(law.border.angle, y[0], y[1]));

@@ -25,6 +25,7 @@ pub mod smooth;
 pub(crate) mod standstill;
 mod table;
 pub(crate) mod together;
+pub(crate) mod two_at_rest;
 
 use super::body::Body;
 pub use super::newton::Force;

@@ -17,7 +17,7 @@ use crate::motions::dry::creep::Creeps;
 use crate::motions::dry::friction::slipped;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses,
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses, pull,
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, WalkStep};
@@ -47,7 +47,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// w' of a body that rolls, and the power of its losses.
     pub(super) fn rolling_of(&self, y: &State) -> ([f64; 3], f64) {
-        let losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
+        self.rolling_at(&self.at, y)
+    }
+
+    /// The same at the place and the heading of these numbers.
+    pub(super) fn rolling_at(&self, at: &[f64; N], y: &State) -> ([f64; 3], f64) {
+        let mut losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
+        if self.of.tilt != 0.0 && self.of.turning == 0.0 {
+            losses = losses.pulled(pull(self.of.tilt, at));
+        }
         let Acted { w, power, .. } =
             Lossy { rates: Contact::Rolling.rates(&self.of.body), losses }.in_state(y);
         (w, power)
@@ -288,7 +296,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn slow(walk: &BodyWalk<'_, N, G>) -> BodySlips {
         let tol = walk.of.slide.tol;
         match &walk.of.lying {
-            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law), tol, N),
+            Some(phase) => BodySlips::of(&Slippery::Two(phase.flow.law, walk.of.tilt), tol, N),
             None => BodySlips::of(
                 &Slippery::One(walk.of.slide.of_the_library(), [walk.of.tilt, walk.of.turning]),
                 tol,

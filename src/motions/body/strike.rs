@@ -430,7 +430,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let slip = if from.slip == [0.0; 2] { from.slip } else { [v[0] - still[0], v[1] - still[1]] };
         let (y, slip) = settled(&self.of.body, &state, (slip, from.lift), &friction, &self.of.own);
         let lift = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
-        let before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
+        let mut before = newton::energy(&law.shape, from.angle, from.w, [v[0], v[1], lift]) + from.height;
+        if self.of.tilt != 0.0 {
+            // The centre moves as the axis comes to lie level on this contact point.
+            let rim = &law.shape.rim;
+            before += pull(self.of.tilt, &self.at)[0] * (rim.lever(from.angle) - rim.lever(flat));
+        }
         self.at[HEAT] += before - law.energy(&y, slip);
         let after = Aloft { angle: flat, w: [y.w1, 0.0, y.w3], slip, lift: 0.0, height: 0.0, ..from };
         self.sets(&after);

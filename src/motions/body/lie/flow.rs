@@ -4,6 +4,7 @@
 //! y = (1, 0, w1, 0, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
 //! both slip   dt = k/(k + soft) dsigma,   k = |u||u'|/(|u| + |u'|)        smooth up to u = 0 or u' = 0
 //! margins     N', N,  (mu_s N)^2 - F^2,  |w1| of a pivot,  |w1| or its hold,  |w3| or its hold
+//! rolls on a slope   the least of c^2, c'^2 and (c + c')^2 - F_h^2 in place of the third
 //! ```
 //! [`contact::lying`](crate::laws::contact) has the equations. Error: the tolerance of the steps.
 
@@ -20,7 +21,7 @@ use crate::motions::body::slide::longest;
 use crate::motions::dry::held::margin_of_way;
 use crate::motions::walk::MOMENT;
 use crate::motions::walk::numbers::{
-    BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, pose_rates, poses,
+    BodyNumbers, Halt, MARGINS, PHI, TIME, U2, UH, W1, W3, loses, pose_rates, poses, pull,
 };
 use crate::numbers::{Dual, Real};
 
@@ -77,6 +78,8 @@ pub(crate) struct LyingFlow<G = ()> {
     over: f64,
     soft: f64,
     pub tol: f64,
+    /// The tangent of the slope.
+    tilt: f64,
 }
 
 /// w1, w3, u_h and u_2 among the numbers.
@@ -102,6 +105,21 @@ impl<G: Own> LyingFlow<G> {
             over,
             soft,
             tol,
+            tilt: 0.0,
+        }
+    }
+
+    /// The same flow on a slope, at these numbers.
+    pub fn on_slope<const N: usize>(mut self, tilt: f64, y: &[f64; N]) -> Self {
+        self.tilt = tilt;
+        self.stands_at(y);
+        self
+    }
+
+    /// Sets the pull of the slope to that at these numbers, for what does not know phi.
+    pub fn stands_at<const N: usize>(&mut self, y: &[f64; N]) {
+        if self.tilt != 0.0 {
+            self.law.pull = Some(pull(self.tilt, y));
         }
     }
 
@@ -162,6 +180,17 @@ impl<G: Own> LyingFlow<G> {
         ways.holds != held
     }
 
+    /// Lets a body at rest roll whose losses cannot hold it in this motion. Returns whether they held it before and cannot.
+    pub fn lets_roll(&mut self, lain: &Lain<f64>) -> bool {
+        let ways = self.ways();
+        if !ways.holds.has(Resting::Contour) {
+            return false;
+        }
+        let limit = self.limits_under(&lain.force)[1];
+        self.turn_to(ways.stopping(Resting::Contour, [-lain.couple[1], limit]));
+        self.ways().holds != ways.holds
+    }
+
     /// This flow with another motion of the rims.
     pub fn in_stance<const N: usize>(mut self, stance: Stance, y: &[f64; N]) -> Self {
         (self.stance, self.turn) = (stance, self.law.turning(y[W1], y[W3])[0].signum());
@@ -195,14 +224,24 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// The law at these numbers.
+    /// The law of these velocities, with the pull where this flow stands.
     pub fn law_at(&self, y: Flat<f64>) -> Lying<f64> {
         self.own.lying(&self.law, y)
     }
 
+    /// The law at these numbers.
+    pub fn law_here<const N: usize>(&self, y: &[f64; N]) -> Lying<f64> {
+        let law = self.law_at(flat(y));
+        if self.tilt == 0.0 { law } else { Lying { pull: Some(pull(self.tilt, y)), ..law } }
+    }
+
     /// Forces and accelerations at these numbers.
     pub fn lain<const N: usize>(&self, y: &[f64; N]) -> Lain<f64> {
-        if G::IS { self.lain_of(&self.law_at(flat(y)), flat(y)) } else { self.lain_of(&self.law, flat(y)) }
+        if G::IS || self.tilt != 0.0 {
+            self.lain_of(&self.law_here(y), flat(y))
+        } else {
+            self.lain_of(&self.law, flat(y))
+        }
     }
 
     /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
@@ -211,15 +250,26 @@ impl<G: Own> LyingFlow<G> {
         if self.stance != Stance::Slips || !self.law.dry || y.slip() != [0.0; 2] {
             return self.lain(y);
         }
-        let (law, y) = (&self.law_at(flat(y)), flat(y));
+        let (law, y) = (&self.law_here(y), flat(y));
         let [low, up] = law.strength;
         law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))])
     }
 
-    /// The largest force along e_h that friction holds at both rims together, beside these forces across.
+    /// The largest force along e_h that friction holds at each rim, beside these forces across.
+    pub fn holds_along(&self, force: &[[f64; 3]; 2]) -> [f64; 2] {
+        force.map(|[n, across, _]| ((self.fixed * n).powi(2) - across * across).max(0.0).sqrt())
+    }
+
+    /// The same of both rims together.
     pub fn holds_together(&self, force: &[[f64; 3]; 2]) -> f64 {
-        let left = |[n, across, _]: [f64; 3]| ((self.fixed * n).powi(2) - across * across).max(0.0).sqrt();
-        force.iter().map(|force| left(*force)).sum::<f64>() * (1.0 + GRACE)
+        self.holds_along(force).iter().sum::<f64>() * (1.0 + GRACE)
+    }
+
+    /// Whether friction holds both rims of a body on a slope, which rolls.
+    pub fn holds_both<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let (law, force) = (self.law_here(y), self.lain(y).force);
+        let grips = |[n, across, _]: [f64; 3]| n >= 0.0 && across.abs() <= self.fixed * n * (1.0 + GRACE);
+        force.into_iter().all(grips) && law.pulls_to_apex(flat(y)).abs() <= self.holds_together(&force)
     }
 
     /// The speeds of the slips of both rims.
@@ -253,6 +303,9 @@ impl<G: Own> LyingFlow<G> {
                 [there[0], here[0], grips(if other { there } else { here }), turning, one, hold(1)]
             }
             Stance::Rolls => {
+                if law.pull.is_some() {
+                    return [there[0], here[0], self.grips_both(law, y, &at), one, one, hold(1)];
+                }
                 // Only a couple of the user presses the rims differently.
                 let grips = if G::IS { grips(here).min(grips(there)) } else { grips(here) };
                 [one, one, grips, one, one, hold(1)]
@@ -260,8 +313,21 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
+    /// The margin of the friction that holds both rims on a slope: of each across, and of both along e_h.
+    fn grips_both<T: Real>(&self, law: &Lying<T>, y: Flat<T>, at: &Lain<T>) -> T {
+        let fixed = y[0].splat(self.fixed);
+        let zero = y[0].splat(0.0);
+        let [a, b] = at.force.map(|[n, across, _]| grip(fixed, n, across * across));
+        let along = law.pulls_to_apex(y);
+        let (product, least) = (a * b, a.min(b));
+        if !(zero.is_lt(product) && zero.is_lt(a)) {
+            return least;
+        }
+        least.min(a + b + product.sqrt() + product.sqrt() - along * along)
+    }
+
     fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; MARGINS] {
-        self.margins_of(&self.law_at(flat(y)), flat(y))
+        self.margins_of(&self.law_here(y), flat(y))
     }
 
     /// The largest speed, at least 1.
@@ -280,7 +346,7 @@ impl<G: Own> LyingFlow<G> {
         let ([here, there], [a, b]) = (self.lain(y).force, self.speeds(y));
         let (mut low, mut up, mut strength) = (here[0] / a, there[0] / b, self.law.strength[0]);
         if G::IS {
-            let [here, there] = self.law_at(flat(y)).strength;
+            let [here, there] = self.law_here(y).strength;
             (low, up, strength) = (here * low, there * up, 1.0);
         }
         let (sum, product) = (low * own + up * far, low * up * (own * far - mixed * mixed));
@@ -292,7 +358,7 @@ impl<G: Own> LyingFlow<G> {
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
         (y[UH], y[U2]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
-        let at = self.law_at(flat(&y)).slipping(flat(&y));
+        let at = self.law_here(&y).slipping(flat(&y));
         (y[W1], y[W3]) = (y[W1] + MOMENT * at.w[0], y[W3] + MOMENT * at.w[1]);
         y[TIME] += MOMENT;
         y
@@ -349,11 +415,21 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
             return differences(place, self.calm(&place.y), |y| self.all_margins(y));
         }
         let y: [Dual<f64>; 7] = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        self.margins_of(&self.sloped, flat(&y))
+        if self.tilt == 0.0 {
+            return self.margins_of(&self.sloped, flat(&y));
+        }
+        let ([pull_h, pull_2], turns) = (pull(self.tilt, &place.y), place.rate[PHI]);
+        let pull = [(pull_h, pull_2 * turns), (pull_2, -(pull_h * turns))];
+        let pull = pull.map(|(value, slope)| Dual { value, slope });
+        self.margins_of(&Lying { pull: Some(pull), ..self.sloped }, flat(&y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        if G::IS { self.all_margins(y)[i] } else { self.margins_of(&self.law, flat(y))[i] }
+        if G::IS || self.tilt != 0.0 {
+            self.all_margins(y)[i]
+        } else {
+            self.margins_of(&self.law, flat(y))[i]
+        }
     }
 
     fn end(&self, i: usize) -> Halt {

@@ -16,6 +16,7 @@ use crate::laws::state::{State, spin_of};
 use crate::motions::Ending;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, PHI, SIN, TIME, U2, UH, W1, W2, W3, contact_velocity, loses, pose_rates, poses,
+    pull,
 };
 use crate::motions::walk::{Next, Phases};
 
@@ -60,7 +61,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let falls = -self.hop_rates(&begin, 0.0, sticks)[W2];
         let mut lasts = 2.0 * rises / falls;
         let [u, v] = self.at.slip();
-        let friction = self.of.slide.law.strength * lasts * OUTLASTS;
+        let friction = (self.of.slide.law.strength + self.of.tilt.abs()) * lasts * OUTLASTS;
         if !(0.0..SOON).contains(&lasts) || !sticks && self.of.slide.law.dry && u.hypot(v) < friction {
             return false;
         }
@@ -131,11 +132,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (w, slip) = (y.w(), y.slip());
         let mut all = [0.0; N];
         let (rate, drift, warms, taken) = if sticks {
-            let (rate, taken) = self.rolling_of(&State { theta, w1: w[0], w2: w[1], w3: w[2] });
+            let (rate, taken) = self.rolling_at(y, &State { theta, w1: w[0], w2: w[1], w3: w[2] });
             (rate, [0.0; 2], 0.0, taken)
         } else {
             let (at, taken) = self.of.slide.slips(angle, w, slip, None);
-            (at.w, at.u, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
+            let [pull_h, pull_2] = pull(self.of.tilt, y);
+            let drift = if self.of.tilt == 0.0 { at.u } else { [at.u[0] + pull_h, at.u[1] + pull_2] };
+            (at.w, drift, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
         };
         (all[W1], all[W2], all[W3]) = (rate[0], rate[1], rate[2]);
         (all[UH], all[U2], all[HEAT]) = (drift[0], drift[1], warms);

@@ -6,6 +6,8 @@
 //! both of these to N = 0 of a rim: the other one carries the body alone, with w2 = w2' = 0, and theta leaves as t^3
 //! a body that turns fast, whose centre is not between the two, leaves the table with both
 //! rolls straight at constant speed, or until dry losses stop it
+//! on a slope, at rest on both: rolls straight if c + c' >= |F_h|, c = sqrt((mu_s N)^2 - F_2^2);  else see `two_at_rest`
+//!   one sticks, to w1 = 0: the same test;   rolls straight, to w3 = 0: turns round, or rests if dry losses hold it
 //! ```
 //! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
 //!
@@ -57,6 +59,9 @@ const STOPS_AT_ONCE: f64 = 1e-6;
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
+/// The shares by which friction that has just ceased to hold both rims is smaller than what they need: the next one where
+/// the search does not end with the one before.
+const RELEASED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
@@ -77,7 +82,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Friction::Coulomb { fixed, .. } => fixed,
             Friction::Viscous { .. } => 0.0,
         };
-        Some(LyingFlow::new(law, self.of.own, fixed, (self.of.slide.over(), self.of.slide.tol)))
+        let flow = LyingFlow::new(law, self.of.own, fixed, (self.of.slide.over(), self.of.slide.tol));
+        Some(flow.on_slope(self.of.tilt, &self.at))
     }
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
@@ -114,10 +120,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
         }
         match still {
-            [true, true] => {
-                self.rolls_along(&flow.law);
-                self.begins_stance(flow, Stance::Rolls)
-            }
+            [true, true] => self.rolls_or_slips(flow),
             [false, false] => {
                 let [here, there] = self.normals(&mut flow);
                 let law = flow.law_at(flat);
@@ -199,7 +202,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn begins_stance(&mut self, flow: LyingFlow<G>, stance: Stance) -> Next {
         let flow = flow.in_stance(stance, &self.at);
         let law = &flow.law;
-        if stance == Stance::Rolls {
+        if stance == Stance::Rolls && self.of.tilt == 0.0 {
             let Lain { w: [_, slows], force, .. } = flow.lain(&self.at);
             // Only a couple of the user presses the rims differently, or turns the body about the vertical.
             let slips = |[n, across, _]: [f64; 3]| across.abs() > flow.fixed * n * (1.0 + GRACE);
@@ -228,6 +231,80 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let kind = flow.kind();
         self.of.lying = Some(Box::new(LyingPhase { flow }));
         Next::Own(kind)
+    }
+
+    /// The phase of a body with both rims at rest.
+    fn rolls_or_slips(&mut self, flow: LyingFlow<G>) -> Next {
+        self.rolls_along(&flow.law);
+        if self.of.tilt == 0.0 {
+            return self.begins_stance(flow, Stance::Rolls);
+        }
+        let flow = flow.in_stance(Stance::Rolls, &self.at);
+        if flow.holds_both(&self.at) {
+            return self.begins_stance(flow, Stance::Rolls);
+        }
+        if !matches!(self.ask.table, Table::Rubs(_)) {
+            let lower = flow.lain(&self.at).force.iter().position(|force| force[0] < 0.0);
+            return lower.map_or(Next::Ends(Ending::Slip), |lower| self.rises_on(lower == 1, true));
+        }
+        self.slips_from_rest(flow, false)
+    }
+
+    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just let one go.
+    #[inline(never)]
+    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: bool) -> Next {
+        flow.stance = Stance::Slips;
+        flow.holds_all(&self.at);
+        let w = [self.at[W1], self.at[W3]];
+        let begins = |flow: &LyingFlow<G>| {
+            let law = flow.law_here(&self.at);
+            if !released {
+                return law.begins(w, [flow.fixed; 2]);
+            }
+            let less = |share: f64| law.strength.map(|mu| mu * (1.0 - share));
+            let under = |mu: [f64; 2]| Lying { strength: mu, ..law }.begins(w, mu);
+            if law.strength != [flow.fixed; 2] {
+                return under(law.strength);
+            }
+            RELEASED
+                .into_iter()
+                .find_map(|share| under(less(share)).filter(|begun| begun.moves != [false; 2]))
+        };
+        let mut found = begins(&flow);
+        if found.is_some_and(|begun| flow.lets_roll(&begun.lain)) {
+            found = begins(&flow);
+        }
+        let Some(begun) = found else { return Next::Ends(Ending::Landing) };
+        let [here, there] = begun.lain.force.map(|force| force[0] > 0.0);
+        if !(here && there) {
+            return if here || there { self.rises_on(here, true) } else { Next::Ends(Ending::LiftOff) };
+        }
+        let fastest = begun.slips.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let moment = NUDGED / fastest;
+        [self.at[W1], self.at[W3]] = [0, 1].map(|i| w[i] + moment * begun.lain.w[i]);
+        self.sets_state();
+        self.claims(NUDGED);
+        let stance = match begun.moves {
+            [false, false] if released => return Next::Ends(Ending::Landing),
+            [false, false] => {
+                self.rolls_along(&flow.law);
+                return self.begins_stance(flow, Stance::Rolls);
+            }
+            [true, true] => {
+                [self.at[UH], self.at[U2]] = begun.slips[0].map(|rate| moment * rate);
+                let drags = begun.slips.map(|u| flow.law.drag(flow.law.strength[0], u)[0]);
+                let [p, q] = flow.law.leans(drags);
+                if p + q <= 0.0 {
+                    return Next::Ends(Ending::Painleve);
+                }
+                Stance::Slips
+            }
+            [other, _] => {
+                [self.at[UH], self.at[U2]] = flow.law.stuck(flat(&self.at), other);
+                Stance::Pivots { other }
+            }
+        };
+        self.begins_stance(flow, stance)
     }
 
     /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
@@ -338,8 +415,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         (self.at, self.of.state) = (at, state);
         self.claims(slips);
-        self.rolls_along(&flow.law);
-        self.begins_stance(flow, Stance::Rolls)
+        self.rolls_or_slips(flow)
     }
 
     /// What is found while the walk is seen from the other rim, if `other`.
@@ -431,15 +507,24 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     #[inline(never)]
     pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
-        if flow.stance == Stance::Rolls && !self.of.loses(&self.ask) {
+        let known = self.of.tilt == 0.0 || flow.law.border.even;
+        if flow.stance == Stance::Rolls && known && !self.of.loses(&self.ask) {
             let (begin, began) = (self.at, self.at[TIME]);
+            // On a slope two equal rims roll straight, and uniformly accelerated.
+            let faster = if self.of.tilt == 0.0 { 0.0 } else { flow.lain(&begin).w[1] };
             while let Some(t) = self.until() {
                 let mut y = begin;
                 y[TIME] = t;
+                if faster != 0.0 {
+                    y[W3] += faster * (t - began);
+                }
                 if poses(N) {
                     // The contact moves along a circle about the apex, or straight on.
                     let ((s, c), [here, _]) = (flow.law.border.angle, flow.law.border.circles);
-                    let spun = spin_of((s, c), begin[W1], begin[W3]) * (t - began);
+                    let mut spun = spin_of((s, c), begin[W1], begin[W3]) * (t - began);
+                    if faster != 0.0 {
+                        spun += 0.5 * faster * (t - began) * (t - began);
+                    }
                     let half = 0.5 * begin[W1] / s * (t - began);
                     let (sin, cos) = (begin[PHI] + half).sin_cos();
                     let chord = here.radius * spun * if half == 0.0 { 1.0 } else { half.sin() / half };
@@ -491,18 +576,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.at = y;
         self.lays_down();
         self.sets_state();
+        phase.flow.stands_at(&self.at);
         self.made.path.slipping +=
             if phase.flow.stance == Stance::Slips { y[TIME] - self.began } else { 0.0 };
         let next = match halt {
             Halt::Time | Halt::Pause => return None,
             Halt::Rises | Halt::Changes => {
                 let here = halt == Halt::Rises;
-                let still = phase.flow.stance == Stance::Pivots { other: !here };
+                let still = phase.flow.stance == Stance::Pivots { other: !here }
+                    || phase.flow.stance == Stance::Rolls;
                 self.rocks_to_pivot().unwrap_or_else(|| self.rises_on(here, still))
             }
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
-                if phase.flow.stance == Stance::Rolls {
+                if phase.flow.stance == Stance::Rolls && self.of.tilt != 0.0 {
+                    self.slips_from_rest(phase.flow, true)
+                } else if phase.flow.stance == Stance::Rolls {
                     self.begins_stance(phase.flow, Stance::Rolls)
                 } else {
                     let [_, across, along] = phase.flow.lain(&self.at).force[usize::from(other)];
@@ -531,11 +620,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                     flow.sets_ways(&self.at);
                 }
                 let rests = flow.stance == Stance::Rolls && flow.law.held()[1];
-                if !rests {
+                if flow.stance == Stance::Rolls && self.of.tilt != 0.0 {
+                    // It turns round, with the other way of its losses.
+                    self.settles_on_side()
+                } else if rests {
+                    Next::Ends(Ending::Stops)
+                } else {
                     self.of.lying = Some(phase);
                     return Some(self.at);
                 }
-                Next::Ends(Ending::Stops)
             }
             Halt::Turned => {
                 self.rolls_along(&phase.flow.law);
@@ -605,8 +698,17 @@ fn row_of<G: Own, const N: usize>(
     let (mut forces, mut w3, mut seen) = (flow.lain_along(y, way).force, y[W3], *y);
     if flow.stance == Stance::Rolls {
         // The force that keeps the body on its circle round the apex is known, but not its shares: those of the loads.
-        let pull = flow.law.pulls_to_apex(flat(y));
-        forces.iter_mut().for_each(|[normal, _, along]| *along += *normal * pull);
+        let pull = flow.law_here(y).pulls_to_apex(flat(y));
+        if flow.law.pull.is_some() {
+            // The shares in which both rims hold as much as they can.
+            let most = flow.holds_along(&forces);
+            forces
+                .iter_mut()
+                .zip(most)
+                .for_each(|(force, share)| force[2] += pull * share / (most[0] + most[1]));
+        } else {
+            forces.iter_mut().for_each(|[normal, _, along]| *along += *normal * pull);
+        }
     }
     if let Some(over) = over {
         let back = |x: f64| 0.0 - x;

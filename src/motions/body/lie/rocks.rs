@@ -3,14 +3,17 @@
 //! ```text
 //! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
+//! on a slope gamma of both hops differ, by -+ G_h; a rim at rest may slip off in each hop: then three cycles show the ratio
 //! ```
 //! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
 //! summed, and that time, times the angle by which a slow slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
+use crate::laws::contact::standstill::Standstill;
 use crate::laws::state::State;
 use crate::motions::body::body_walk::BodyWalk;
 use crate::motions::body::own::Own;
+use crate::motions::walk::Phases;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, poses};
 
 /// The longest time that is summed, over the time in which the body turns by a radian.
@@ -41,11 +44,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         found
     }
 
+    /// Whether the rim at rest from which the state is seen sticks in the hop that begins.
+    fn sticks_on_slope(&mut self) -> bool {
+        let State { w1, w3, .. } = self.of.state;
+        self.of.state = State { theta: self.of.body.theta_end(), w1, w2: 0.0, w3 };
+        !self.of.slide.law.dry || Phases::rests(self) == Standstill::Sticks
+    }
+
     #[inline(never)]
     fn cycle(&mut self, begin: &[f64; N]) -> Option<([f64; N], f64)> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
             let (slip, rises) = (self.at.slip(), self.at[W2]);
+            if self.of.tilt != 0.0 && slip == [0.0; 2] && !self.sticks_on_slope() {
+                return None;
+            }
             let law = &self.of.slide.law;
             let sticks = law.dry && slip[0].hypot(slip[1]) <= self.of.slide.over();
             if law.dry && !sticks {
@@ -76,7 +89,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         end[W2] = 0.0;
         let fastest = [W1, W3, UH, U2].into_iter().fold(1.0, |most: f64, i| most.max(begin[i].abs()));
         let left = end[TIME] - begin[TIME];
-        let turns = left * (fastest + self.of.slide.law.strength * TURNS_SLIP / slowest);
+        // A slope turns a slip as well.
+        let turns =
+            left * (fastest + (self.of.slide.law.strength * TURNS_SLIP + self.of.tilt.abs()) / slowest);
         // A hop that is lost in the roundings of theta has no later one.
         let lost = self.of.body.has_row() && begin[W2] < LOST_HOP && left < TURNED;
         let sums = left * fastest < SOON_OVER && turns < TURNED;
@@ -88,7 +103,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     #[inline(never)]
     pub(crate) fn shrinks_out(&mut self) -> Option<([f64; N], f64)> {
         let (on_face, up) = (self.is_on_face(), self.up());
-        if !self.of.body.has_row() && !on_face {
+        // A rim at rest may slip off in each hop down a slope.
+        let sloped = self.of.tilt != 0.0 && !self.of.body.has_row();
+        if !self.of.body.has_row() && !on_face && !sloped {
             return None;
         }
         let all = &mut self.of.rocked;
@@ -108,8 +125,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let steady = |ratio: f64, known: f64| (ratio / known - 1.0).abs();
         let lasted = (now[TIME] - before[TIME]) / (before[TIME] - first[TIME]);
         let unlike = steady(before[W2] / first[W2], ratio).max(steady(lasted, ratio));
-        let turned = on_face || other[COS].signum() != now[COS].signum();
-        let slips = [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
+        let turned = on_face || sloped || other[COS].signum() != now[COS].signum();
+        let slips = sloped || [other, now].iter().any(|y| y[UH].hypot(y[U2]) > self.of.slide.over());
         if !(turned && slips && ratio < MOST_RATIO && unlike < UNLIKE) {
             return None;
         }

@@ -28,7 +28,7 @@ use crate::laws::loss::{Couples, Law, Losses};
 use crate::laws::state::State;
 use crate::motions::dry::creep::Creeping;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, SIN, W1, W2, W3, carried, contact_velocity, driven, pull, sum,
+    BodyNumbers, COS, Halt, PHI, SIN, W1, W2, W3, X, carried, contact_velocity, driven, poses, pull, sum,
 };
 use crate::numbers::Dual;
 pub(super) use creeps::is_still;
@@ -145,7 +145,12 @@ impl<L: Own> Slide<L> {
     /// The energy of the body with these numbers.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
-        self.law.energy(&state, y.slip())
+        let energy = self.law.energy(&state, y.slip());
+        if self.tilt == 0.0 || !poses(N) {
+            return energy;
+        }
+        // The centre falls along x.
+        energy - self.tilt * (y[X] - self.law.shape.rim.lever(y.angle()) * y[PHI].cos())
     }
 
     /// The response of the body, as one compiled copy of the law for callers that need it only

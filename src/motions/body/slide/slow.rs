@@ -38,11 +38,11 @@ impl RecordedSlips {
     }
 }
 
-/// The law of a slip on one rim, or on two rims of which the other already slips.
+/// The law of a slip on one rim, or on two rims of which the other already slips, with the tangent of the slope.
 pub(crate) enum Slippery {
-    /// With the tangent of the slope and the rate at which the table turns.
+    /// Also with the rate at which the table turns.
     One(Slipping<f64>, [f64; 2]),
-    Two(Lying<f64>),
+    Two(Lying<f64>, f64),
 }
 
 impl BodySlips {
@@ -50,7 +50,7 @@ impl BodySlips {
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
             Slippery::One(law, table) => Self::on_one(law, *table, tol, count),
-            Slippery::Two(law) => Self::on_two(law, tol, count),
+            Slippery::Two(law, tilt) => Self::on_two(law, *tilt, tol, count),
         }
     }
 
@@ -59,32 +59,62 @@ impl BodySlips {
         self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
 
-    fn on_two(law: &Lying<f64>, tol: f64, count: usize) -> Self {
+    fn on_two(law: &Lying<f64>, tilt: f64, tol: f64, count: usize) -> Self {
         let mut lost = None;
-        let slips = SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
-            let taped = law.map(|x| tape.number(x));
-            let y = [w1, w3, slip[0], slip[1]];
-            let [mu, _] = taped.strength;
-            let [u, v] = taped.other_slip(y);
-            let size = (u * u + v * v).sqrt();
-            let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
-            let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
-            let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
-            let angle = taped.border.angle;
-            if poses(count) {
-                let spin = spin_of(angle, w1, w3);
-                let radius = taped.border.circles[0].radius;
-                more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
-            }
-            if loses(count) {
-                lost = Some(more.len());
-                let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
-                more.push(at.couple[1] * rolling - at.couple[0] * drilling);
-            }
-            let still = tape.number(0.0);
-            SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
-        });
-        Self { slips: RecordedSlips::Level(slips), one: None, ways: None, lost }
+        let level = Lying { pull: None, ..*law };
+        let slips = if tilt == 0.0 {
+            RecordedSlips::Level(SlowSlips::of(tol, |tape, [_, _, w1, _, w3], slip, way| {
+                Self::rates_on_two(
+                    &level.map(|x| tape.number(x)),
+                    tape,
+                    [w1, w3],
+                    [slip, way],
+                    (count, &mut lost),
+                )
+            }))
+        } else {
+            RecordedSlips::Tilted(SlowSlips::of(tol, |tape, [_, _, w1, _, w3, sin, cos, _, _], slip, way| {
+                let mut taped = level.map(|x| tape.number(x));
+                let tilt = tape.number(tilt);
+                taped.pull = Some([tilt * cos, -(tilt * sin)]);
+                let SlowRates { numbers: [a, b, d1, d2, d3], slip, more } =
+                    Self::rates_on_two(&taped, tape, [w1, w3], [slip, way], (count, &mut lost));
+                let (turn, moves) = (w1 / taped.border.angle.0, Self::moves(&more, [sin, cos]));
+                let numbers = [a, b, d1, d2, d3, cos * turn, -(sin * turn), moves[0], moves[1]];
+                SlowRates { numbers, slip, more }
+            }))
+        };
+        Self { slips, one: None, ways: None, lost }
+    }
+
+    /// The rates on two rims, with the index of that of the lost energy.
+    fn rates_on_two<'a>(
+        taped: &Lying<Taped<'a>>,
+        tape: &'a Tape,
+        [w1, w3]: [Taped<'a>; 2],
+        [slip, way]: [[Taped<'a>; 2]; 2],
+        (count, lost): (usize, &mut Option<usize>),
+    ) -> SlowRates<Taped<'a>, 5> {
+        let y = [w1, w3, slip[0], slip[1]];
+        let [mu, _] = taped.strength;
+        let [u, v] = taped.other_slip(y);
+        let size = (u * u + v * v).sqrt();
+        let at = taped.slipping_along(y, [way.map(|x| mu * x), [mu * u / size, mu * v / size]]);
+        let [[_, low_2, low_h], [_, up_2, up_h]] = at.force;
+        let mut more = vec![-(low_2 * slip[1] + low_h * slip[0] + up_2 * v + up_h * u)];
+        let angle = taped.border.angle;
+        if poses(count) {
+            let spin = spin_of(angle, w1, w3);
+            let radius = taped.border.circles[0].radius;
+            more.extend([w1 / angle.0, spin, slip[0], slip[1] + radius * spin]);
+        }
+        if loses(count) {
+            *lost = Some(more.len());
+            let [drilling, rolling] = [drilling_of(angle, w1, w3), rolling_of(angle, w1, w3)];
+            more.push(at.couple[1] * rolling - at.couple[0] * drilling);
+        }
+        let still = tape.number(0.0);
+        SlowRates { numbers: [still, still, at.w[0], still, at.w[1]], slip: at.u, more }
     }
 
     fn on_one(law: &Slipping<f64>, [tilt, turning]: [f64; 2], tol: f64, count: usize) -> Self {
@@ -114,6 +144,12 @@ impl BodySlips {
             ))
         };
         Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
+    }
+
+    /// The rates of the place of the contact point, from those of [`SlowRates::more`].
+    fn moves<'a>(more: &[Taped<'a>], [sin, cos]: [Taped<'a>; 2]) -> [Taped<'a>; 2] {
+        let [_, _, _, out, on, ..] = *more else { unreachable!("a slope needs the pose") };
+        [out * cos - on * sin, out * sin + on * cos]
     }
 
     /// The rates on one rim of a level table, with the index of that of the lost energy.
