@@ -46,6 +46,7 @@ mod rounded_motions;
 mod several_held;
 mod slip;
 mod slope;
+mod slope_stones;
 mod stability;
 mod standing;
 mod steady_states;

@@ -92,7 +92,18 @@ impl<T: Real> StoneLaw<T> {
         let [x, y, z, ..] = inverse.0;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
-        Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None, tilt: None, losses: None }
+        Self {
+            squares,
+            inertia,
+            inverse,
+            offset,
+            strength,
+            soft,
+            dry,
+            radius: None,
+            tilt: None,
+            losses: None,
+        }
     }
 
     /// Returns this law for a patch of this radius.
@@ -297,7 +308,8 @@ impl<T: Real> StoneLaw<T> {
         let pivots = pull.is_none();
         // Without the derivative of w.
         let carried = if pivots { cross(w, cross(w, r)) } else { [zero; 3] };
-        let fixed = plus(plus(if pivots { up } else { n }, -one, carried), -self.strength, pull.unwrap_or([zero; 3]));
+        let fixed =
+            plus(plus(if pivots { up } else { n }, -one, carried), -self.strength, pull.unwrap_or([zero; 3]));
         let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, fixed));
         if let Some(lost) = &at.lost {
             couple = plus(couple, one, lost.under(one));
