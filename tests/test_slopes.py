@@ -66,10 +66,51 @@ def test_what_makes_no_sense_is_refused_by_name(make, error, word):
         make()
 
 
-def test_a_stone_needs_a_level_table():
-    stone = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
-    with pytest.raises(ValueError, match="table = Table"):
-        sc.roll(stone, stone.spinning(1.0), 1.0, table=TABLE)
+STONE = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
+
+
+@pytest.mark.parametrize(
+    ("table", "how", "word"),
+    [
+        (sc.Table(0.1, turning=0.3), {}, "turning = 0.3: expected 0 for a stone"),
+        (TABLE, {"losses": sc.loss.Drilling(0.01)}, "slope = 0.2: expected 0 with dry friction"),
+        (TABLE, {"contact": sc.Coulomb(0.3, patch=0.1)}, "slope = 0.2: expected 0 with a patch"),
+        (TABLE, {"contact": sc.Coulomb(lambda u: 0.2, static=0.3)}, "slope = 0.2: expected 0 together"),
+        (TABLE, {"beyond": True}, "beyond = True"),
+    ],
+)
+def test_what_is_not_computed_for_a_stone_on_a_slope_is_refused_by_name(table, how, word):
+    with pytest.raises(ValueError, match=word):
+        sc.roll(STONE, STONE.spinning(1.0, 0.1), 1.0, table=table, **how)
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {},
+        {"contact": "smooth"},
+        {"contact": sc.Viscous(0.3)},
+        {"contact": sc.Coulomb(0.2), "losses": sc.loss.RollingResistance(0.01) + sc.loss.AirLinear(0.02)},
+    ],
+)
+def test_the_energy_of_a_stone_on_a_slope_includes_the_height_above_its_foot(how):
+    start, table = STONE.spinning(1.0, 0.3, 0.2), sc.Table(0.2, phi0=0.5, place=(1.0, 2.0))
+    m = sc.roll(STONE, start, np.linspace(0, 2, 21), table=table, **how)
+    assert m.contact_point[0].tolist() == [1.0, 2.0]
+    whole = m.energy.copy()
+    for name in ("dissipated", "work_lost"):
+        try:
+            whole = whole + getattr(m, name)
+        except AttributeError:
+            continue
+    assert np.ptp(whole) < 1e-10 and np.ptp(m.centre[:, 0]) > 0.2
+
+
+def test_a_stone_turned_by_phi0_goes_the_same_way_turned_on_a_level_table():
+    start, times = sc.EllipsoidState((0.6, 0.0, 0.8), (0.1, 0.5, 1.0), slip=(0.3, 0.2)), np.linspace(0, 2, 5)
+    how = {"contact": sc.Coulomb(0.2), "want": "pose"}
+    m, turned = (sc.roll(STONE, start, times, table=sc.Table(phi0=x), **how) for x in (0.0, np.pi / 2))
+    assert np.allclose(m.contact_point @ np.array([[0, 1], [-1, 0]]), turned.contact_point, atol=1e-11)
 
 
 @pytest.mark.parametrize(

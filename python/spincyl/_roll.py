@@ -52,6 +52,7 @@ def roll(
     beyond: bool = False,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
+    table: "Table | None" = None,
 ) -> "EllipsoidMotion": ...
 @overload
 def roll(
@@ -234,8 +235,6 @@ def roll(
         from spincyl import _ellipsoid_motion as stones
 
         start = stones.start_of_stone(given, contact, step, method, restitution)
-        if table is not None:
-            raise ValueError(f"table = {table!r}: only for bodies of revolution; a stone needs a level table")
         if losses is not None:
             from spincyl._lossy import losses_of_stone
 

@@ -28,7 +28,8 @@ class Table(Hinting):
         room. Without losses, `restitution=` and a patch of contact.
     phi0 : float
         Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
-        it may be an array.
+        it may be an array. A stone, and its slip, are turned about z by this angle from where they are
+        without it (`EllipsoidState`).
     place : pair of float
         Initial contact point (x, y), in R.
 
@@ -41,7 +42,8 @@ class Table(Hinting):
     -----
     The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
     (docs/slopes.md). Bodies of revolution roll, slip, fly and bounce there, under every law of friction at a
-    point, and lose energy by rolling resistance, viscous friction and the air.
+    point, and lose energy by rolling resistance, viscous friction and the air. Stones roll and slip there,
+    with the same losses; their table does not turn.
 
     Examples
     --------

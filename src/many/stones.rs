@@ -2,7 +2,7 @@
 
 use super::motions::CustomLaws;
 use super::threads::share;
-use crate::error::{Error, room};
+use crate::error::{Error, room, within};
 use crate::laws::custom::Custom;
 use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -110,6 +110,7 @@ pub(crate) fn many_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, how.0)?;
+    within("slope", how.0.slope, (0.0, 0.0), "0 for many stones")?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let done = match laws {

@@ -321,6 +321,7 @@ pub fn roll<'py>(
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
             let start = Start::from(state).with_slip(start.0).with_time(start.1);
+            let start = start.with_heading(asked.heading).with_place(asked.place);
             if asked.is_custom() {
                 return under_own_laws(py, (&stone, &asked), (&ask, loses), |laws, go_on| {
                     custom::roll_stone(&stone, start, times, &ask, laws, go_on)

@@ -47,6 +47,7 @@ mod several_held;
 mod slip;
 mod slope;
 mod slope_lying;
+mod slope_stones;
 mod stability;
 mod standing;
 mod steady_states;

@@ -11,11 +11,13 @@
 //! held   w' has the couple M n with (w.n)' = w'.n = 0                       if static friction stops the drilling
 //! losses   the couple m = m0 + N mN on the right side of w', and N from it:   P = -m.w,   (E + heat)' = -P
 //! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
+//! slope  n - tan(beta) d in place of n where it is the weight: in r x n, and where n is added to or subtracted from F
 //! ```
 //! Vectors have components along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the
 //! contact point, w is the angular velocity, u the slip of the contact point, and v the velocity of the centre of mass. D
 //! is the diagonal matrix of the squared semi-axes, I the tensor of inertia about the centre of mass, and d leads from the
-//! centre of the ellipsoid to the centre of mass. These are Newton's and Euler's equations with the contact force eliminated
+//! centre of the ellipsoid to the centre of mass. On a slope the part of gravity across the table is 1 (`motions::slope`), and d leads
+//! downhill. These are Newton's and Euler's equations with the contact force eliminated
 //! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip).
 //!
 //! Error: a few roundings of the terms above; `tests/laws/stone.rs` checks it against references of 25 digits,
@@ -45,6 +47,8 @@ pub(crate) struct StoneLaw<T> {
     pub dry: bool,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
+    /// The tangent of the slope, which pulls along x of the laboratory; None on a level table.
+    pub tilt: Option<T>,
     /// The losses in addition to friction; None if the stone has none.
     pub losses: Option<Couples<T>>,
 }
@@ -53,6 +57,8 @@ pub(crate) struct StoneLaw<T> {
 #[derive(Clone, Copy)]
 pub(crate) struct Touching<T> {
     pub n: [T; 3],
+    /// The force that would carry the weight: n on a level table, on a slope n - tan(beta) d.
+    pub up: [T; 3],
     pub r: [T; 3],
     pub r_rate: [T; 3],
     /// The couple of the losses; None if there are none.
@@ -86,7 +92,18 @@ impl<T: Real> StoneLaw<T> {
         let [x, y, z, ..] = inverse.0;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
-        Self { squares, inertia, inverse, offset, strength, soft, dry, radius: None, losses: None }
+        Self {
+            squares,
+            inertia,
+            inverse,
+            offset,
+            strength,
+            soft,
+            dry,
+            radius: None,
+            tilt: None,
+            losses: None,
+        }
     }
 
     /// Returns this law for a patch of this radius.
@@ -107,6 +124,12 @@ impl<T: Real> StoneLaw<T> {
         Self { strength, ..self }
     }
 
+    /// Returns this law on a table whose slope has this tangent.
+    #[must_use]
+    pub fn with_tilt(self, tilt: Option<T>) -> Self {
+        Self { tilt, ..self }
+    }
+
     /// Returns this law with losses.
     #[must_use]
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
@@ -118,10 +141,11 @@ impl<T: Real> StoneLaw<T> {
         let &Self { squares, inertia, offset, strength, dry, .. } = self;
         StoneLaw::new(squares.map(&f), Symmetric(inertia.0.map(&f)), offset.map(&f), f(strength), dry)
             .with_patch(self.radius.map(&f))
+            .with_tilt(self.tilt.map(&f))
             .with_losses(self.losses.as_ref().map(|losses| losses.map(&f)))
     }
 
-    /// The contact point of a stone with the vertical `n` and the angular velocity `w`.
+    /// The contact point of a stone with the vertical `n` and the angular velocity `w`, on a level table.
     #[inline(always)]
     pub fn touching(&self, n: [T; 3], w: [T; 3]) -> Touching<T> {
         let by = |v: [T; 3]| [self.squares[0] * v[0], self.squares[1] * v[1], self.squares[2] * v[2]];
@@ -131,7 +155,17 @@ impl<T: Real> StoneLaw<T> {
         let r = core::array::from_fn(|i| -(wide[i] * per) - self.offset[i]);
         let moved = by(n_rate);
         let r_rate = core::array::from_fn(|i| (wide[i] * turn - moved[i]) * per);
-        Touching { n, r, r_rate, lost: None, holds: Holds::default() }
+        Touching { n, up: n, r, r_rate, lost: None, holds: Holds::default() }
+    }
+
+    /// The contact point of a stone to which the axes of the laboratory have these directions.
+    #[inline(always)]
+    pub fn meeting(&self, lab: &[[T; 3]; 3], w: [T; 3]) -> Touching<T> {
+        let at = self.touching(lab[2], w);
+        match self.tilt {
+            Some(tilt) => Touching { up: plus(at.n, -tilt, lab[0]), ..at },
+            None => at,
+        }
     }
 
     /// The arguments of the loss laws for a stone with the angular velocity `w`: those of an upright disk, whose e1 is
@@ -165,10 +199,10 @@ impl<T: Real> StoneLaw<T> {
         if at.holds.rolling {
             return self.stays(at, w, None, None, !held);
         }
-        let &Touching { n, r, r_rate, lost, .. } = at;
+        let &Touching { n, up, r, r_rate, lost, .. } = at;
         let one = n[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
-        let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, plus(n, -one, carried)));
+        let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, plus(up, -one, carried)));
         if let Some(lost) = &lost {
             couple = plus(couple, one, lost.free);
         }
@@ -202,7 +236,7 @@ impl<T: Real> StoneLaw<T> {
             (dw, kept) = (plus(dw, normal, turned), normal.mac(twist, kept));
             room = factor - one.splat(JAMMED);
         }
-        let force = plus(plus(n, -one, carried), -one, cross(dw, r));
+        let force = plus(plus(up, -one, carried), -one, cross(dw, r));
         StoneResponse { w: dw, force, free: dot(force, n), room, couple: kept, kept: one.splat(0.0) }
     }
 
@@ -269,12 +303,13 @@ impl<T: Real> StoneLaw<T> {
         twist: Option<T>,
         drills: bool,
     ) -> StoneResponse<T> {
-        let &Touching { n, r, .. } = at;
+        let &Touching { n, up, r, .. } = at;
         let (zero, one) = (n[0].splat(0.0), n[0].splat(1.0));
         let pivots = pull.is_none();
         // Without the derivative of w.
         let carried = if pivots { cross(w, cross(w, r)) } else { [zero; 3] };
-        let fixed = plus(plus(n, -one, carried), -self.strength, pull.unwrap_or([zero; 3]));
+        let fixed =
+            plus(plus(if pivots { up } else { n }, -one, carried), -self.strength, pull.unwrap_or([zero; 3]));
         let mut couple = plus(cross(self.inertia.times(w), w), one, cross(r, fixed));
         if let Some(lost) = &at.lost {
             couple = plus(couple, one, lost.under(one));
@@ -334,10 +369,10 @@ impl<T: Real> StoneLaw<T> {
     /// The derivative of the slip in the laboratory frame, with components along the axes of the body.
     #[inline(always)]
     pub fn slip_rate(&self, at: &Touching<T>, w: [T; 3], to: &StoneResponse<T>) -> [T; 3] {
-        let &Touching { n, r, r_rate, .. } = at;
-        let one = n[0].splat(1.0);
+        let &Touching { up, r, r_rate, .. } = at;
+        let one = up[0].splat(1.0);
         let carried = cross(w, plus(r_rate, one, cross(w, r)));
-        plus(plus(plus(to.force, -one, n), one, carried), one, cross(to.w, r))
+        plus(plus(plus(to.force, -one, up), one, carried), one, cross(to.w, r))
     }
 
     /// The acceleration of the contact point per force `f`, along the axes of the body.

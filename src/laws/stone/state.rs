@@ -53,13 +53,22 @@ impl StoneState {
     }
 }
 
+/// The orientation with this quaternion, turned about the vertical by an angle.
+pub(crate) fn turned(from: [f64; 4], heading: f64) -> [f64; 4] {
+    if heading == 0.0 {
+        return from;
+    }
+    let ([w, x, y, z], (sin, cos)) = (from, (0.5 * heading).sin_cos());
+    [cos * w - sin * z, cos * x - sin * y, cos * y + sin * x, cos * z + sin * w]
+}
+
 /// The orientation of a stone, and its contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StonePose {
     /// The rotation from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,
-    /// The contact point on the table; at first it is at the origin.
+    /// The contact point on the table; at first it is at the place of the start.
     pub contact_point: Point2<f64>,
     /// The centre of mass.
     pub centre: [f64; 3],

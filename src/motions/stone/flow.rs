@@ -137,7 +137,7 @@ impl<'a> StoneFlow<'a> {
         OwnFriction<'a>: FollowsSpeed<T>,
     {
         let lab = self.axes(q);
-        let mut at = law.touching(lab[2], w);
+        let mut at = law.meeting(&lab, w);
         let zero = w[0].splat(0.0);
         let mut even = zero.splat(1.0);
         if loses(N) {
@@ -246,7 +246,7 @@ impl<'a> StoneFlow<'a> {
     /// The rates in time while a dry slip, which is just beginning, has the direction `way`.
     pub fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         let (lab, q, w, u) = (laboratory(y.quaternion()), y.quaternion(), y.omega(), slip_of(y));
-        let at = self.law.losing(self.law.touching(lab[2], w), &lab, w);
+        let at = self.law.losing(self.law.meeting(&lab, w), &lab, w);
         let pulled = self.law.pulled(&at, w, across(&lab, way));
         let (rate, mut rates) = (self.law.slip_rate(&at, w, &pulled), [0.0; N]);
         rates[..4].copy_from_slice(&turning(q, w));
@@ -269,12 +269,14 @@ impl<'a> StoneFlow<'a> {
         lab.map(|axis| dot(axis, to.force)).into()
     }
 
-    /// The orientation, the contact point and the centre of mass; `still` is the centre of mass on a smooth table.
+    /// The orientation, the contact point and the centre of mass; `still` is the centre of mass at the start, which on a
+    /// smooth table is at rest, or falls downhill.
     pub fn pose<const N: usize>(&self, y: &[f64; N], still: [f64; 2]) -> StonePose {
         let Seen { lab, at, .. } = self.seen_at(y);
         let [x, y_r, z] = lab.map(|axis| -dot(axis, at.r));
         let point = if self.touch == Touch::Smooth {
-            [still[0] - x, still[1] - y_r]
+            let fallen = self.law.tilt.map_or(0.0, |tilt| 0.5 * tilt * y[TIME] * y[TIME]);
+            [still[0] + fallen - x, still[1] - y_r]
         } else {
             [y[STONE_X], y[STONE_Y]]
         };

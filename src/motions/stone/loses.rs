@@ -12,7 +12,7 @@
 //!
 //! Error: a stone that begins to roll gets the speed 2 `REST`.
 
-use super::flow::{Seen, StoneFlow, StoneNumbers, Touch, slip_of};
+use super::flow::{HOLD, Seen, StoneFlow, StoneNumbers, Touch, slip_of};
 use crate::laws::contact::patch::rubs;
 use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couple, Holds, Law, Ways, rounded};
@@ -113,6 +113,16 @@ impl StoneFlow<'_> {
         self.law.losses.as_ref().map_or(Holds::default(), |losses| losses.holds())
     }
 
+    /// Whether a stone that is at rest, and whose rolling and rocking are held, does not begin to move: on a slope the
+    /// contact point may slip off, or the stone may turn about the vertical through it.
+    pub(super) fn stays_at_rest<const N: usize>(&self, y: &[f64; N]) -> bool {
+        if self.law.tilt.is_none() {
+            return true;
+        }
+        let turns = dot(self.seen_at(y).to.w, self.seen_at(y).at.n);
+        self.rests() && self.margins_at(y)[HOLD] >= 0.0 && turns.abs() <= REST
+    }
+
     fn turn(&mut self, ways: Ways) {
         if let Some(losses) = &mut self.law.losses {
             losses.ways = Some(ways);
@@ -161,7 +171,7 @@ impl StoneFlow<'_> {
             }
         }
         let (lab, w) = (laboratory(core::array::from_fn(|i| y[i])), y.omega());
-        let at = law.losing(law.touching(lab[2], w), &lab, w);
+        let at = law.losing(law.meeting(&lab, w), &lab, w);
         let (mu, u) = (self.law.strength, slips.unwrap_or([0.0; 2]));
         let size = u[0].hypot(u[1]);
         let (pull, twist) = match self.law.patch() {

@@ -44,8 +44,8 @@ pub(crate) fn check_stone(
             within("slip", u, (0.0, 0.0), "no slip on this table")?;
         }
     }
-    within("slope", ask.slope, (0.0, 0.0), "0 for a stone")?;
     within("turning", ask.turning, (0.0, 0.0), "0 for a stone")?;
+    start.check_place()?;
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     check_patch(ask)?;

@@ -1,8 +1,8 @@
 //! The phases of a stone: their beginnings, their flows and their ends.
 
 use super::flow::{
-    HOLD, SLID_X, SLID_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip, slip_of, spot,
-    state,
+    HOLD, SLID_X, SLID_Y, STONE_X, STONE_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip,
+    slip_of, spot, state,
 };
 use super::known::Recorded;
 use super::loses::REST;
@@ -15,7 +15,7 @@ use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
 use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couples, GRACE, Law, rounded};
 use crate::laws::stone::law::{across, laboratory};
-use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::laws::stone::{Ellipsoid, StoneState, turned};
 use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Exhausted, Flow, Flown, Steps};
 use crate::motions::body::roll::lossy::JUMP;
@@ -70,6 +70,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let patch = friction.patch();
         let law = stone.law(friction.strength(), dry && ask.table.rubs());
         let law = law.with_patch((patch > 0.0).then_some(patch)).with_losses(Couples::some(&ask.losses));
+        let law = law.with_tilt((ask.slope != 0.0).then(|| ask.slope.tan()));
         let edge = if stone.theta_end < core::f64::consts::PI { stone.theta_end.cos() } else { -2.0 };
         let flow = StoneFlow {
             sloped: law.map(Dual::constant),
@@ -86,9 +87,13 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             own,
         };
         let mut at = [0.0; N];
-        at[..4].copy_from_slice(&y.orientation());
+        at[..4].copy_from_slice(&turned(y.orientation(), start.heading));
         at[4..7].copy_from_slice(&y.w);
-        at[8..10].copy_from_slice(&slip);
+        // The slip is told in the laboratory in which the stone is not turned about the vertical.
+        let (sin, cos) = start.heading.sin_cos();
+        at[SLID_X] = cos * slip[0] - sin * slip[1];
+        at[SLID_Y] = cos * slip[1] + sin * slip[0];
+        at[STONE_X..=STONE_Y].copy_from_slice(&start.place);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
         let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y] };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
@@ -115,7 +120,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
     fn rest(&self) -> HeldContact<impl Fn(f64) -> Option<f64>> {
         let law = self.of.flow.law;
         let (lab, w) = (laboratory(core::array::from_fn(|i| self.at[i])), self.at.omega());
-        let at = law.losing(law.touching(lab[2], w), &lab, w);
+        let at = law.losing(law.meeting(&lab, w), &lab, w);
         let free = law.pulled(&at, w, [0.0; 3]);
         let held = law.rolling(&at, w).force;
         let [along, aside, normal] = lab.map(|axis| dot(axis, held));
@@ -266,7 +271,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let (flow, drilling) = (&self.of.flow, self.of.flow.drilling(&self.at));
         let turns = drilling.abs() > rounded(1.0, [drilling, 0.0, 0.0]);
         let stops = flow.touch != Touch::Slips && flow.holds().rolling && !turns;
-        stops.then_some(Next::Ends(Ending::Stops))
+        (stops && flow.stays_at_rest(&self.at)).then_some(Next::Ends(Ending::Stops))
     }
 
     /// Begins a rolling from rest in a slip.

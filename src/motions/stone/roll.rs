@@ -14,6 +14,7 @@ use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::dry::friction::OwnFriction;
+use crate::motions::slope::Slope;
 use crate::motions::walk::two_runs::{Followed, judged, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
@@ -24,7 +25,8 @@ use core::cell::RefCell;
 /// length 1. The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the
 /// laboratory frame in which the stone is turned from upright by the smallest angle. `ask` has
 /// the contact, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim
-/// that could land. `go_on` and the limits of the work are as for a body ([`roll_with`](crate::motion::roll_with)).
+/// that could land. The `heading` of a start turns that laboratory about the vertical, and its `place` is that of the
+/// first contact point; on a slope x points downhill. `go_on` and the limits of the work are as for a body ([`roll_with`](crate::motion::roll_with)).
 /// Errors: `OutOfRange`, which names the argument; `Painleve` for an initial state without a unique contact force.
 ///
 /// ```
@@ -73,8 +75,24 @@ pub(crate) fn followed(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
     let (start, fine) = check_stone(start, times, ask)?;
+    let Some(slope) = Slope::of(ask)? else {
+        return settled((stone, &start), times, (ask, fine, own), recorded, go_on);
+    };
+    let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
+    let found = settled((stone, &scaled), &since, (&slope.ask(ask), fine, own), recorded, go_on)?;
+    Ok(slope.motion(found, &start, times))
+}
+
+/// The motion of [`followed`] from a start that is checked, in the units in which gravity across the table is 1.
+fn settled(
+    (stone, start): (&Ellipsoid, &Start<StoneState>),
+    times: &[f64],
+    (ask, fine, own): (&Ask, f64, Option<OwnFriction<'_>>),
+    recorded: &RefCell<Recorded>,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Followed<StoneState>, Error> {
     let mut run = |tol: f64, times: &[f64], recorded| {
-        let of = (stone, &start);
+        let of = (stone, start);
         if ask.losses.is_none() {
             walk::<ALL>(of, times, (ask, own), (tol, fine), recorded)?.run(go_on)
         } else {

@@ -18,7 +18,7 @@ impl StoneSlips {
             let law = law.map(|x| tape.number(x));
             let (q, w) = ([a, b, c, d], [e, f, g]);
             let lab = laboratory(q);
-            let at = law.losing(law.touching(lab[2], w), &lab, w);
+            let at = law.losing(law.meeting(&lab, w), &lab, w);
             let to = law.pulled(&at, w, across(&lab, way));
             let rate = law.slip_rate(&at, w, &to);
             let heat = -(slip[0] * dot(lab[0], to.force) + slip[1] * dot(lab[1], to.force));
