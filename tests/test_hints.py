@@ -18,8 +18,8 @@ STATE = BODY.steady(1.3)
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: sc.roll(BODY, STATE, 1.0, slope=0.1), "'slope': only a flat and level table"),
-        (lambda: sc.roll(BODY, STATE, 1.0, incline=0.1), "'incline': only a flat and level table"),
+        (lambda: sc.roll(BODY, STATE, 1.0, slope=0.1), "'slope': roll takes table=sc.Table"),
+        (lambda: sc.roll(BODY, STATE, 1.0, incline=0.1), "'incline': roll takes table=sc.Table"),
         (lambda: sc.roll(BODY, STATE, 1.0, height=0.1), "'height': .*sc.dropped\\(body, height, theta\\)"),
         (lambda: BODY.roll(STATE, 1.0, tols=0.1), "^roll\\(\\) .*'tols': did you mean tol\\?"),
         (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': expected body, state, t, t0, step"),
@@ -27,7 +27,7 @@ STATE = BODY.steady(1.3)
         (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
         (
             lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),
-            "^thrown\\(\\) .*'slope': only a flat and level table",
+            "^thrown\\(\\) .*'slope': roll takes table=sc.Table",
         ),
         (lambda: sc.plot.branches([2.5], slope=0.1), "^branches\\(\\) .*'slope'"),
     ],

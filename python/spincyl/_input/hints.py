@@ -15,7 +15,7 @@ import numpy as np
 _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 _MOST_LISTED = 24  #: More names than these are not listed.
-_LEVEL_ONLY = "only a flat and level table is modelled"
+_TABLE = "roll takes table=sc.Table(slope)"
 #: Proposals for attributes of bodies and states.
 _STILL = dict.fromkeys(
     ("still", "still_symbols", "symbols"),
@@ -24,7 +24,7 @@ _STILL = dict.fromkeys(
 #: Proposals for names that the library does not have.
 _INSTEAD = {
     **_STILL,
-    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _LEVEL_ONLY),
+    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _TABLE),
     "height": "give length= for the height of a body; sc.dropped(body, height, theta) starts in the air",
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
