@@ -24,7 +24,8 @@ _STILL = dict.fromkeys(
 #: Proposals for names that the library does not have.
 _INSTEAD = {
     **_STILL,
-    **dict.fromkeys(("slope", "incline", "tilt", "bowl", "concave"), _TABLE),
+    **dict.fromkeys(("slope", "incline", "tilt", "turntable"), _TABLE),
+    **dict.fromkeys(("bowl", "concave"), "only a flat table is modelled"),
     "height": "give length= for the height of a body; sc.dropped(body, height, theta) starts in the air",
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
