@@ -76,10 +76,10 @@ pub(crate) fn followed(
 ) -> Result<Followed<StoneState>, Error> {
     let (start, fine) = check_stone(start, times, ask)?;
     let Some(slope) = Slope::of(ask)? else {
-        return settled((stone, &start), times, (ask, fine, own), recorded, go_on);
+        return settled((stone, &start), times, (ask, own), fine, recorded, go_on);
     };
     let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
-    let found = settled((stone, &scaled), &since, (&slope.ask(ask), fine, own), recorded, go_on)?;
+    let found = settled((stone, &scaled), &since, (&slope.ask(ask), own), fine, recorded, go_on)?;
     Ok(slope.motion(found, &start, times))
 }
 
@@ -87,7 +87,8 @@ pub(crate) fn followed(
 fn settled(
     (stone, start): (&Ellipsoid, &Start<StoneState>),
     times: &[f64],
-    (ask, fine, own): (&Ask, f64, Option<OwnFriction<'_>>),
+    (ask, own): (&Ask, Option<OwnFriction<'_>>),
+    fine: f64,
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
