@@ -201,13 +201,6 @@ fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
         let m = m.unwrap();
         followed += 1;
         let path = m.path.as_ref().unwrap();
-        if path
-            .phases
-            .iter()
-            .any(|phase| matches!(phase.kind, Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide))
-        {
-            continue;
-        }
         (hops, ends) = (hops + usize::from(!path.impacts.is_empty()), ends + usize::from(m.event.is_some()));
         let whole = |i: usize| {
             let struck: f64 =
