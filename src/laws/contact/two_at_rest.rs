@@ -13,7 +13,7 @@ use super::lying::{Lain, Lying};
 use crate::laws::body::{Border, Shape};
 
 /// The largest number of steps of the search.
-const STEPS: usize = 100_000;
+const SEARCH_STEPS: usize = 100_000;
 
 /// How both circles begin to move.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +49,7 @@ impl Lying<f64> {
         let mut q = [[0.0; 2]; 2];
         let mut velocity = 0.0;
         let step = self.step();
-        for _ in 0..STEPS {
+        for _ in 0..SEARCH_STEPS {
             let (lain, slips) = self.accelerates(w, &q);
             if velocity == 0.0 {
                 velocity = step * slips.iter().flatten().fold(f64::MIN_POSITIVE, |most, x| x.abs().max(most));
