@@ -315,10 +315,9 @@ impl<G: Own> LyingFlow<G> {
 
     /// The margin of the friction that holds both rims on a slope: of each across, and of both along e_h.
     fn grips_both<T: Real>(&self, law: &Lying<T>, y: Flat<T>, at: &Lain<T>) -> T {
-        let fixed = y[0].splat(self.fixed);
-        let zero = y[0].splat(0.0);
-        let [a, b] = at.force.map(|[n, across, _]| grip(fixed, n, across * across));
         let along = law.pulls_to_apex(y);
+        let (fixed, zero) = (along.splat(self.fixed), along.splat(0.0));
+        let [a, b] = at.force.map(|[n, across, _]| grip(fixed, n, across * across));
         let (product, least) = (a * b, a.min(b));
         if !(zero.is_lt(product) && zero.is_lt(a)) {
             return least;

@@ -136,8 +136,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (rate, [0.0; 2], 0.0, taken)
         } else {
             let (at, taken) = self.of.slide.slips(angle, w, slip, None);
-            let [pull_h, pull_2] = pull(self.of.tilt, y);
-            let drift = if self.of.tilt == 0.0 { at.u } else { [at.u[0] + pull_h, at.u[1] + pull_2] };
+            let ([u_h, u_2], [pull_h, pull_2]) = (at.u, pull(self.of.tilt, y));
+            let drift = if self.of.tilt == 0.0 { at.u } else { [u_h + pull_h, u_2 + pull_2] };
             (at.w, drift, -(at.force[1] * slip[1] + at.force[2] * slip[0]), taken)
         };
         (all[W1], all[W2], all[W3]) = (rate[0], rate[1], rate[2]);
