@@ -75,7 +75,7 @@ STONE = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
         (sc.Table(0.1, turning=0.3), {}, "turning = 0.3: expected 0 for a stone"),
         (TABLE, {"losses": sc.loss.Drilling(0.01)}, "slope = 0.2: expected 0 with dry friction"),
         (TABLE, {"contact": sc.Coulomb(0.3, patch=0.1)}, "slope = 0.2: expected 0 with a patch"),
-        (TABLE, {"contact": sc.Coulomb(lambda u: 0.2, static=0.3)}, "slope = 0.2: expected 0 together"),
+        (TABLE, {"contact": sc.custom.Friction(lambda u: 0.2)}, "slope = 0.2: expected 0 together"),
         (TABLE, {"beyond": True}, "beyond = True"),
     ],
 )
