@@ -11,14 +11,14 @@
 //! held   w' has the couple M n with (w.n)' = w'.n = 0                       if static friction stops the drilling
 //! losses   the couple m = m0 + N mN on the right side of w', and N from it:   P = -m.w,   (E + heat)' = -P
 //! E      = (w.I w + v^2)/2 - r.n,   v = u - w x r
-//! slope  n - tan(beta) d in place of n where it is the weight: in r x n, and where n is added to or subtracted from F
+//! slope  n - tan(beta) x in place of n where it is the weight: in r x n, and where F and u' contain n;   x points downhill
 //! ```
 //! Vectors have components along the axes of the ellipsoid: n is the vertical, r leads from the centre of mass to the
 //! contact point, w is the angular velocity, u the slip of the contact point, and v the velocity of the centre of mass. D
 //! is the diagonal matrix of the squared semi-axes, I the tensor of inertia about the centre of mass, and d leads from the
-//! centre of the ellipsoid to the centre of mass. On a slope the part of gravity across the table is 1 (`motions::slope`), and d leads
-//! downhill. These are Newton's and Euler's equations with the contact force eliminated
-//! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip).
+//! centre of the ellipsoid to the centre of mass. These are Newton's and Euler's equations with the contact force eliminated
+//! (Kane and Levinson 1982 for rolling); the slip is that of [`contact::slip`](crate::laws::contact::slip). On a slope the
+//! part of gravity across the table is 1 (`motions::slope`).
 //!
 //! Error: a few roundings of the terms above; `tests/laws/stone.rs` checks it against references of 25 digits,
 //! from equations in the laboratory frame.
@@ -57,7 +57,7 @@ pub(crate) struct StoneLaw<T> {
 #[derive(Clone, Copy)]
 pub(crate) struct Touching<T> {
     pub n: [T; 3],
-    /// The force that would carry the weight: n on a level table, on a slope n - tan(beta) d.
+    /// The force that would carry the weight: n on a level table, on a slope n - tan(beta) x.
     pub up: [T; 3],
     pub r: [T; 3],
     pub r_rate: [T; 3],
