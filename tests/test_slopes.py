@@ -81,7 +81,7 @@ STONE = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
 )
 def test_what_is_not_computed_for_a_stone_on_a_slope_is_refused_by_name(table, how, word):
     with pytest.raises(ValueError, match=word):
-        sc.roll(STONE, STONE.spinning(1.0, 0.1), 1.0, table=table, **how)
+        sc.roll(STONE, STONE.spinning(1.0, pitch=0.1), 1.0, table=table, **how)
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_what_is_not_computed_for_a_stone_on_a_slope_is_refused_by_name(table, h
     ],
 )
 def test_the_energy_of_a_stone_on_a_slope_includes_the_height_above_its_foot(how):
-    start, table = STONE.spinning(1.0, 0.3, 0.2), sc.Table(0.2, phi0=0.5, place=(1.0, 2.0))
+    start, table = STONE.spinning(1.0, pitch=0.3, roll=0.2), sc.Table(0.2, phi0=0.5, place=(1.0, 2.0))
     m = sc.roll(STONE, start, np.linspace(0, 2, 21), table=table, **how)
     assert m.contact_point[0].tolist() == [1.0, 2.0]
     whole = m.energy.copy()

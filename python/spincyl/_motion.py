@@ -167,13 +167,10 @@ class Motion(Outputs):
         """
         free = self.contact == "smooth" and self._phases is not None
         contact = Coulomb(0.0) if free else self.contact
-        if getattr(self.body, "rims", None) is None:
-            found = self.body.energy(self.states, contact)
-        else:
-            found = self.body._energy(self._seen, contact, self.rim)
-        if "beside" in self._extra:
-            found = found + self._extra["beside"]
-        return self._told("energy", found)
+        one = getattr(self.body, "rims", None) is None
+        told = (self.states, contact) if one else (self._seen, contact, self.rim)
+        found = (self.body.energy if one else self.body._energy)(*told)
+        return self._told("energy", found + self._extra.get("beside", 0.0))
 
     @property
     def height(self) -> Floats:

@@ -190,3 +190,10 @@ class Outputs:
     work_lost = Number(
         LOSSES, "(n,) energy that `losses` have taken since the initial state, M g R or J. Needs `losses=`."
     )
+
+    @property
+    def work_table(self: Any) -> Floats:
+        """(n,) work of a table that turns since the first time, M g R or J."""
+        heat = self.dissipated if "dissipated" in self._extra else 0.0
+        found: Floats = self.energy - self.energy[0] + heat
+        return found
