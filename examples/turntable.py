@@ -17,14 +17,14 @@ t = np.linspace(0.0, 12.6 / second, 3001)
 def rolled(body: sc.Body, speed: float, slope: float = 0.0) -> sc.Motion:
     """Its motion after a throw in m/s, 10 cm from the middle of the table."""
     table = sc.Table(slope, turning=rate, phi0=0.0, place=(0.1 / metre, 0.0))
-    # over the table, which moves there with 0.35 m/s; the ball does not spin
+    # over the table, which moves there with 0.35 m/s
     slip = (0.0, speed * second / metre - rate * 0.1 / metre)
     thrown = sc.State(np.pi / 2, 0.0, 0.0, 0.0, slip=slip)
     return sc.roll(body, thrown, t, contact=sc.Coulomb(0.3), table=table)
 
 
 def once_round(motion: sc.Motion) -> float:
-    """The time for one circle, from the direction of its velocity while it rolls, in seconds."""
+    """The time for one circle while it rolls, in seconds."""
     x, y = (motion.centre[:, :2] * metre).T
     way = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
     rolls = motion.t > motion.phases[-1].time + 1.0
@@ -32,7 +32,7 @@ def once_round(motion: sc.Motion) -> float:
 
 
 def picture() -> None:
-    """Draw the paths as seen from the room, on a level table and on one that is tilted a little."""
+    """Draw the paths as seen from the room, on a level table and on a tilted one."""
     _, axes = plt.subplots(1, 2)
     for speed in (0.0, 0.2, 0.5):
         x, y = (rolled(ball, speed).centre[:, :2] * 100 * metre).T
