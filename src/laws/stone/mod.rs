@@ -22,7 +22,7 @@ use crate::error::{Error, within};
 use crate::numbers::vector::{Symmetric, cross, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
 use law::StoneLaw;
-pub(crate) use state::turned;
+pub(crate) use state::turned_about_vertical;
 pub use state::{StonePose, StoneState};
 
 /// A stone: an ellipsoid with any inertia. If the stone has an edge, the edge lands at the inclination `theta_end` of

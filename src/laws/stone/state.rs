@@ -54,7 +54,7 @@ impl StoneState {
 }
 
 /// The orientation with this quaternion, turned about the vertical by an angle.
-pub(crate) fn turned(from: [f64; 4], heading: f64) -> [f64; 4] {
+pub(crate) fn turned_about_vertical(from: [f64; 4], heading: f64) -> [f64; 4] {
     if heading == 0.0 {
         return from;
     }

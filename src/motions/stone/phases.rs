@@ -15,7 +15,7 @@ use crate::laws::contact::standstill::{HeldContact, Onset, Standstill, towards};
 use crate::laws::contact::together::{Resting, Together};
 use crate::laws::loss::{Couples, GRACE, Law, rounded};
 use crate::laws::stone::law::{across, laboratory};
-use crate::laws::stone::{Ellipsoid, StoneState, turned};
+use crate::laws::stone::{Ellipsoid, StoneState, turned_about_vertical};
 use crate::methods::SHORT_CODE;
 use crate::methods::flow::{Exhausted, Flow, Flown, Steps};
 use crate::motions::body::roll::lossy::JUMP;
@@ -87,7 +87,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             own,
         };
         let mut at = [0.0; N];
-        at[..4].copy_from_slice(&turned(y.orientation(), start.heading));
+        at[..4].copy_from_slice(&turned_about_vertical(y.orientation(), start.heading));
         at[4..7].copy_from_slice(&y.w);
         // The slip is told in the laboratory in which the stone is not turned about the vertical.
         let (sin, cos) = start.heading.sin_cos();
