@@ -279,3 +279,43 @@ fn a_heading_turns_a_motion_on_a_level_table_and_nothing_else() {
         assert!((about * u - v).amax() < 1e-11);
     }
 }
+
+#[test]
+fn a_pebble_rolls_and_slips_as_the_reference_of_25_digits_says() {
+    // The rows of `tests/reference/slope.json` are of equations in the laboratory frame.
+    let inertia = [[0.2, 0.02, -0.03], [0.02, 0.26, 0.015], [-0.03, 0.015, 0.3]];
+    let stone = Ellipsoid::new([1.0, 0.8, 0.6], inertia, [0.1, -0.05, -0.12]).unwrap();
+    let from = |n: [f64; 3], w| StoneState { vertical: Vector3::from(n).normalize().into(), w };
+    let off = |m: &Motion<StoneState>, state: [f64; 6], force: [f64; 3]| {
+        let (y, f) = (m.states[0], m.forces.as_ref().unwrap()[0]);
+        let found = [&y.vertical[..], &y.w[..], f.as_slice()].concat();
+        found.iter().zip(state.iter().chain(&force)).fold(0f64, |most, (a, b)| most.max((a - b).abs()))
+    };
+    let ask = Ask::on(Contact::Rolling).with_slope(0.2);
+    let m = rolled(&stone, from([0.3, -0.2, 0.9], [0.2, 0.1, 0.5]), &[6.0], &ask);
+    let state = [
+        -0.332_146_014_764_747_7,
+        -0.268_041_259_009_243_36,
+        0.904_341_145_997_811_9,
+        -0.894_228_375_103_558_4,
+        0.721_557_562_629_909_8,
+        0.580_841_461_520_976_4,
+    ];
+    let force = [-0.264_382_244_710_484_6, 0.232_541_980_655_767_96, 1.271_997_217_081_545_9];
+    assert!(off(&m, state, force) < 1e-11, "{m:?}");
+    let start = Start::from(from([0.1, -0.05, 1.0], [0.1, 0.2, -0.3])).with_slip([0.3, -0.1]);
+    let m = rolled(&stone, start, &[1.2], &Ask::on(Friction::coulomb(0.3)).with_slope(0.2));
+    let state = [
+        -0.508_843_970_454_260_2,
+        0.222_269_636_949_412_02,
+        0.831_669_418_833_421_3,
+        0.350_857_397_445_626_02,
+        0.350_290_348_922_100_2,
+        -0.239_212_435_154_932_44,
+    ];
+    let force = [-0.236_205_655_012_951_1, 0.085_669_351_283_400_97, 0.837_538_385_252_454_7];
+    assert!(off(&m, state, force) < 1e-11, "{m:?}");
+    let phases = &m.path.as_ref().unwrap().phases;
+    assert!((phases[1].time - 0.505_882_583_136_179_2).abs() < 1e-11, "{phases:?}");
+    assert!((phases[2].time - 0.879_911_969_369_586_5).abs() < 1e-11, "{phases:?}");
+}
