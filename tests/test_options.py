@@ -52,6 +52,10 @@ OPTIONS = {
         "none: `spincyl flick` has it, whose motions need it", "restitution: restitution",
     ),
     "losses": Row("losses", "losses", "losses", "losses couple", "losses", "--loss", "losses: law loss"),
+    "table": Row(
+        "table", "table", "table", "slope turning heading place", "slope turning",
+        "none: the command has level tables", "none: a page has level tables",
+    ),
     "max_nfev": Row(
         "max_nfev", "max_nfev", "max_nfev", "max_nfev", "max_evaluations", "none: Ctrl-C ends a command",
         "none: a page computes as long as it is shown",
