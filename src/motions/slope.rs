@@ -56,17 +56,22 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
 }
 
 /// What the energy has beside that on a level table at rest, in M g R: the fall of the centre downhill, and the velocity with
-/// which a table that turns carries it. On a smooth slope the centre has fallen for a time. None without a pose.
+/// which a table that turns carries it. None without a pose.
 pub(crate) fn energy_beside(body: &Body, ask: &Ask, m: &Motion, i: usize) -> Option<f64> {
     let of = m.sample(i);
     let (centre, velocity, point) = (of.centre(body)?, of.velocity(body)?, of.pose?.contact_point);
-    let (sin, cos) = ask.slope.sin_cos();
     let [x, y] = [-(ask.turning * point.y), ask.turning * point.x];
     let carried = x * (velocity.x + 0.5 * x) + y * (velocity.y + 0.5 * y);
-    let begun = m.path.as_ref().and_then(|path| path.phases.first()).map_or(of.time, |phase| phase.time);
+    Some(carried + energy_of_fall(ask, m, i, [centre.x, centre.z]))
+}
+
+/// The part of the fall of a centre at these x and z. On a smooth slope the centre has also gained speed for a time.
+pub(crate) fn energy_of_fall<S: Moving>(ask: &Ask, m: &Motion<S>, i: usize, [x, z]: [f64; 2]) -> f64 {
+    let (sin, cos) = ask.slope.sin_cos();
+    let begun = m.path.as_ref().and_then(|path| path.phases.first()).map_or(m.times[i], |phase| phase.time);
     let free = ask.table == Table::Smooth && ask.restitution.is_none();
-    let falls = if free { sin * (of.time - begun) } else { 0.0 };
-    Some(carried + 0.5 * falls * falls - (1.0 - cos) * centre.z - sin * centre.x)
+    let falls = if free { sin * (m.times[i] - begun) } else { 0.0 };
+    0.5 * falls * falls - (1.0 - cos) * z - sin * x
 }
 
 impl Slope {

@@ -16,7 +16,7 @@ use crate::motions::body::stand::flow::couple_on_face;
 use crate::motions::custom;
 use crate::motions::exact::Swing;
 use crate::motions::motion;
-use crate::motions::slope::energy_beside;
+use crate::motions::slope::{energy_beside, energy_of_fall};
 use crate::motions::stone;
 use crate::motions::turning;
 use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, Path, RestsOn, Sample, Start};
@@ -180,6 +180,11 @@ impl StateArrays for StoneState {
             }
         }
         Ok(())
+    }
+
+    fn beside(m: &Motion<Self>, _: &Ellipsoid, ask: &Ask, i: usize) -> Option<f64> {
+        let [x, _, z] = m.poses.as_ref()?[i].centre;
+        Some(energy_of_fall(ask, m, i, [x, z]))
     }
 
     fn drilling(&self) -> f64 {
