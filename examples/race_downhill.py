@@ -11,6 +11,7 @@ runners = {
     "hollow ball": sc.Body.ball(0.0, 2 / 3, 2 / 3),
     "hoop": sc.Body.tube(0.0, bore=1.0),
 }
+body = runners["solid ball"]
 # all of them as large as a marble
 scale = sc.Scale(radius=0.01, mass=0.01)
 metre, second = float(scale.metres(1.0)), float(scale.seconds(1.0))

@@ -219,6 +219,7 @@ def nouns():
             sc.State.from_si, {"theta": 1.0, "w1": 1.0, "w2": 0.0, "w3": 1.0, "slip": None, "scale": sc.Scale(0.01)},
         ),
         "State.kicked": (state.kicked, {"thetadot": 0.1}),
+        "Table": (sc.Table, {"slope": 0.1, "turning": 0.0, "phi0": 0.2}),
         "Coulomb": (sc.Coulomb, {"mu": 0.3, "static": None, "face": "ring"}),
         "Viscous": (sc.Viscous, {"c": 0.3}),
         "Scale": (sc.Scale, {"radius": 0.01, "mass": 1.0, "gravity": 9.8}),

@@ -327,11 +327,11 @@ def test_a_ball_on_a_turntable_goes_round_at_two_sevenths_of_its_rate_and_a_holl
         "It drifts across",
     )  # fmt: skip
     turn = 2 * np.pi * turntable.second / turntable.rate
-    for body, share in ((turntable.ball, 2 / 7), (turntable.hollow, 2 / 5)):
+    for body, share in ((turntable.body, 2 / 7), (turntable.hollow, 2 / 5)):
         for speed in (0.0, 0.5):
             once = turntable.once_round(turntable.rolled(body, speed))
             assert turn / once == pytest.approx(share, abs=1e-4)
-    m = turntable.rolled(turntable.ball, 0.2, np.radians(0.5))
+    m = turntable.rolled(turntable.body, 0.2, np.radians(0.5))
     down, across, _ = (m.centre[-1] - m.centre[1500]) * turntable.metre
     assert abs(down) < 1e-3 * across
 
