@@ -172,6 +172,28 @@ def test_a_sweep_over_slopes_has_the_motions_that_roll_has():
         assert all(np.array_equal(again[name], found[name], equal_nan=True) for name in again.data_vars)
 
 
+@pytest.mark.parametrize("phi0", [np.nan, np.inf, 2e6])
+@pytest.mark.filterwarnings("ignore:phi0")
+def test_a_sweep_marks_the_directions_that_roll_refuses(phi0):
+    for slope in (0.0, 0.1):
+        found = sc.sweep.roll(DISK, START, 1.0, table=sc.Table([slope, slope], phi0=[phi0, 1e-300]))
+        assert list(found["status"].values) == [sc.sweep.Status.INVALID, sc.sweep.Status.DONE], slope
+        assert list(np.isnan(found["theta"].values)) == [True, False], slope
+        with pytest.raises(ValueError, match="phi0"):
+            sc.roll(DISK, START, 1.0, table=sc.Table(slope, phi0=phi0))
+
+
+@pytest.mark.parametrize(
+    "how", [{}, {"contact": sc.Coulomb(0.3)}, {"contact": sc.Coulomb(0.2), "restitution": 0.3}]
+)
+def test_a_slope_of_less_than_a_digit_moves_as_a_level_table(how):
+    level = sc.roll(DISK, START, 1.0, **how)
+    for slope in (1e-300, 1e-16, -1e-16):
+        found = sc.roll(DISK, START, 1.0, table=sc.Table(slope), **how)
+        apart = np.abs(found.states.theta - level.states.theta).max()
+        assert apart <= found.error + level.error, slope
+
+
 def test_slopes_broadcast_by_name():
     slope = xarray.DataArray([0.1, 0.2], dims="slope", coords={"slope": [0.1, 0.2]})
     phi0 = xarray.DataArray([0.0, 1.0, 2.0], dims="phi0")

@@ -333,6 +333,14 @@ fn what_makes_no_sense_is_refused_or_marked() {
     assert!(refused(&Job::new(&[])).contains("at least one time"));
     assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
     assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
+    for (ask, name) in [
+        (Ask::default().with_slope(0.2), "slope = 0.2"),
+        (Ask::on(Table::Rolling { mu: 0.3 }).with_slope(1e-300), "slope = "),
+        (Ask::default().with_turning(0.5), "turning = 0.5"),
+        (Ask::default().with_restitution(0.5).with_turning(f64::NAN), "turning = NaN"),
+    ] {
+        assert!(refused(&Job::new(&times).with_ask(ask)).starts_with(name), "{name}");
+    }
     assert!(refused(&Job::new(&times).with_ask(Ask::on(TableKind::Coulomb))).starts_with("mu = inf"));
     assert!(
         refused(&Job::new(&times).with_ask(Ask::on(Table::Rolling { mu: f64::NAN }))).starts_with("mu = NaN")

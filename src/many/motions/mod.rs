@@ -110,6 +110,11 @@ impl<'a> Job<'a> {
                 "0: losses of many motions are columns of their starts",
             );
         }
+        for (name, value) in [("slope", ask.slope), ("turning", ask.turning)] {
+            if value != 0.0 {
+                return unknown(name, value, "0: the tables of many motions are columns of their starts");
+            }
+        }
         if let Method::Tolerance(tol) = ask.method {
             return unknown("method", tol, "no tolerance, which is `tol` of the job");
         }

@@ -142,7 +142,9 @@ impl Sample {
         self.pose.map(|pose| Force { normal, along, across }.in_laboratory(pose.phi.rest))
     }
 
-    /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested.
+    /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested. It is
+    /// the velocity over the table: on a smooth slope the fall of the centre, and on a table that turns its motion
+    /// under the body, come on top of it.
     pub fn velocity(&self, body: &Body) -> Option<Vector3<f64>> {
         let body = &body.standing_on(self.rim);
         let [along, across] = if self.smooth {

@@ -165,6 +165,7 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
         None if on_face(body, &start.state) => exact::check_on_face(body, &start.state)?,
         _ => exact::check(body, &start.state)?,
     }
+    start.check_place()?;
     ask.table.check()?;
     ask.losses.check_for(body)?;
     check_patch(ask)?;
