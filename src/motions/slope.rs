@@ -21,13 +21,15 @@ use crate::error::{Error, room, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
+use crate::laws::custom::{CoupleLaw, FrictionLaw};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::scale::Scale;
+use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_2;
 
 /// A slope: the conversion from the units in which its motions are computed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slope {
+struct Slope {
     /// Natural units are those in which the part of gravity across the table is 1.
     scale: Scale,
 }
@@ -38,7 +40,7 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     let most = FRAC_PI_2.next_down();
     within("slope", slope, (-most, most), "between -pi/2 and pi/2, the ends excluded")?;
     let refuses = |what: &'static str| Err(Error::OutOfRange { name: "slope", value: slope, expected: what });
-    let dry = [Law::DryContour, Law::Drilling].iter().any(|law| ask.losses.coefficient(*law) != 0.0);
+    let dry = [Law::DryContour, Law::Drilling].iter().all(|law| ask.losses.coefficient(*law) != 0.0);
     within("turning", ask.turning, (-1e6, 1e6), "at most 1e6 sqrt(g/R)")?;
     if ask.turning != 0.0 {
         let alone = ask.losses.is_none() && ask.restitution.is_none() && ask.table != Table::Smooth;
@@ -50,7 +52,7 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     match () {
         () if slope == 0.0 => Ok(()),
         () if ask.table.friction().patch() > 0.0 => refuses("0 with a patch of contact"),
-        () if dry => refuses("0 with dry friction along the contour, or with drilling friction"),
+        () if dry => refuses("0 with dry friction along the contour and drilling friction together"),
         () => Ok(()),
     }
 }
@@ -74,9 +76,64 @@ pub(crate) fn energy_of_fall<S: Moving>(ask: &Ask, m: &Motion<S>, i: usize, [x, 
     0.5 * falls * falls - (1.0 - cos) * z - sin * x
 }
 
+/// A law of the user on a slope: its state, its speeds, and its forces are those in units with the full gravity.
+pub(crate) struct AtPace<'a, L: ?Sized> {
+    pub law: &'a L,
+    /// The root of the part of gravity across the table.
+    pub pace: f64,
+}
+
+impl FrictionLaw for AtPace<'_, dyn FrictionLaw + '_> {
+    fn coefficient(&self, speed: f64) -> f64 {
+        self.law.coefficient(self.pace * speed)
+    }
+    fn has_failed(&self) -> bool {
+        self.law.has_failed()
+    }
+}
+
+impl CoupleLaw for AtPace<'_, dyn CoupleLaw + '_> {
+    fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
+        let weight = self.pace * self.pace;
+        self.law.couple(body, &y.at_pace(self.pace), weight * normal).map(|m| m / weight)
+    }
+    fn has_failed(&self) -> bool {
+        self.law.has_failed()
+    }
+}
+
+/// What a wrong value of such a law says, in units with the full gravity.
+pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
+    match fault {
+        Error::Coefficient { mu, expected, speed } => {
+            Error::Coefficient { mu, expected, speed: pace * speed }
+        }
+        Error::Couple { power, expected, theta, w, normal } => {
+            let (w, weight) = (w.map(|w| pace * w), pace * pace);
+            Error::Couple { power: pace * weight * power, expected, theta, w, normal: weight * normal }
+        }
+        fault => fault,
+    }
+}
+
+/// Computes a motion on a slope in its own units: `run` gets the start, the times, the laws, and the unit of velocity.
+pub(crate) fn on_slope<S: Moving>(
+    ask: &Ask,
+    start: &Start<S>,
+    times: &[f64],
+    run: impl FnOnce(&Start<S>, &[f64], &Ask, f64) -> Result<Followed<S>, Error>,
+) -> Result<Followed<S>, Error> {
+    let Some(slope) = Slope::of(ask)? else { return run(start, times, ask, 1.0) };
+    let pace = slope.scale.metres_per_second(1.0);
+    let since = slope.times(times, start.time)?;
+    let found =
+        run(&slope.start(start), &since, &slope.ask(ask), pace).map_err(|e| fault_at_pace(e, pace))?;
+    Ok(slope.motion(found, start, times))
+}
+
 impl Slope {
     /// The slope of a motion; None on a level table.
-    pub fn of(ask: &Ask) -> Result<Option<Self>, Error> {
+    fn of(ask: &Ask) -> Result<Option<Self>, Error> {
         check_slope(ask)?;
         if ask.is_level() {
             return Ok(None);
@@ -85,7 +142,7 @@ impl Slope {
     }
 
     /// The laws in the units of the slope.
-    pub fn ask(&self, ask: &Ask) -> Ask {
+    fn ask(&self, ask: &Ask) -> Ask {
         let mut losses = Losses::NONE;
         for (law, coefficient) in ask.losses.iter() {
             losses = losses.with(law, self.scale.coefficient(law, coefficient));
@@ -100,14 +157,14 @@ impl Slope {
     }
 
     /// The times since `t0` in the units of the slope.
-    pub fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
+    fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
         let mut since = room(times.len())?;
         since.extend(times.iter().map(|t| self.scale.time(t - t0)));
         Ok(since)
     }
 
     /// The initial conditions in the units of the slope, at time 0.
-    pub fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
+    fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
         let speed = |u: f64| self.scale.speed(u);
         Start {
             state: start.state.at_pace(speed(1.0)),
@@ -119,7 +176,7 @@ impl Slope {
     }
 
     /// The motion from `start` at these times, from one in the units of the slope.
-    pub fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
+    fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
         let Self { scale } = self;
         let Followed { mut motion, mut path } = found;
         let (pace, weight) = (scale.metres_per_second(1.0), scale.newtons(1.0));

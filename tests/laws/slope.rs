@@ -3,10 +3,11 @@
 use crate::common::rim::place;
 use crate::common::wander;
 use spincyl::contact::{Friction, slip};
+use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Ellipsoid, State, stone};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
@@ -172,6 +173,9 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
     if next() < 0.3 {
         let losses = Losses::of(Law::RollingResistance, within(next, 0.001, 0.05));
         ask = ask.with_losses(losses + Losses::of(Law::AirLinear, 0.01));
+    } else if next() < 0.4 {
+        let law = if next() < 0.5 { Law::DryContour } else { Law::Drilling };
+        ask = ask.with_losses(Losses::of(law, within(next, 0.01, 0.2)));
     }
     (body, start, ask.with_slope(within(next, -1.05, 1.05)))
 }
@@ -377,8 +381,9 @@ fn what_is_not_computed_on_a_slope_is_refused_by_name() {
         Ask::default().with_slope(FRAC_PI_2),
         Ask::default().with_slope(f64::NAN),
         Ask::on(patch).with_slope(0.1),
-        Ask::default().with_losses(Losses::of(Law::DryContour, 0.01)).with_slope(0.1),
-        Ask::default().with_losses(Losses::of(Law::Drilling, 0.01)).with_slope(0.1),
+        Ask::default()
+            .with_losses(Losses::of(Law::DryContour, 0.01) + Losses::of(Law::Drilling, 0.01))
+            .with_slope(0.1),
     ] {
         let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
         assert!(found.is_err_and(|e| e.to_string().starts_with("slope")), "{ask:?}");
@@ -392,5 +397,45 @@ fn what_is_not_computed_on_a_slope_is_refused_by_name() {
     ] {
         let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
         assert!(found.is_err_and(|e| e.to_string().starts_with("turning")), "{ask:?}");
+    }
+}
+
+#[test]
+fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_they_do_on_a_slope() {
+    let (constant, drag) =
+        (|_: f64| 0.25, |_: &Body, y: &State, _: f64| [y.w1, y.w2, y.w3].map(|w| -0.05 * w));
+    let resists = |_: &Body, y: &State, normal: f64| [y.w1, y.w2, y.w3].map(|w| -0.02 * normal * w);
+    let body = Body::solid(0.3).unwrap();
+    let start =
+        Start::from(State { theta: 1.0, w1: 0.4, w2: 0.1, w3: 1.5 }).with_slip([0.6, -0.4]).with_heading(0.5);
+    let (times, ask) = ([0.5, 1.0, 2.0], Ask::on(Friction::coulomb(0.25)).with_slope(0.3).with_pose(true));
+    let laws = Custom::default().with_friction(&constant).with_couple(&drag);
+    let own = custom::roll_with(&body, start, &times, &ask, laws, || true).unwrap().unwrap();
+    let known = roll_with(&body, start, &times, &ask.with_losses(Losses::of(Law::AirLinear, 0.05)), || true);
+    let known = known.unwrap().unwrap();
+    for (a, b) in own.states.iter().zip(&known.states) {
+        let off = [a.theta - b.theta, a.w1 - b.w1, a.w2 - b.w2, a.w3 - b.w3];
+        assert!(off.iter().all(|x| x.abs() < 1e-8), "{off:?}");
+    }
+    // A couple in proportion to the normal force is seen with that of the slope.
+    let laws = Custom::default().with_couple(&resists);
+    let m = custom::roll_with(
+        &body,
+        start.with_slip([0.0; 2]),
+        &times,
+        &Ask::default().with_slope(0.3),
+        laws,
+        || true,
+    );
+    let m = m.unwrap().unwrap();
+    let whole = |i: usize| energy(&body, &ask, &m, i) + m.path.as_ref().unwrap().work_lost[i];
+    assert!((whole(2) - whole(0)).abs() < 1e-8 && m.path.as_ref().unwrap().work_lost[2] > 0.01);
+    let egg = Ellipsoid::egg(1.0, 1.4, 0.0).unwrap();
+    let (start, ask) = (egg.spinning(2.0, 0.3, 0.0), Ask::on(Friction::coulomb(0.25)).with_slope(0.3));
+    let laws = Custom::default().with_friction(&constant);
+    let own = custom::roll_stone(&egg, start, &times, &ask, laws, || true).unwrap().unwrap();
+    let known = stone::roll(&egg, start, &times, &ask, || true).unwrap().unwrap();
+    for (a, b) in own.states.iter().zip(&known.states) {
+        assert!((0..3).all(|i| (a.w[i] - b.w[i]).abs() < 1e-8), "{:?} {:?}", a.w, b.w);
     }
 }

@@ -41,7 +41,7 @@ use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_times_after};
 use crate::motions::exact;
-use crate::motions::slope::Slope;
+use crate::motions::slope::on_slope;
 use crate::motions::walk::two_runs::{Followed, judged};
 pub(crate) use body_walk::BodyWalk;
 use core::f64::consts::PI;
@@ -75,12 +75,9 @@ pub(crate) fn followed(
     let (body, start) = start.seen_on(body);
     let fine = check_walk(&body, &start, ask)?;
     check_times_after(start.time, times)?;
-    let Some(slope) = Slope::of(ask)? else {
-        return judged_walk((&body, &start), times, (ask, fine), is_judged, go_on);
-    };
-    let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
-    let found = judged_walk((&body, &scaled), &since, (&slope.ask(ask), fine), is_judged, go_on)?;
-    Ok(slope.motion(found, &start, times))
+    on_slope(ask, &start, times, |start, times, ask, _| {
+        judged_walk((&body, start), times, (ask, fine), is_judged, go_on)
+    })
 }
 
 /// A walk and its estimated error.

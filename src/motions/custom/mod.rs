@@ -17,10 +17,11 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
-use crate::laws::custom::Custom;
+use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::body::{self, BodyWalk, without_friction};
 use crate::motions::dry::friction::OwnFriction;
+use crate::motions::slope::{AtPace, on_slope};
 use crate::motions::stone;
 use crate::motions::stone::known::Recorded;
 use core::cell::{Cell, RefCell};
@@ -152,26 +153,34 @@ pub(crate) fn followed(
     let tol = check(body, start, ask, &custom)?;
     check_times_after(start.time, times)?;
     let (ask, start) = without_friction(body, ask, start);
-    let (ask, start) = (&on_own_table(&ask, &custom), &start);
-    let fault = Cell::new(None);
-    let mut go_on = || !custom.has_failed() && go_on();
-    let last = Cell::new(([f64::NAN; 5], None));
-    let mut run = |run_tol: f64, times: &[f64]| {
-        let over = Cell::new(body.view().over);
-        let own = OwnLaws { body: told, over: &over, custom, fault: &fault, last: &last };
-        let walk = BodyWalk::<CUSTOM_NUMBERS, _>::of_laws(body, ask, (run_tol, tol), times, start, own)?;
-        let made = Box::new(walk).run(&mut go_on)?;
-        match fault.take().filter(|_| !custom.has_failed()) {
-            Some(fault) => Err(fault),
-            None => Ok(made),
+    let ask = on_own_table(&ask, &custom);
+    on_slope(&ask, &start, times, |start, times, ask, pace| {
+        let (couple, friction) =
+            (custom.couple.map(|law| AtPace { law, pace }), custom.friction.map(|law| AtPace { law, pace }));
+        let custom = Custom {
+            couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
+            friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
+        };
+        let fault = Cell::new(None);
+        let mut go_on = || !custom.has_failed() && go_on();
+        let last = Cell::new(([f64::NAN; 5], None));
+        let mut run = |run_tol: f64, times: &[f64]| {
+            let over = Cell::new(body.view().over);
+            let own = OwnLaws { body: told, over: &over, custom, fault: &fault, last: &last };
+            let walk = BodyWalk::<CUSTOM_NUMBERS, _>::of_laws(body, ask, (run_tol, tol), times, start, own)?;
+            let made = Box::new(walk).run(&mut go_on)?;
+            match fault.take().filter(|_| !custom.has_failed()) {
+                Some(fault) => Err(fault),
+                None => Ok(made),
+            }
+        };
+        if is_judged {
+            return judged(tol, times, run);
         }
-    };
-    if is_judged {
-        return judged(tol, times, run);
-    }
-    let mut found = run(tol, times)?;
-    found.motion.error = f64::NAN;
-    Ok(found)
+        let mut found = run(tol, times)?;
+        found.motion.error = f64::NAN;
+        Ok(found)
+    })
 }
 
 /// Checks a motion under such laws. Returns the tolerance of its steps.
@@ -194,7 +203,6 @@ pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error>
     if ask.beyond {
         return refuse("beyond", 1.0);
     }
-    within("slope", ask.slope, (0.0, 0.0), "0 together with a user-defined law")?;
     within("turning", ask.turning, (0.0, 0.0), "0 together with a user-defined law")?;
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
         let expected = "Coulomb friction as the contact of a user-defined law of friction";

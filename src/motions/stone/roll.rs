@@ -14,7 +14,7 @@ use super::phases::StoneWalk;
 use crate::error::Error;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::dry::friction::OwnFriction;
-use crate::motions::slope::Slope;
+use crate::motions::slope::{AtPace, on_slope};
 use crate::motions::walk::two_runs::{Followed, judged, rougher};
 use crate::motions::{Ask, Motion, Start};
 use core::cell::RefCell;
@@ -75,12 +75,11 @@ pub(crate) fn followed(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
     let (start, fine) = check_stone(start, times, ask)?;
-    let Some(slope) = Slope::of(ask)? else {
-        return settled((stone, &start), times, (ask, own), fine, recorded, go_on);
-    };
-    let (scaled, since) = (slope.start(&start), slope.times(times, start.time)?);
-    let found = settled((stone, &scaled), &since, (&slope.ask(ask), own), fine, recorded, go_on)?;
-    Ok(slope.motion(found, &start, times))
+    on_slope(ask, &start, times, |start, times, ask, pace| {
+        let law = own.map(|own| AtPace { law: own.law, pace });
+        let own = own.zip(law.as_ref()).map(|(own, law)| OwnFriction { law, ..own });
+        settled((stone, start), times, (ask, own), fine, recorded, go_on)
+    })
 }
 
 /// The motion of [`followed`] from a start that is checked, in the units in which gravity across the table is 1.
