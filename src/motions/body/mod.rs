@@ -167,6 +167,12 @@ pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     ask.losses.check_for(body)?;
     check_patch(ask)?;
     let fine = check_flow(ask)?;
+    let drills = ask.losses.coefficient(Law::Drilling) != 0.0 && ask.restitution.is_some();
+    if ask.slope != 0.0 && drills && body.theta_end() < PI {
+        // On two circles it would share in what holds the body along its axis.
+        let expected = "0 with drilling friction and a restitution of a body on two circles";
+        return Err(Error::OutOfRange { name: "slope", value: ask.slope, expected });
+    }
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }
