@@ -165,6 +165,16 @@ def test_on_a_smooth_slope_the_centre_falls_downhill():
             assert row.w3 == begun.w3 and abs(row.psi - row.w3 * row.t) < TIGHT
 
 
+def test_what_is_let_go_where_friction_cannot_hold_it_slides_straight_down():
+    case, _ = of("let go on a steep slope")
+    with mp.workdps(40):
+        begun, (downhill, level) = start(case), gravity(case)
+        for row in case.rows:
+            faster = downhill - case.mu * level
+            assert abs(velocity(case, row) - faster * row.t) < TIGHT
+            assert abs(mp.mpc(row.x - begun.x, row.y - begun.y) - faster * row.t**2 / 2) < TIGHT
+
+
 def test_what_tips_from_rest_turns_about_the_lowest_point_as_its_energy_says():
     case, rows = of("tips over from rest")
     a, z, i1, _ = body(case)

@@ -110,8 +110,9 @@ def follow(model):
         rows.append(("end" if last else name, told(model, at)))
 
     pull = gmpy2.tan(mpfr(scene.slope))
-    if scene.law == "smooth":
-        for at in smooth(now, times, scene):
+    lets_go = not v and not now.w and model.mu < pull and model.mu * tall < 1
+    if scene.law == "smooth" or (scene.law == "coulomb" and lets_go):
+        for at in straight(now, times, scene):
             times.pop(0)
             add("sample", at)
         return rows
@@ -157,13 +158,15 @@ def holds(model, pull):
     return pull - z * bend <= model.mu * (1 + a * bend)
 
 
-def smooth(now, times, scene):
-    """It falls downhill and turns on."""
-    downhill = gmpy2.sin(mpfr(scene.slope))
+def straight(now, times, scene):
+    """It falls downhill and turns on, without friction; or slides down from rest."""
+    downhill, level = gmpy2.sin(mpfr(scene.slope)), gmpy2.cos(mpfr(scene.slope))
+    drag = mpfr(scene.mu) * level
+    pull = downhill - drag
     for t in list(times):
-        (x, y), (vx, vy) = now.place, now.velocity
+        (x, y), (vx, vy), way = now.place, now.velocity, pull * t * t / 2
         yield now.at(
-            t=t, place=[x + vx * t + downhill * t * t / 2, y + vy * t], velocity=[vx + downhill * t, vy],
+            t=t, place=[x + vx * t + way, y + vy * t], velocity=[vx + pull * t, vy], heat=drag * way,
             psi=now.psi + now.w * t,
         )  # fmt: skip
 
@@ -204,6 +207,7 @@ def scenes():
     film = {"law": "viscous", "to_rest": False, "digits": 25}
     yield Scene("viscous", tall, 0.2, 0.3, 2, [1, 3, 6, 12], v=(0.5, 0.6), phi=0.4, **film)
     yield Scene("viscous, topples", tall, 0.6, 0.3, 0, [2, 4, 6, 7], v=(0.25, 0), **film)
+    yield Scene("let go on a steep slope", can, 0.4, 0.3, 0, [1, 3], phi=0.5, to_rest=False, digits=25)
     yield Scene("smooth", can, 0.3, 0, 2, [1, 3], v=(-0.4, 0.2), phi=0.5, law="smooth", to_rest=False, digits=25)
     yield Scene("disc spun in place", solid(0.3), 0.08, 0.3, 2, [1, 2], face="disc")
     planar = {"to_rest": False, "digits": 25}

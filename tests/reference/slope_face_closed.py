@@ -15,6 +15,7 @@ from gauss import legendre
 from gmpy2 import mpfr
 
 NEAR = mpfr("1e-10")
+EDGE = 1 + mpfr("1e-14")  # below it the part that would not press is lost
 
 
 def both(q, apart, root=sqrt):
@@ -79,7 +80,7 @@ class Closed(face_closed.Closed):
             return [widened(x) for x in self.of_rings(narrowed(k))]
         if self.part:
             full = self.shared(k, self.lam, 2, *self.means(k, abs(k - 1)))
-            for i in np.nonzero((2 * self.lam * k) ** 2 * (full[0] ** 2 + full[1] ** 2) > 1)[0]:
+            for i in np.nonzero((2 * self.lam * k) ** 2 * (full[0] ** 2 + full[1] ** 2) > EDGE)[0]:
                 gx, gy, full[2][i] = self.arc(k[i], ONE)
                 full[0][i], full[1][i] = gx / k[i], gy / k[i]
             return full

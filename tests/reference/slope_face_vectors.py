@@ -15,6 +15,7 @@ from gmpy2 import mpfr
 
 PANELS = 12
 NEAR = mpfr("1e-10")
+EDGE = 1 + mpfr("1e-14")  # below it the part that would not press is lost
 
 
 class Vectors(face_vectors.Vectors):
@@ -53,7 +54,7 @@ class Vectors(face_vectors.Vectors):
     def parts(self, vx, vy, w):
         """Of states of which some press with a part of the ring."""
         full = self.whole(vx, vy, w)
-        some = full[5] ** 2 + full[6] ** 2 > 1
+        some = full[5] ** 2 + full[6] ** 2 > EDGE
         if not some.any():
             return full[:4]
         found = self.arc_of(*(x[some] for x in (vx, vy, w, *full[5:])))
@@ -85,6 +86,7 @@ class Vectors(face_vectors.Vectors):
             middle, half = self.kept
         else:
             middle, half = (np.full(len(k), x) for x in self.arcs)
+        quarter = np.arctan2(np.longdouble(1), np.longdouble(0))
         for turn in range(40):
             means, slopes, _ = self.arc_sums(k, ahead, near, middle, half)
             r = [means[i] - lam * means[i + 2] for i in (0, 1)]
@@ -94,8 +96,12 @@ class Vectors(face_vectors.Vectors):
             left = max(np.abs(r[0]).max(), np.abs(r[1]).max())
             if left < 4e-19 or (turn > 10 and left < 4e-18):
                 break
-            slow = np.minimum(1, np.longdouble("0.2") / np.maximum(np.abs(moved[0]), np.abs(moved[1])))
-            middle, half = middle - slow * moved[0], np.minimum(half - slow * moved[1], np.longdouble(3.14158))
+            most = np.maximum(np.abs(moved[0]), np.abs(moved[1]))
+            slow = np.minimum(1, np.longdouble("0.2") / (most + np.longdouble("1e-30")))
+            # what does not press grows as the root of what is to be balanced
+            lifted = 2 * quarter - half
+            lifted = lifted * np.maximum(lifted + 2 * slow * moved[1], lifted / 16)
+            middle, half = middle - slow * moved[0], 2 * quarter - np.sqrt(lifted)
         assert left < 1e-16, left
         if len(k) > 1:
             self.arcs, self.kept = (middle[-1], half[-1]), (middle, half)
