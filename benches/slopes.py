@@ -4,8 +4,8 @@
     python benches/slopes.py --count 3334      10,000 motions, the figures of docs/hard-cases.md
     python benches/slopes.py --only 17 0.5     one of them, with its phases
 
-Cylinders, tubes, coins, rounded bodies, balls and tippe tops on a rim, slipping or not, at rest, on their side, or let
-fall, on slopes of 0 to 60 degrees in all directions; Coulomb friction from 0.05 to 1, half of them with rolling resistance
+Cylinders, tubes, coins, rounded bodies, balls and tippe tops on a rim, slipping or not, at rest, on their side, on their
+face, or let fall, on slopes of 0 to 60 degrees in all directions; Coulomb friction from 0.05 to 1, half of them with rolling resistance
 and air. Without a restitution every motion that the model ends is followed; with 0 and 0.5 those that reach the last
 time or rest. Prints those whose energy, with all that has been taken, differs from that at the start by more than 1e-12
 and ten times the estimated error, and all that are not followed, by their reason.
@@ -55,11 +55,13 @@ def drawn(number, seed=0):
     how = {"contact": sc.Coulomb(u(0.05, 1.0)), "table": table}
     if rng.random() < 0.5:
         how["losses"] = sc.loss.RollingResistance(u(0.0, 0.05)) + sc.loss.AirLinear(u(0.0, 0.02))
-    start, slip = rng.integers(5), tuple(rng.uniform(-1, 1, 2))
+    start, slip = rng.integers(6), tuple(rng.uniform(-1, 1, 2))
     if start == 0:
         state = sc.dropped(body, u(0.0, 2.0), u(0.05, 3.0), w1=w[0], w2=w[1], w3=w[2])
     elif start == 1 and kind in ("coin", "cylinder", "tube", "rounded"):
         state = sc.State(np.pi / 2, float(w[0]), 0.0, float(w[2]), slip=slip)
+    elif start == 5 and kind not in ("ball", "top"):
+        state = sc.spun(body, float(w[2]) * rng.integers(2), slip if rng.random() < 0.7 else (0.0, 0.0))
     elif start == 2:
         state = sc.State(u(0.05, 1.5), 0.0, 0.0, 0.0)
     else:

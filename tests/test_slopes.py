@@ -53,9 +53,9 @@ def test_a_table_is_what_was_given():
             "slope = 0.2: expected 0 with dry friction along",
         ),
         (
-            lambda: sc.roll(DISK, sc.spun(DISK, 1.0), 1.0, table=TABLE, contact=sc.Coulomb(0.3)),
+            lambda: sc.roll(DISK, sc.spun(DISK, 1.0), 1.0, table=sc.Table(turning=0.2), contact=sc.Coulomb(0.3)),
             ValueError,
-            "slope = 0.2: expected 0 for a body on its face",
+            "turning = 0.2: expected 0 for a body on its face",
         ),
         (lambda: sc.sweep.roll(DISK, START, 1.0, table=0.2), TypeError, "table: expected a Table"),
         (lambda: sc.sweep.roll(DISK, START, 1.0, table=TABLE, step=0.01), ValueError, "step, mu, beyond"),
@@ -207,9 +207,24 @@ def test_what_stands_on_its_face_stays_if_friction_holds_it_and_its_weight_is_ab
     for body, slope, mu in ((flat, 0.2, 0.3), (tall, 0.1, 0.3)):
         m = sc.roll(body, still, 5.0, table=sc.Table(slope), contact=sc.Coulomb(mu))
         assert m.status == sc.Ending.STOPS and m.event.time == 0
-    for body, slope, mu in ((flat, 0.4, 0.3), (tall, 0.2, 0.3)):
-        with pytest.raises(ValueError, match="it does not topple"):
-            sc.roll(body, still, 5.0, table=sc.Table(slope), contact=sc.Coulomb(mu))
+    slides = sc.roll(flat, still, [0.0, 2.0], table=sc.Table(0.4), contact=sc.Coulomb(0.3), want="pose")
+    goes = 2 * (np.sin(0.4) - 0.3 * np.cos(0.4))
+    assert abs(slides.centre[-1, 0] - slides.centre[0, 0] - goes) < 1e-12 and slides.phases[0].kind == "face"
+    tips = sc.roll(tall, still, [0.0, 2.0], table=sc.Table(0.2), contact=sc.Coulomb(0.3))
+    assert tips.theta[-1] > 0.01
+
+
+def test_friction_holds_what_stands_on_a_slope_and_a_slide_has_friction_and_a_centre_of_pressure():
+    body, beta = sc.Body.solid(0.5), 0.2
+    spins = sc.roll(
+        body, sc.spun(body, 2.0), np.linspace(0, 3, 31), table=sc.Table(beta), contact=sc.Coulomb(0.4),
+        want=("force", "pose"),
+    )
+    assert np.abs(spins.force[:, 0] - np.cos(beta)).max() < 1e-14
+    v = np.gradient(spins.centre[:, 0], spins.t)
+    friction = np.gradient(v, spins.t)[2:-2] - np.sin(beta)
+    assert np.abs(friction - spins.force[2:-2, 2]).max() < 1e-3
+    assert np.abs(spins.energy + spins.dissipated - spins.energy[0]).max() < 1e-12
 
 
 def test_a_table_that_turns_takes_a_ball_round_and_does_work():

@@ -46,6 +46,7 @@ mod rounded_motions;
 mod several_held;
 mod slip;
 mod slope;
+mod slope_face;
 mod slope_lying;
 mod slope_stones;
 mod stability;

@@ -244,7 +244,7 @@ impl<G: Own> BodyPhases<G> {
                 && state.w3 == 0.0
                 && slip[1] == 0.0
                 && !own.has_couple()
-                && (ask.slope == 0.0 || start.heading == 0.0)
+                && (ask.slope == 0.0 || start.heading == PI * (start.heading / PI).round())
                 && ask.turning == 0.0,
             lately: [0.0; 2],
             tail: (known_ends && ask.losses.turn_endlessly()).then(LastTurns::default),

@@ -121,9 +121,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
-            if self.of.tilt != 0.0 {
-                return Next::Ends(Ending::Face);
-            }
             if let Some(next) = self.strikes_flat(e) {
                 return next;
             }
@@ -175,7 +172,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
             return self.ends_rattle();
         }
-        if e > 0.0 && self.of.tilt == 0.0 && self.hardly_rattles(&after) {
+        if e > 0.0 && self.hardly_rattles(&after) {
             return self.ends_rattle_on_face();
         }
         self.leaves_impact(&after)

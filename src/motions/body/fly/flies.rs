@@ -169,7 +169,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
-            Ending::Face if self.of.body.rim() > 0.0 && self.of.tilt == 0.0 => self.settles_on_face(),
+            Ending::Face if self.of.body.rim() > 0.0 => self.settles_on_face(),
             // Another part of a body, which may land first, has no known shape.
             Ending::LiftOff if self.of.body.lands_on_rims() => {
                 let [free, size] = self.pressed(&self.aloft());

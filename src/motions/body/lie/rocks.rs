@@ -44,10 +44,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         found
     }
 
-    /// Whether the rim at rest from which the state is seen sticks in the hop that begins.
-    fn sticks_on_slope(&mut self) -> bool {
+    /// Whether the rim at rest from which the state is seen sticks in the hop that begins from this inclination.
+    pub(crate) fn sticks_on_slope(&mut self, theta: f64) -> bool {
         let State { w1, w3, .. } = self.of.state;
-        self.of.state = State { theta: self.of.body.theta_end(), w1, w2: 0.0, w3 };
+        self.of.state = State { theta, w1, w2: 0.0, w3 };
         !self.of.slide.law.dry || Phases::rests(self) == Standstill::Sticks
     }
 
@@ -56,7 +56,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let mut slowest = f64::INFINITY;
         for _ in 0..2 {
             let (slip, rises) = (self.at.slip(), self.at[W2]);
-            if self.of.tilt != 0.0 && slip == [0.0; 2] && !self.sticks_on_slope() {
+            if self.of.tilt != 0.0 && slip == [0.0; 2] && !self.sticks_on_slope(self.of.body.theta_end()) {
                 return None;
             }
             let law = &self.of.slide.law;

@@ -3,10 +3,12 @@
 //! ```text
 //! |v| = r cos k,  a |w| = r sin k,   d t = (r/mu) d tau       under dry friction, of a body that slides and spins
 //! ln(r)' = -(cos k G_x + sin k q),   k' = sin k G_x - cos k q,   alpha' = -G_y/cos k,    q = gg/i3 + losses
-//! v' = F,   I3 w' = M                                         otherwise, in time
+//! v' = F + G,   I3 w' = M                                     otherwise, in time;   G   pull of a slope
+//! ln(r)' = V.dv + S ds,   V' = dv - ln(r)' V,   S' = ds - ln(r)' S      V = v/r, S = a w/r, in tau, where a slope pulls at a slide
 //! ```
 //! Slide and spin end together, after infinitely many turns of v in a finite time. In tau all of these rates are bounded and
-//! smooth, and depend on k alone. The flow ends where r has fallen to a rounding; the rest is extrapolated linearly.
+//! smooth, and depend on k alone. The flow ends where r has fallen to a rounding; the rest is extrapolated linearly. A slope
+//! lets v pass through zero while the body spins, where its direction alpha is no smooth number: V is.
 //! [`contact::face`](crate::laws::contact) has the law of friction.
 //!
 //! Error: the tolerance of the steps.
@@ -52,7 +54,9 @@ const ENDS: [Halt; MARGINS] = [Halt::Rests, Halt::Turned, Halt::Topples, Halt::T
 enum Braking {
     /// Both slide and spin rub, in tau.
     Rubs,
-    /// Only one of them does, under dry friction.
+    /// Dry friction beside the pull of a slope, in tau.
+    Pulled,
+    /// Only one of them does, under dry friction, and none turns.
     Straight,
     /// A viscous film, or no friction.
     Soft,
@@ -72,6 +76,10 @@ pub(crate) struct StandingFlow {
     /// mu, or c.
     strength: f64,
     dry: bool,
+    /// The coefficient of friction that holds a face at rest.
+    holds: f64,
+    /// The pull of a slope on the centre along e_h and e2.
+    pull: [f64; 2],
     /// The lengths and coefficients of drilling, and of the air, linear and quadratic.
     losses: [f64; 3],
     /// Cosine and sine of the direction of v at the start, along e_h and e2, and ln(r) where the flow ends.
@@ -81,11 +89,11 @@ pub(crate) struct StandingFlow {
 }
 
 impl StandingFlow {
-    /// The flow from these numbers, on a face that friction `face` holds.
+    /// The flow from these numbers, on a face that friction `face` holds and the table pulls at.
     pub fn new<const N: usize>(
         (shape, face): (Shape<f64>, FaceFriction),
         friction: &Friction,
-        losses: &Losses,
+        (losses, pull): (&Losses, [f64; 2]),
         y: &[f64; N],
         tol: f64,
     ) -> Self {
@@ -101,6 +109,8 @@ impl StandingFlow {
             face,
             strength: friction.strength(),
             dry: matches!(friction, Friction::Coulomb { .. }),
+            holds: if let Friction::Coulomb { fixed, .. } = friction { *fixed } else { 0.0 },
+            pull,
             losses: laws,
             towards: [1.0, 0.0],
             least: 0.0,
@@ -108,13 +118,18 @@ impl StandingFlow {
         };
         let [v_h, v_2] = flow.velocity(y);
         let (v, s) = (v_h.hypot(v_2), flow.radius * y[W3].abs());
+        let slope = pull[0].hypot(pull[1]);
+        let turns = slope > 0.0 && (s > 0.0 || v_h * pull[1] != v_2 * pull[0]);
         flow.course = match friction {
+            Friction::Coulomb { mu, .. } if *mu > 0.0 && turns => Braking::Pulled,
             Friction::Coulomb { mu, .. } if *mu > 0.0 && v > 0.0 && s > 0.0 => Braking::Rubs,
             Friction::Coulomb { mu, .. } if *mu > 0.0 => Braking::Straight,
             _ => Braking::Soft,
         };
         if v > 0.0 {
             flow.towards = [v_h / v, v_2 / v];
+        } else if slope > 0.0 {
+            flow.towards = pull.map(|x| x / slope);
         }
         flow.least = (SLID_OUT * v.hypot(s)).ln();
         flow
@@ -123,6 +138,17 @@ impl StandingFlow {
     /// The velocity of the centre along e_h and e2.
     pub fn velocity<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         [y[UH], y[U2] + self.radius * y[W3]]
+    }
+
+    /// The pull of a slope on the centre along e_h and e2.
+    pub fn pull(&self) -> [f64; 2] {
+        self.pull
+    }
+
+    /// Whether a body without spin slides along a straight line.
+    pub fn is_straight<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let [v_h, v_2] = self.velocity(y);
+        y[W3] == 0.0 && v_h * self.pull[1] == v_2 * self.pull[0]
     }
 
     /// Whether friction or losses change the velocities.
@@ -134,13 +160,23 @@ impl StandingFlow {
     pub fn enter<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
         let (v, s) = (v_h.hypot(v_2), self.radius * y[W3].abs());
-        if self.course == Braking::Rubs {
-            (all[ALPHA], all[SIZE], all[SHARE]) = (0.0, v.hypot(s).ln(), s.atan2(v));
-            (all[UH], all[U2]) = (0.0, 0.0);
-        } else {
-            (all[UH], all[U2]) = (v_h, v_2);
+        match self.course {
+            Braking::Rubs => {
+                (all[ALPHA], all[SIZE], all[SHARE]) = (0.0, v.hypot(s).ln(), s.atan2(v));
+                (all[UH], all[U2]) = (0.0, 0.0);
+            }
+            Braking::Pulled => {
+                let r = v.hypot(s);
+                (all[SIZE], all[SHARE]) = (r.ln(), self.up * self.radius * y[W3] / r);
+                (all[UH], all[U2]) = (v_h / r, v_2 / r);
+            }
+            _ => (all[UH], all[U2]) = (v_h, v_2),
         }
         all
+    }
+
+    fn in_tau(&self) -> bool {
+        matches!(self.course, Braking::Rubs | Braking::Pulled)
     }
 
     /// The speeds |v| and a |w| of a flow in tau. Beyond k = 0 the spin, and beyond a right angle the slide, has turned round.
@@ -194,6 +230,11 @@ impl StandingFlow {
         [along * x - aside * z, along * z + aside * x, if s > 0.0 { about } else { 0.0 }]
     }
 
+    /// Whether the pull of a slope outweighs friction along the way.
+    fn speeds_up(&self) -> bool {
+        self.towards[0] * self.pull[0] + self.towards[1] * self.pull[1] >= self.strength
+    }
+
     /// The margin of toppling under this force: it vanishes where the centre of the pressure reaches the ring.
     fn stands_under(&self, [f_h, f_2]: [f64; 2]) -> f64 {
         self.radius * self.radius - self.height * self.height * (f_h * f_h + f_2 * f_2)
@@ -216,13 +257,26 @@ impl StandingFlow {
         let [f_h, f_2, couple] = self.pushed([v_h, v_2], w);
         let slows = (couple - self.lost(w)) / self.shape.i3;
         let (a, size) = (self.radius, v_h * v_h + v_2 * v_2 + (self.radius * w).powi(2));
-        let rate = -(v_h * f_h + v_2 * f_2 + a * a * w * slows);
+        let rate = -(v_h * (f_h + self.pull[0]) + v_2 * (f_2 + self.pull[1]) + a * a * w * slows);
         if size > 0.0 && rate > 0.0 { size / rate } else { 0.0 }
     }
 
     /// The outputs at these numbers of a walk.
     pub fn row<const N: usize>(&self, ask: &Ask, y: &[f64; N]) -> OutputRow<State> {
-        let [across, along, _] = self.pushed(self.velocity(y), self.up * y[W3]);
+        let (v, pull) = (self.velocity(y), self.pull[0].hypot(self.pull[1]));
+        let [across, along, _] = if pull > 0.0 && v == [0.0; 2] && y[W3] == 0.0 {
+            // What friction takes of the pull on a body at rest, or that just begins to slide.
+            let share = if pull <= self.holds {
+                1.0
+            } else if self.dry {
+                self.strength / pull
+            } else {
+                0.0
+            };
+            [-share * self.pull[0], -share * self.pull[1], 0.0]
+        } else {
+            self.pushed(v, self.up * y[W3])
+        };
         let state = State { theta: 0f64.atan2(y[COS]), w1: 0.0, w2: 0.0, w3: y[W3] };
         OutputRow {
             pose: poses(N).then(|| write::pose(y)),
@@ -249,7 +303,8 @@ pub(crate) fn couple_on_face(body: &Body, ask: &Ask) -> impl Fn(&State, [f64; 2]
         let up = at.theta.cos().signum();
         let mut y = [0.0; Y + 1];
         (y[COS], y[W3], y[UH], y[U2]) = (1.0, up * at.w3, up * slip[0], up * slip[1]);
-        let flow = StandingFlow::new(if up > 0.0 { first } else { other }, &friction, &Losses::NONE, &y, 0.0);
+        let kind = if up > 0.0 { first } else { other };
+        let flow = StandingFlow::new(kind, &friction, (&Losses::NONE, [0.0; 2]), &y, 0.0);
         flow.pushed(flow.velocity(&y), y[W3])[2]
     }
 }
@@ -288,10 +343,26 @@ impl Flow<MARGINS> for StandingFlow {
             let ((sin, cos), [x, z]) = ((self.way * y[ALPHA]).sin_cos(), self.towards);
             velocity = [v * (x * cos - z * sin), v * (z * cos + x * sin)];
             spin = self.up * self.way * s / self.radius;
+        } else if self.course == Braking::Pulled {
+            let (r, a, [v_h, v_2, s]) = (y[SIZE].exp(), self.radius, [y[UH], y[U2], y[SHARE]]);
+            let ([f_h, f_2, couple], lost) = (self.pushed([v_h, v_2], s / a), self.lost(r * s / a));
+            pace = r / self.strength;
+            let faster = [f_h + self.pull[0], f_2 + self.pull[1], a * (couple - lost) / i3];
+            let grows = (v_h * faster[0] + v_2 * faster[1] + s * faster[2]) / (v_h * v_h + v_2 * v_2 + s * s);
+            all[SIZE] = grows / self.strength;
+            for (i, x, rate) in [(UH, v_h, faster[0]), (U2, v_2, faster[1]), (SHARE, s, faster[2])] {
+                all[i] = (rate - grows * x) / self.strength;
+            }
+            all[HEAT] = -pace * r * (f_h * v_h + f_2 * v_2 + couple * s / a);
+            if loses(N) {
+                all[N - 1] = pace * lost * r * s / a;
+            }
+            (velocity, spin) = ([r * v_h, r * v_2], self.up * r * s / a);
         } else {
             let w = self.up * y[W3];
             let ([f_h, f_2, couple], lost) = (self.along(y), self.lost(w));
-            (all[UH], all[U2], all[W3]) = (f_h, f_2, self.up * (couple - lost) / i3);
+            (all[UH], all[U2]) = (f_h + self.pull[0], f_2 + self.pull[1]);
+            all[W3] = self.up * (couple - lost) / i3;
             all[HEAT] = -(f_h * y[UH] + f_2 * y[U2] + couple * w);
             if loses(N) {
                 all[N - 1] = lost * w;
@@ -321,13 +392,26 @@ impl Flow<MARGINS> for StandingFlow {
                     all[TOPPLES].slope = (self.face.fold() * cos + sin) * rate[SHARE];
                 }
             }
-            Braking::Straight => {
+            Braking::Pulled => {
+                let [v_h, v_2, s] = [y[UH], y[U2], y[SHARE]];
+                all[RESTS].slope = rate[SIZE];
+                if all[SPIN_ENDS].value != 1.0 {
+                    all[SPIN_ENDS].slope = self.way * rate[SHARE];
+                }
+                if all[TOPPLES].value != 1.0 {
+                    let v = v_h.hypot(v_2);
+                    let faster = if v > 0.0 { (v_h * rate[UH] + v_2 * rate[U2]) / v } else { 0.0 };
+                    all[TOPPLES].slope = self.face.fold() * s.signum() * rate[SHARE] - faster;
+                }
+            }
+            Braking::Straight if all[RESTS].value != 1.0 => {
                 all[RESTS].slope = if self.way == 0.0 {
                     self.towards[0] * rate[UH] + self.towards[1] * rate[U2]
                 } else {
                     self.way * self.up * rate[W3]
                 };
             }
+            Braking::Straight => {}
             Braking::Soft => {
                 let by = 1e-6 / (1.0 + place.rate.iter().fold(0.0, |most: f64, x| most.max(x.abs())));
                 let aside =
@@ -346,12 +430,17 @@ impl Flow<MARGINS> for StandingFlow {
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let dry = self.losses[0] > 0.0;
         match (self.course, i) {
-            (Braking::Rubs, 0) => y[SIZE] - self.least,
+            (Braking::Rubs | Braking::Pulled, 0) => y[SIZE] - self.least,
             (Braking::Rubs, 1) if self.losses != [0.0; 3] => y[SHARE],
             (Braking::Rubs, 2) if self.face.fold() < f64::INFINITY => {
                 let (sin, cos) = y[SHARE].sin_cos();
                 self.face.fold() * sin - cos
             }
+            (Braking::Pulled, 1) if dry && self.way != 0.0 => self.way * y[SHARE],
+            (Braking::Pulled, 2) if self.face.fold() < f64::INFINITY => {
+                self.face.fold() * y[SHARE].abs() - y[UH].hypot(y[U2])
+            }
+            (Braking::Straight, 0) if self.way == 0.0 && self.speeds_up() => 1.0,
             (Braking::Straight, 0) if self.way == 0.0 => self.towards[0] * y[UH] + self.towards[1] * y[U2],
             (Braking::Straight, 0) => self.way * self.up * y[W3],
             (Braking::Soft, 1) if dry && y[W3] != 0.0 => self.way * self.up * y[W3],
@@ -369,15 +458,17 @@ impl Flow<MARGINS> for StandingFlow {
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.fastest(y)));
-        let per = |i: usize| {
-            if matches!(i, W1 | W2 | W3) && self.course == Braking::Rubs { per_tol } else { per_speed }
+        let per = |i: usize| match self.course {
+            Braking::Rubs if matches!(i, W1 | W2 | W3) => per_tol,
+            Braking::Pulled if matches!(i, W2 | W3 | UH | U2) => per_tol,
+            _ => per_speed,
         };
         made.error(per, N as f64) * made.strictness(self.tol, TIME, TIME)
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         match self.course {
-            Braking::Rubs => y[SIZE].exp().max(1.0),
+            Braking::Rubs | Braking::Pulled => y[SIZE].exp().max(1.0),
             _ => y[UH].abs().max(y[U2].abs()).max(y[W3].abs()).max(1.0),
         }
     }
@@ -387,7 +478,7 @@ impl Flow<MARGINS> for StandingFlow {
     }
 
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        if self.course == Braking::Rubs { y[SIZE].exp() / self.strength * f64::EPSILON } else { f64::EPSILON }
+        if self.in_tau() { y[SIZE].exp() / self.strength * f64::EPSILON } else { f64::EPSILON }
     }
 
     fn shortest<const N: usize>(&self, _: &[f64; N]) -> f64 {
@@ -395,7 +486,7 @@ impl Flow<MARGINS> for StandingFlow {
     }
 
     fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
-        if self.course == Braking::Rubs { LONGEST } else { f64::INFINITY }
+        if self.in_tau() { LONGEST } else { f64::INFINITY }
     }
 
     fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
@@ -409,6 +500,11 @@ impl Flow<MARGINS> for StandingFlow {
             let ((sin, cos), [x, z]) = ((self.way * y[ALPHA]).sin_cos(), self.towards);
             (all[W1], all[W2], all[W3]) = (0.0, 0.0, self.up * self.way * s / self.radius);
             (all[UH], all[U2]) = (v * (x * cos - z * sin), v * (z * cos + x * sin));
+        }
+        if self.course == Braking::Pulled {
+            let r = y[SIZE].exp();
+            (all[W2], all[W3]) = (0.0, self.up * r * y[SHARE] / self.radius);
+            (all[UH], all[U2]) = (r * y[UH], r * y[U2]);
         }
         all[U2] -= self.radius * all[W3];
         all

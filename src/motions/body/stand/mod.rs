@@ -4,6 +4,7 @@
 //! stands        slides and spins, until it rests or topples
 //! topples       over the point of the ring where the slip points outwards: one rim, theta = c t^2/2
 //! rises         by a kick, w2 < 0, on the point from which the state is told: theta = |w2| t
+//! rests         while friction and the ring hold it; on a slope it slides down, or tips over the lowest point of its ring
 //! falls         in a plane: it stays, or rocks over the opposite point; else what turns is lost, and it stays
 //! ```
 //! theta = 0 is reached only by a motion in a plane and by losses: any turn about the vertical keeps a rim from it. `up` is
@@ -29,7 +30,7 @@ use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses, pull,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ask, Ending, Kind};
@@ -82,11 +83,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The flow of a body that stands with these numbers.
     fn standing(&self, friction: &Friction) -> StandingFlow {
-        self.standing_with(friction, &self.ask.losses)
+        self.standing_with(friction, (&self.ask.losses, pull(self.of.tilt, &self.at)))
     }
 
-    /// The same with these losses.
-    fn standing_with(&self, friction: &Friction, losses: &Losses) -> StandingFlow {
+    /// The same with these losses and this pull.
+    fn standing_with(&self, friction: &Friction, beside: (&Losses, [f64; 2])) -> StandingFlow {
         let (shape, angle) = (self.of.slide.law.shape, self.at.angle());
         let lam = match friction {
             Friction::Coulomb { mu, .. } => mu * shape.rim.height(angle) / shape.rim.radius(angle),
@@ -96,7 +97,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let known = self.of.face.get().filter(|(of, _)| *of == lam);
         let face = known.map_or_else(|| FaceFriction::new(self.ask.face, lam), |(_, face)| face);
         self.of.face.set(Some((lam, face)));
-        StandingFlow::new((shape, face), friction, losses, &self.at, self.of.slide.tol)
+        StandingFlow::new((shape, face), friction, beside, &self.at, self.of.slide.tol)
     }
 
     /// The phase of a motion that begins on a face: it stands, or a kick lets it rise.
@@ -104,8 +105,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (up, at) = (self.up(), self.of.state);
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
-        if !self.ask.is_level() {
-            return self.stands_on_slope();
+        if self.of.turning != 0.0 {
+            let expected = "0 for a body on its face";
+            return Err(Error::OutOfRange { name: "turning", value: self.ask.turning, expected });
         }
         let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
         match next {
@@ -116,31 +118,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             next => Ok(next),
         }
-    }
-
-    /// The end of a body that stands still on its face on a slope; its motion there is not computed.
-    fn stands_on_slope(&mut self) -> Result<Next, Error> {
-        let (State { w1, w2, w3, .. }, slope) = (self.of.state, self.of.tilt.abs());
-        let [at, high] = [self.of.body.rim(), self.of.body.shape().rim.height(self.at.angle())];
-        let still = [w1, w2, w3] == [0.0; 3] && self.at.slip() == [0.0; 2];
-        let held = match self.ask.table {
-            Table::Smooth | Table::Rubs(Friction::Viscous { .. }) => false,
-            table => slope <= table.mu() && self.ask.turning == 0.0,
-        };
-        // The pressure cannot leave the face.
-        if still && held && slope * high <= at {
-            Ok(Next::Ends(Ending::Stops))
-        } else {
-            Err(self.moves_on_slope())
-        }
-    }
-
-    fn moves_on_slope(&self) -> Error {
-        let Ask { slope, turning, .. } = self.ask;
-        let expected =
-            "0 for a body on its face, or a slope on which friction holds it and it does not topple";
-        let (name, value) = if turning == 0.0 { ("slope", slope) } else { ("turning", turning) };
-        Error::OutOfRange { name, value, expected }
     }
 
     /// Moves the walk on by the time in which its face, which has all but landed, comes down.
@@ -184,26 +161,49 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let friction = self.friction_of_face();
         let spins = self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3];
         let moves = self.at[UH].hypot(self.at[U2] + spins) + spins.abs();
-        if moves <= UNMOVED {
-            self.claims(moves);
-            self.rests_on_face();
-            return Next::Ends(Ending::Stops);
-        }
-        let Some(friction) = friction else {
+        if moves <= UNMOVED || friction.is_none() {
             self.claims(moves);
             // A face cannot roll.
             if moves > HARDLY_RISES {
                 return Next::Ends(Ending::Face);
             }
             self.rests_on_face();
-            return Next::Ends(Ending::Stops);
-        };
+            match self.tips() {
+                None => return Next::Ends(Ending::Stops),
+                Some(true) => return self.tips_over(),
+                Some(false) => {}
+            }
+        }
+        let Some(friction) = friction else { return Next::Ends(Ending::Face) };
         let flow = self.standing(&friction);
         if flow.topples(&self.at) {
             return self.topples(&flow, &friction);
         }
         self.of.standing = Some(Box::new(flow));
         Next::Own(Kind::OnItsFace)
+    }
+
+    /// Whether a body at rest on its face tips over, or slides; None if it is held.
+    fn tips(&self) -> Option<bool> {
+        let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
+        let [a, z] = [rim.radius(self.at.angle()), rim.height(self.at.angle())];
+        let [rubs, holds] = match self.ask.table {
+            _ if slope == 0.0 => return None,
+            Table::Rolling { mu } => [mu; 2],
+            Table::Rubs(Friction::Coulomb { mu, fixed, .. }) => [mu, fixed],
+            Table::Rubs(Friction::Viscous { .. }) | Table::Smooth => [0.0; 2],
+        };
+        // Its pressure cannot leave the ring, at rest and in a slide.
+        let [rests, slides] = [slope <= holds, slope > holds && rubs * z <= a];
+        if rests && slope * z <= a { None } else { Some(!slides) }
+    }
+
+    /// The phase of a body at rest that a slope tips over the lowest point of its ring.
+    fn tips_over(&mut self) -> Next {
+        let [pull_h, pull_2] = pull(self.of.tilt, &self.at);
+        self.tells_from(pull_2.atan2(pull_h));
+        self.of.planar = true;
+        self.rises_from_face()
     }
 
     fn rests_on_face(&mut self) {
@@ -226,8 +226,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             if poses(N) {
                 let (sin, cos) = begin[PHI].sin_cos();
                 y[PSI] += lasts * begin[W3];
-                y[X] += lasts * (v_h * cos - v_2 * sin);
-                y[Y] += lasts * (v_h * sin + v_2 * cos);
+                let [[pull_h, pull_2], half] = [flow.pull(), [0.5 * lasts * lasts; 2]];
+                let moved = [lasts * v_h + half[0] * pull_h, lasts * v_2 + half[1] * pull_2];
+                y[X] += moved[0] * cos - moved[1] * sin;
+                y[Y] += moved[0] * sin + moved[1] * cos;
+                (y[UH], y[U2]) = (y[UH] + lasts * pull_h, y[U2] + lasts * pull_2);
             }
             self.writes_standing(&flow, &y);
         }
@@ -272,7 +275,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Halt::Rests => {
                 self.at[TIME] += flow.left(&y);
                 self.rests_on_face();
-                Next::Ends(Ending::Stops)
+                self.stands_on_face()
             }
             Halt::Turned => {
                 let [v_h, v_2] = flow.velocity(&y);
@@ -305,11 +308,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
         let grows = (lam - 1.0) * a * normal / shape.i1;
-        let free = w * (shape.i3 / shape.i1) * (lam - 1.0) / (3.0 * lam - 2.0);
-        let nu = if self.holds_contour() { w } else { free };
+        self.of.planar |= flow.is_straight(&self.at);
         self.tells_from(v_2.atan2(v_h) + (a * w / v).asin());
         (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
-        self.of.planar |= w == 0.0;
+        // A slope turns the slip.
+        let [pull_h, pull_2] = pull(self.of.tilt, &self.at);
+        let turns = -up * pull_2 / slip;
+        let free = (w * (shape.i3 / shape.i1) * (lam - 1.0) + lam * turns) / (3.0 * lam - 2.0);
+        let nu = if self.holds_contour() { w } else { free };
         self.sees_face();
         self.begins_phase(Kind::Slipping);
         self.resumes_phase();
@@ -317,17 +323,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let lasts = (2.0 * RISEN / grows).sqrt();
         self.claims(lasts * lasts);
         // The slip falls as friction and the lean slow it, and as e_h turns away from the velocity of the centre.
-        let falls = mu * normal + z * grows + nu * a * w;
+        let falls = mu * normal + z * grows + nu * a * w + up * pull_h;
         let begin = self.at;
         let [forth, aside] = flow.velocity(&begin);
         self.rises_as(lasts, |t| {
             let mut y = begin;
             y[SIN] = 0.5 * grows * t * t;
             (y[W1], y[W2]) = (nu * y[SIN], -up * grows * t);
-            (y[UH], y[U2]) = (up * (falls * t - slip), slip * nu * t);
+            (y[UH], y[U2]) = (up * (falls * t - slip), up * slip * (nu - turns) * t);
             y[HEAT] += mu * normal * t * (slip - 0.5 * falls * t);
             if poses(N) {
-                let moved = [forth * t + 0.5 * up * mu * normal * t * t, (aside - up * a * nu) * t];
+                let faster = [up * mu * normal + pull_h, pull_2];
+                let moved = [
+                    forth * t + 0.5 * faster[0] * t * t,
+                    (aside - up * a * nu) * t + 0.5 * faster[1] * t * t,
+                ];
                 let (sin, cos) = begin[PHI].sin_cos();
                 (y[PHI], y[PSI]) = (y[PHI] + nu * t, y[PSI] + (begin[W3] - up * nu) * t);
                 (y[X], y[Y]) =
@@ -338,7 +348,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Slips
     }
 
-    /// The phase of a body that a kick lets rise on the point from which its state is told.
+    /// The phase of a body that a kick, or a slope, lets rise on the point from which its state is told.
     fn rises_from_face(&mut self) -> Next {
         let (up, rises) = (self.up(), self.at[W2].abs());
         let planar = self.at[W3] == 0.0 && self.at[U2] == 0.0;
@@ -362,7 +372,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 Standstill::Slips { alpha, growth } => {
                     // The slip that begins is that after a moment.
                     let (sin, cos) = alpha.sin_cos();
-                    let speed = growth * RISEN / rises;
+                    let speed = growth * if rises > 0.0 { RISEN / rises } else { ALMOST_FLAT };
                     (self.at[UH], self.at[U2]) = (speed * cos, speed * sin);
                 }
                 Standstill::LiftsOff => return Next::Ends(Ending::LiftOff),
@@ -378,12 +388,21 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (rates[W1] - nu * rises, rates)
         };
         let (here, there) = (follows(0.0).0, follows(1.0).0);
-        let nu = if self.holds_contour() { up * begin[W3] } else { here / (here - there) };
+        let nu = match () {
+            () if self.holds_contour() => up * begin[W3],
+            () if rises == 0.0 => 0.0,
+            () => here / (here - there),
+        };
         let rates = follows(nu).1;
+        let lasts = if rises > 0.0 { RISEN / rises } else { (2.0 * RISEN / (-up * rates[W2])).sqrt() };
+        if !(lasts > 0.0) {
+            return Next::Ends(Ending::Painleve);
+        }
+        self.claims(if rises > 0.0 { 0.0 } else { lasts * lasts });
         self.sees_face();
         self.begins_phase(if sticks { Kind::Rolling } else { Kind::Slipping });
         self.resumes_phase();
-        self.rises_as(RISEN / rises, |t| {
+        self.rises_as(lasts, |t| {
             let mut y: [f64; N] = core::array::from_fn(|i| begin[i] + t * rates[i]);
             y[SIN] = rises * t + 0.5 * up * -rates[W2] * t * t;
             (y[COS], y[W1], y[TIME]) = (up, nu * y[SIN], begin[TIME]);

@@ -274,7 +274,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (begin, mut given) = (self.at, 0.0);
         let losses = Losses::of(Law::Drilling, self.ask.losses.coefficient(Law::Drilling));
         while given < all {
-            let flow = self.standing_with(&friction, &losses);
+            // A slope does not pull within an impact.
+            let flow = self.standing_with(&friction, (&losses, [0.0; 2]));
             let [v_h, v_2] = flow.velocity(&self.at);
             if !flow.changes() || v_h.hypot(v_2) + self.at[W3].abs() <= UNMOVED {
                 break;
@@ -338,10 +339,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The phase of a body on its face whose last bounces take this time.
     fn stands_after(&mut self, left: f64) -> Next {
         let (begin, flow) = (self.at, self.standing(&self.friction()));
-        let [v_h, v_2] = flow.velocity(&begin);
+        let ([v_h, v_2], [pull_h, pull_2]) = (flow.velocity(&begin), flow.pull());
         let moved = |t: f64| {
             let mut y = begin;
             y[TIME] += t;
+            (y[UH], y[U2]) = (y[UH] + t * pull_h, y[U2] + t * pull_2);
             if poses(N) {
                 let (sin, cos) = begin[PHI].sin_cos();
                 y[PSI] += t * begin[W3];
@@ -438,6 +440,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let theta =
                 if up > 0.0 { crate::motions::body::face::ALMOST_FLAT } else { core::f64::consts::PI };
             self.at[W2] = 0.0;
+            if self.of.tilt != 0.0 && sticks && !self.sticks_on_slope(theta) {
+                return None;
+            }
             let rates = self.rates_on_rim((theta.sin(), up), theta, &self.at, sticks);
             let falls = up * rates[W2];
             if falls <= 0.0 {
