@@ -50,7 +50,7 @@ class Closed(face_closed.Closed):
         self.slow = gmpy2.sqrt(self.level)
         self.air = self.air / self.slow
         self.viscous = scene.law == "viscous"
-        self.given = None
+        self.given, self.arcs = None, {}
         if self.viscous:
             self.mu = self.mu * self.slow
 
@@ -81,10 +81,40 @@ class Closed(face_closed.Closed):
         if self.part:
             full = self.shared(k, self.lam, 2, *self.means(k, abs(k - 1)))
             for i in np.nonzero((2 * self.lam * k) ** 2 * (full[0] ** 2 + full[1] ** 2) > EDGE)[0]:
-                gx, gy, full[2][i] = self.arc(k[i], ONE)
+                gx, gy, full[2][i] = self.near_arc(k[i], (len(k), i))
                 full[0][i], full[1][i] = gx / k[i], gy / k[i]
             return full
         return self.shared(k, self.lam, 2, *self.means(k, abs(k - 1)))
+
+    def near_arc(self, k, key):
+        """G and g where a part presses, from the arc and the slopes of the last k of this node."""
+        found = self.arcs.get(key)
+        if found is not None and abs(k - found[0]) < abs(k - 1) / 4:
+            _, middle, half, (ax, ay, bx, by) = found
+            det, before = ax * by - bx * ay, ONE
+            for _ in range(12):
+                gx, gy, g, r = self.arc_means(middle, half, k, ONE)
+                rx = r * gmpy2.cos(middle) - self.lam * gx
+                ry = r * gmpy2.sin(middle) - self.lam * gy
+                left = max(abs(rx), abs(ry))
+                if left < mpfr("1e-22"):
+                    self.arcs[key] = k, middle, half, found[3]
+                    return gx, gy, g
+                if left > before / 20:
+                    break
+                before = left
+                middle, half = middle - (rx * by - bx * ry) / det, half - (ax * ry - rx * ay) / det
+        gx, gy, g = self.arc(k, ONE)
+        (middle, half), d, ways = self.arc_at, mpfr("1e-18"), []
+        for dm, dh in ((d, 0), (0, -d)):
+            x, y, _, r = self.arc_means(middle + dm, half + dh, k, ONE)
+            x, y = (
+                r * gmpy2.cos(middle + dm) - self.lam * x,
+                r * gmpy2.sin(middle + dm) - self.lam * y,
+            )
+            ways += [x / (dm + dh), y / (dm + dh)]
+        self.arcs[key] = k, middle, half, ways
+        return gx, gy, g
 
     @staticmethod
     def shared(k, lam, factor, f, g, c2, a1, m2):
@@ -232,7 +262,7 @@ class Closed(face_closed.Closed):
         now = self.leveled(now)
         sense = self.sense = -1 if now.w < 0 else 1
         s, sign, d = self.a * abs(now.w), [1], mpfr("1e-22")
-        self.part, self.arc_at = True, None
+        self.part = True
         self.arc(gmpy2.hypot(*now.velocity) / s, ONE)
         y = [*(x / s for x in now.velocity), gmpy2.log(s), *now.place, now.psi, now.heat, now.work, now.t]
         y += self.arc_at

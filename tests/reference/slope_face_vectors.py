@@ -153,6 +153,7 @@ class Vectors(face_vectors.Vectors):
         """From where a part of the ring presses until no pressure can hold the body down, as it leaves the face.
 
         The arc is carried along, and dt = det d sigma with the determinant of the equations of its rates, which vanishes.
+        From |v| > a |w|, since where these are equal the rates of the arc have a logarithm.
         """
         sense = 1 if now.w > 0 else -1
         lam, sign = narrowed(self.mu * self.z / self.a), []
@@ -183,7 +184,7 @@ class Vectors(face_vectors.Vectors):
             each = [w * 0 + 1, vx, vy, ax, ay, -slow, w, warm, lost]
             return [*(x * det for x in each), *(x * k_rate * sign[0] for x in turn)]
 
-        self.part, self.arcs, self.kept = True, None, None
+        self.part, self.kept = True, None
         self.pressed(*(np.array([x, x]) for x in (*now.velocity, now.w)))
         arc = [widened(np.array([x]))[0] for x in self.arcs]
         y = [now.t, *now.place, *now.velocity, now.w, now.psi, now.heat, now.work, *arc]
