@@ -201,18 +201,39 @@ def scenes():
     yield Scene("solid with a fillet slides for good", rounded, 0.3, 0.15, 2, [1, 2, 4, 6], **steep)
     block = solid(0.8)
     yield Scene("block thrown across", block, 0.2, 0.4, 0, [1, 2, 3], v=(0.2, 1), digits=25)
-    yield Scene("block thrown uphill slides for good", block, 0.4, 0.3, 0, [1, 2, 4], v=(-1, 0.5), to_rest=False, digits=25)
+    yield Scene(
+        "block thrown uphill slides for good",
+        block,
+        0.4,
+        0.3,
+        0,
+        [1, 2, 4],
+        v=(-1, 0.5),
+        to_rest=False,
+        digits=25,
+    )
     yield Scene("part of the ring presses", tall, 0.1, 0.45, 1, [1, 2, 3], v=(0.3, 1.2), to_rest=False)
     yield Scene("linear air", can, 0.12, 0.25, 2, [1, 3, 5], v=(0.3, 0.4), losses={"air": 0.05})
     film = {"law": "viscous", "to_rest": False, "digits": 25}
     yield Scene("viscous", tall, 0.2, 0.3, 2, [1, 3, 6, 12], v=(0.5, 0.6), phi=0.4, **film)
     yield Scene("viscous, topples", tall, 0.6, 0.3, 0, [2, 4, 6, 7], v=(0.25, 0), **film)
     yield Scene("let go on a steep slope", can, 0.4, 0.3, 0, [1, 3], phi=0.5, to_rest=False, digits=25)
-    yield Scene("smooth", can, 0.3, 0, 2, [1, 3], v=(-0.4, 0.2), phi=0.5, law="smooth", to_rest=False, digits=25)
+    yield Scene(
+        "smooth", can, 0.3, 0, 2, [1, 3], v=(-0.4, 0.2), phi=0.5, law="smooth", to_rest=False, digits=25
+    )
     yield Scene("disc spun in place", solid(0.3), 0.08, 0.3, 2, [1, 2], face="disc")
     planar = {"to_rest": False, "digits": 25}
     yield Scene("topples as it slides down", pillar, 0.2, 0.7, 0, [0.2, 0.5, 0.8], v=(2, 0), **planar)
-    yield Scene("topples as it slides across with spin", pillar, 0.2, 0.7, 1.5, [0.2, 0.4, 0.6, 0.8], v=(0, 3), **planar)
+    yield Scene(
+        "topples as it slides across with spin",
+        pillar,
+        0.2,
+        0.7,
+        1.5,
+        [0.2, 0.4, 0.6, 0.8],
+        v=(0, 3),
+        **planar,
+    )
     spun = {"fold": True, "to_rest": False}
     yield Scene("spun in place, topples as it runs away", tall, 0.4, 0.6, 2, [0.5, 1, 1.5, 2, 2.1], **spun)
     yield Scene("tips over from rest", tall, 0.6, 0.9, 0, [0.5, 1, 2], phi=0.3, place=(0.5, 0.1), **planar)

@@ -175,7 +175,9 @@ class Closed(face_closed.Closed):
         far, pace, most = abs(k - 1), abs(turn), mpfr("0.6") * (1 + k) / (gmpy2.hypot(*rates[:2]) + 1)
         if self.part:  # where the whole ring begins to press the law is not smooth
             step = mpfr("1e-15")
-            gone = abs(self.margin([x + step * f for x, f in zip(y[:2], rates, strict=False)]) - self.margin(y))
+            gone = abs(
+                self.margin([x + step * f for x, f in zip(y[:2], rates, strict=False)]) - self.margin(y)
+            )
             most = min(most, max(mpfr("0.7") * abs(self.margin(y)), NEAR) * step / gone)
         if far < self.jump:
             return min(most, 2 * far / pace)
@@ -184,9 +186,7 @@ class Closed(face_closed.Closed):
     def leveled(self, now, back=False):
         """A state in units of the level table, or back."""
         f = 1 / self.slow if not back else self.slow
-        rates = {
-            name: getattr(now, name) * f for name in ("w", "w1", "w2", "w3", "u_h", "u_2")
-        }
+        rates = {name: getattr(now, name) * f for name in ("w", "w1", "w2", "w3", "u_h", "u_2")}
         return now.at(
             t=now.t / f,
             velocity=[x * f for x in now.velocity],
@@ -276,7 +276,10 @@ class Closed(face_closed.Closed):
             moves = (d, 0, 0), (0, d, 0), (0, 0, d)
             ways = []
             for dk, dm, dh in moves:
-                one, other = residual(k + dk, middle + dm, half + dh), residual(k - dk, middle - dm, half - dh)
+                one, other = (
+                    residual(k + dk, middle + dm, half + dh),
+                    residual(k - dk, middle - dm, half - dh),
+                )
                 ways.append([(one[i] - other[i]) / (2 * d) for i in (0, 1)])
             (kx, ky), (ax, ay), (bx, by) = ways
             return (

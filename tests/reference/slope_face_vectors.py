@@ -9,7 +9,7 @@ over the arc, with 64 bits.
 import face_vectors
 import gmpy2
 import numpy as np
-from face_vectors import ONE, ZERO, cos, narrowed, sin, widened
+from face_vectors import ZERO, cos, narrowed, sin, widened
 from gauss import legendre
 from gmpy2 import mpfr
 
@@ -142,9 +142,7 @@ class Vectors(face_vectors.Vectors):
         ]
         total = found[0][0]
         means = [x / total for x in found[0][1:]]
-        slopes = [
-            [(x - m * of[0]) / total for x, m in zip(of[1:], means, strict=True)] for of in found[1:]
-        ]
+        slopes = [[(x - m * of[0]) / total for x, m in zip(of[1:], means, strict=True)] for of in found[1:]]
         p, cubed = weight * ps[0] / total[:, None, None], size**3
         by_k = [(p * q).sum(axis=(1, 2)) for q in (uy * uy / cubed, -ux * uy / cubed)]
         return means, slopes, by_k
@@ -258,9 +256,7 @@ class Vectors(face_vectors.Vectors):
                 name = "rests"
             yield (
                 name,
-                now.at(
-                    t=y[0], place=y[1:3], velocity=y[3:5], w=y[5], psi=y[6], heat=y[7], work=y[8]
-                ),
+                now.at(t=y[0], place=y[1:3], velocity=y[3:5], w=y[5], psi=y[6], heat=y[7], work=y[8]),
             )
             if name in ("rests", "topples") or not (times or self.scene.to_rest):
                 return
@@ -288,7 +284,7 @@ class Vectors(face_vectors.Vectors):
             return self.a * c - self.z * s, -self.a * s - self.z * c
 
         def rates(values):
-            _t, _x, lean, vx, vz, turn, _heat = values
+            _t, _x, lean, vx, _vz, turn, _heat = values
             rx, rz = corner(lean)
             u = vx + turn * rz
             # vx' = F + downhill, vz' = N - level, i1 turn' = rz F - rx N; the contact does not move up, or at all
@@ -314,7 +310,7 @@ class Vectors(face_vectors.Vectors):
             self.steps += n
             times.pop(0)
             t, x, lean, vx, vz, turn, heat = y
-            rx, rz = (p for p in corner(lean))
+            rx, rz = corner(lean)
             self.strayed = max(getattr(self, "strayed", 0), abs(vz - turn * rx))
             yield (
                 "sample",
@@ -337,6 +333,3 @@ class Vectors(face_vectors.Vectors):
         found = super().space_rates(values)
         found[4] = found[4] + self.downhill / self.level
         return found
-
-
-assert ONE == 1
