@@ -2,7 +2,8 @@
 
     python tests/reference/slope_face.py [name ...]       those whose names begin so; or all
 
-It needs gmpy2, numpy and mpmath.
+It needs gmpy2, numpy and mpmath. One scene takes longer, and the table does not have it yet: "spun in place, topples as
+it runs away", which leaves the face at a fold of the law of the pressure.
 
 Every motion is made from two formulations, `Vectors` of slope_face_vectors.py and `Closed` of slope_face_closed.py; they
 share the law of the pressure, the steps of gauss.py and the order of events. The first has sums over the face and
