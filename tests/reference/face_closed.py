@@ -36,7 +36,7 @@ def legendre_both(angle, m):
     pi = gmpy2.const_pi()
     a, b, c = ONE, gmpy2.sqrt(1 - m), gmpy2.sqrt(m)
     phi, total, extra, power = angle, m / 2, ZERO, ONE
-    while abs(c) > mpfr("1e-60"):
+    while abs(c) > mpfr("1e-45"):  # its square is lost
         turns = gmpy2.rint(phi / pi)
         rest = phi - pi * turns
         phi = phi + pi * turns + gmpy2.atan2(b / a * gmpy2.sin(rest), gmpy2.cos(rest))
