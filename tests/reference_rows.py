@@ -16,9 +16,11 @@ def sampled(case):
 
 
 def whole(poses, rows):
-    """The poses with the turns of the reference, which adds half a turn at each change of the rim, there and back."""
-    turns = np.round([(float(row.phi) - phi) / math.tau for row, phi in zip(rows, poses[:, 0], strict=True)])
-    return poses + math.tau * np.column_stack([turns, *3 * [0 * turns]])
+    """The poses with the turns of the reference, which adds half a turn at each change of the rim, there and back. A face
+    that topples is told from another point, in whichever direction."""
+    true = np.array([[float(row.phi), float(row.psi)] for row in rows])
+    turns = np.round((true - poses[:, :2]) / math.tau)
+    return poses + math.tau * np.column_stack([turns, 0 * turns])
 
 
 def off(found, rows, names):

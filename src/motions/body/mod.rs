@@ -36,6 +36,7 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::{Friction, centre_velocity};
+use crate::laws::loss::Law;
 use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;

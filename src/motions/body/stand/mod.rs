@@ -37,6 +37,8 @@ use crate::motions::{Ask, Ending, Kind};
 use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
+/// A point of a ring is at rest whose slip is below this share of the velocity of the centre.
+const SLIPS_OFF: f64 = 1e-6;
 /// Slower velocities are those of a body at rest.
 const UNMOVED: f64 = 1e-13;
 /// The inclination from which a rising body is followed on its rim. It is above that at which a face has landed.
@@ -298,12 +300,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let ([v_h, v_2], w) = (flow.velocity(&self.at), up * self.at[W3]);
         let v = v_h.hypot(v_2);
         let slip = ((v - a * w.abs()) * (v + a * w.abs())).sqrt();
-        let mu = match friction {
-            Friction::Coulomb { mu, .. } => *mu,
-            Friction::Viscous { c } => c * slip,
+        let (mu, thick) = match friction {
+            Friction::Coulomb { mu, .. } => (*mu, 0.0),
+            Friction::Viscous { c } => (c * slip, *c),
         };
-        let lam = mu * z / a;
-        if !(lam > 1.0 && mu * a * z < shape.i1 + a * a) {
+        // In a film that a slope makes drag more and more, the body topples from lam = 1 on.
+        let lam = if thick > 0.0 { (mu * z / a).max(1.0) } else { mu * z / a };
+        // A spin as fast as the slide leaves no slip at this point, which stays.
+        let stays = slip < SLIPS_OFF * v;
+        if stays || !(mu * a * z < shape.i1 + a * a) {
             return Next::Ends(Ending::Painleve);
         }
         let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
@@ -319,24 +324,32 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
         self.begins_phase(Kind::Slipping);
         self.resumes_phase();
-        // A face that just rests has no direction in which it turns.
-        let lasts = (2.0 * RISEN / grows).sqrt();
-        self.claims(lasts * lasts);
         // The slip falls as friction and the lean slow it, and as e_h turns away from the velocity of the centre.
         let falls = mu * normal + z * grows + nu * a * w + up * pull_h;
+        // theta'' grows with the drag of a film, and that drag with the slip: a third power of the time.
+        let film = if falls < 0.0 { thick } else { 0.0 };
+        let faster = -(z * film * falls / shape.i1);
+        let bends = film * (falls - a * faster * slip) - if film > 0.0 { z * faster } else { 0.0 };
+        // A face that just rests has no direction in which it turns.
+        let lasts = (2.0 * RISEN / grows).sqrt().min((6.0 * RISEN / faster).cbrt());
+        if !lasts.is_finite() {
+            return Next::Ends(Ending::Painleve);
+        }
+        self.claims(lasts * lasts * if film > 0.0 { lasts } else { 1.0 });
         let begin = self.at;
         let [forth, aside] = flow.velocity(&begin);
         self.rises_as(lasts, |t| {
             let mut y = begin;
-            y[SIN] = 0.5 * grows * t * t;
-            (y[W1], y[W2]) = (nu * y[SIN], -up * grows * t);
-            (y[UH], y[U2]) = (up * (falls * t - slip), up * slip * (nu - turns) * t);
+            y[SIN] = (0.5 * grows + faster * t / 6.0) * t * t;
+            (y[W1], y[W2]) = (nu * y[SIN], -up * (grows + 0.5 * faster * t) * t);
+            let slows = (falls - 0.5 * bends * t) * t;
+            (y[UH], y[U2]) = (up * (slows - slip), up * slip * (nu - turns) * t);
             y[HEAT] += mu * normal * t * (slip - 0.5 * falls * t);
+            y[HEAT] += 0.5 * film * slip * (a * faster * slip - falls) * t * t;
             if poses(N) {
-                let faster = [up * mu * normal + pull_h, pull_2];
                 let moved = [
-                    forth * t + 0.5 * faster[0] * t * t,
-                    (aside - up * a * nu) * t + 0.5 * faster[1] * t * t,
+                    forth * t + 0.5 * (up * mu * normal + pull_h) * t * t,
+                    (aside - up * a * nu) * t + 0.5 * pull_2 * t * t,
                 ];
                 let (sin, cos) = begin[PHI].sin_cos();
                 (y[PHI], y[PSI]) = (y[PHI] + nu * t, y[PSI] + (begin[W3] - up * nu) * t);
@@ -402,10 +415,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
         self.begins_phase(if sticks { Kind::Rolling } else { Kind::Slipping });
         self.resumes_phase();
+        let rho = self.of.slide.law.shape.rim.rho;
         self.rises_as(lasts, |t| {
             let mut y: [f64; N] = core::array::from_fn(|i| begin[i] + t * rates[i]);
             y[SIN] = rises * t + 0.5 * up * -rates[W2] * t * t;
             (y[COS], y[W1], y[TIME]) = (up, nu * y[SIN], begin[TIME]);
+            if rises == 0.0 && poses(N) {
+                let out = 0.5 * t * t * (rates[UH] + rho * rates[W2]);
+                let (sin, cos) = begin[PHI].sin_cos();
+                (y[X], y[Y]) = (y[X] + out * cos, y[Y] + out * sin);
+                y[HEAT] = begin[HEAT] + 0.5 * t * t * rates[HEAT] / ALMOST_FLAT;
+            }
             y
         });
         self.touches_down()
