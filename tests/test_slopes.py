@@ -211,19 +211,19 @@ def test_what_stands_on_its_face_stays_if_friction_holds_it_and_its_weight_is_ab
     goes = 2 * (np.sin(0.4) - 0.3 * np.cos(0.4))
     assert abs(slides.centre[-1, 0] - slides.centre[0, 0] - goes) < 1e-12 and slides.phases[0].kind == "on its face"
     tips = sc.roll(tall, still, [0.0, 2.0], table=sc.Table(0.2), contact=sc.Coulomb(0.3))
-    assert tips.theta[-1] > 0.01
+    assert tips.theta[-1] > 0.005
 
 
 def test_friction_holds_what_stands_on_a_slope_and_a_slide_has_friction_and_a_centre_of_pressure():
     body, beta = sc.Body.solid(0.5), 0.2
     spins = sc.roll(
-        body, sc.spun(body, 2.0), np.linspace(0, 3, 31), table=sc.Table(beta), contact=sc.Coulomb(0.4),
+        body, sc.spun(body, 2.0), np.linspace(0, 1.2, 481), table=sc.Table(beta), contact=sc.Coulomb(0.4),
         want=("force", "pose"),
     )
     assert np.abs(spins.contact_force[:, 2] - np.cos(beta)).max() < 1e-14
     v = np.gradient(spins.centre[:, 0], spins.t)
     friction = np.gradient(v, spins.t)[2:-2] - np.sin(beta)
-    assert np.abs(friction - spins.contact_force[2:-2, 0]).max() < 1e-3
+    assert np.abs(friction - spins.contact_force[2:-2, 0]).max() < 1e-5
     assert np.abs(spins.energy + spins.dissipated - spins.energy[0]).max() < 1e-12
 
 

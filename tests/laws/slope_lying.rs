@@ -337,3 +337,23 @@ fn rolling_resistance_holds_a_can_on_a_slope_or_lets_it_turn_round_and_roll_down
     let rate = (slope.sin() * f64::sin(0.5) - delta * slope.cos()) / 1.5;
     assert!((rolls.states[0].w3 - 3.0 * rate).abs() < 1e-12, "{} {}", rolls.states[0].w3, 3.0 * rate);
 }
+
+#[test]
+fn a_can_that_the_air_slows_is_held_along_its_axis_until_both_rims_are_at_their_limits() {
+    let (mu, beta, heading) = (0.44, 0.7677f64, -1.394_290_35f64);
+    let body = Body::solid(1.85).unwrap();
+    let losses = Losses::of(Law::RollingResistance, 0.0042) + Losses::of(Law::AirLinear, 0.0101);
+    let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 4.268 }).with_heading(heading);
+    let ask = Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_losses(losses).with_slope(beta);
+    let times: Vec<f64> = (0..=60).map(|k| 0.5 * f64::from(k)).collect();
+    let m = roll_with(&body, start, &times, &ask.with_pose(true), || true).unwrap().unwrap();
+    let path = m.path.as_ref().unwrap();
+    // As long as both hold it is accelerated like a can on a slope that the air slows.
+    assert!(
+        path.phases[0].kind == Kind::RollingOnItsSide && matches!(m.ending(), Ending::Done | Ending::Landing)
+    );
+    assert!(m.event.is_none_or(|event| event.time > 9.0 && event.state.w3 < 8.1), "{:?}", m.event);
+    for (y, before) in m.states[1..].iter().zip(&m.states) {
+        assert!((y.w3 - before.w3).abs() < 0.5 * beta.sin(), "{y:?} {before:?}");
+    }
+}

@@ -91,11 +91,12 @@ impl Lying<f64> {
 
     /// The largest couples with which dry losses hold w_z and w_h under these normal forces.
     pub fn limits(&self, loads: [f64; 2]) -> [f64; 2] {
-        // All couples that are not dry vanish at this speed.
+        // All couples that are not dry all but vanish at this speed.
         const SLOW: f64 = 1e-100;
+        const NOTHING: f64 = 1e-80;
         let (s, c) = self.border.angle;
         let couple = Self { own: None, ..*self }.couple([SLOW * (s - c), SLOW * (c + s)], loads);
-        self.parts(couple).map(f64::abs)
+        self.parts(couple).map(|x| if x.abs() > NOTHING { x.abs() } else { 0.0 })
     }
 }
 

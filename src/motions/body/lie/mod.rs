@@ -59,9 +59,9 @@ const STOPS_AT_ONCE: f64 = 1e-6;
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
-/// The shares by which friction that has just ceased to hold both rims is smaller than what they need: the next one where
-/// the search does not end with the one before.
-const RELEASED: [f64; 3] = [1e-9, 1e-7, 1e-5];
+/// The times by which a body rolls on that friction has just ceased to hold on both rims, before it is known which of them
+/// slips: the next one where the search does not end with the one before.
+const ROLLS_ON: [f64; 3] = [1e-6, 1e-5, 1e-4];
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
@@ -247,55 +247,51 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let lower = flow.lain(&self.at).force.iter().position(|force| force[0] < 0.0);
             return lower.map_or(Next::Ends(Ending::Slip), |lower| self.rises_on(lower == 1, true));
         }
-        self.slips_from_rest(flow, false)
+        self.slips_from_rest(flow, false).unwrap_or(Next::Ends(Ending::Landing))
     }
 
-    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just let one go.
+    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just let one go. None if
+    /// the search for it does not end.
     #[inline(never)]
-    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: bool) -> Next {
+    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: bool) -> Option<Next> {
         flow.stance = Stance::Slips;
         flow.holds_all(&self.at);
         let w = [self.at[W1], self.at[W3]];
         let begins = |flow: &LyingFlow<G>| {
             let law = flow.law_here(&self.at);
-            if !released {
-                return law.begins(w, [flow.fixed; 2]);
-            }
-            let less = |share: f64| law.strength.map(|mu| mu * (1.0 - share));
-            let under = |mu: [f64; 2]| Lying { strength: mu, ..law }.begins(w, mu);
-            if law.strength != [flow.fixed; 2] {
-                return under(law.strength);
-            }
-            RELEASED
-                .into_iter()
-                .find_map(|share| under(less(share)).filter(|begun| begun.moves != [false; 2]))
+            law.begins(w, if released { law.strength } else { [flow.fixed; 2] })
         };
         let mut found = begins(&flow);
         if found.is_some_and(|begun| flow.lets_roll(&begun.lain)) {
             found = begins(&flow);
         }
-        let Some(begun) = found else { return Next::Ends(Ending::Landing) };
+        // Both rims let go at once so slowly that steps do not follow it.
+        let begun = found.filter(|begun| !released || begun.moves[0] != begun.moves[1])?;
         let [here, there] = begun.lain.force.map(|force| force[0] > 0.0);
         if !(here && there) {
-            return if here || there { self.rises_on(here, true) } else { Next::Ends(Ending::LiftOff) };
+            let rises = here || there;
+            return Some(if rises { self.rises_on(here, true) } else { Next::Ends(Ending::LiftOff) });
         }
         let fastest = begun.slips.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let moment = NUDGED / fastest;
-        [self.at[W1], self.at[W3]] = [0, 1].map(|i| w[i] + moment * begun.lain.w[i]);
+        let moment = if fastest > 0.0 { NUDGED / fastest } else { 0.0 };
+        // A slip may begin with next to no rate: the drilling belongs to it, but not what the rolling gains until then.
+        let [drilling, rolling] = flow.law.turning(w[0], w[1]);
+        let [turns, rolls] = flow.law.turning(begun.lain.w[0], begun.lain.w[1]);
+        let rolls = rolls * moment.min(NUDGED);
+        [self.at[W1], self.at[W3]] = flow.law.turned_by([drilling + moment * turns, rolling + rolls]);
         self.sets_state();
         self.claims(NUDGED);
         let stance = match begun.moves {
-            [false, false] if released => return Next::Ends(Ending::Landing),
             [false, false] => {
                 self.rolls_along(&flow.law);
-                return self.begins_stance(flow, Stance::Rolls);
+                return Some(self.begins_stance(flow, Stance::Rolls));
             }
             [true, true] => {
                 [self.at[UH], self.at[U2]] = begun.slips[0].map(|rate| moment * rate);
                 let drags = begun.slips.map(|u| flow.law.drag(flow.law.strength[0], u)[0]);
                 let [p, q] = flow.law.leans(drags);
                 if p + q <= 0.0 {
-                    return Next::Ends(Ending::Painleve);
+                    return Some(Next::Ends(Ending::Painleve));
                 }
                 Stance::Slips
             }
@@ -304,7 +300,25 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 Stance::Pivots { other }
             }
         };
-        self.begins_stance(flow, stance)
+        Some(self.begins_stance(flow, stance))
+    }
+
+    /// The phase of a body that rolls straight down a slope, where friction just ceases to hold both rims.
+    fn slips_past_limit(&mut self, flow: &LyingFlow<G>) -> Next {
+        let (begin, mut rates) = (self.at, [0.0; N]);
+        flow.write_rates(&begin, &mut rates);
+        let later = |t: f64| core::array::from_fn(|i| begin[i] + t * rates[i]);
+        for lasts in ROLLS_ON {
+            while let Some(t) = self.until().filter(|t| *t <= begin[TIME] + lasts) {
+                self.writes_lying(flow, &later(t - begin[TIME]));
+            }
+            self.at = later(lasts);
+            self.sets_state();
+            if let Some(next) = self.slips_from_rest(*flow, true) {
+                return next;
+            }
+        }
+        Next::Ends(Ending::Landing)
     }
 
     /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
@@ -590,7 +604,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Halt::Slips => {
                 let other = phase.flow.stance == Stance::Pivots { other: true };
                 if phase.flow.stance == Stance::Rolls && self.of.tilt != 0.0 {
-                    self.slips_from_rest(phase.flow, true)
+                    self.slips_past_limit(&phase.flow)
                 } else if phase.flow.stance == Stance::Rolls {
                     self.begins_stance(phase.flow, Stance::Rolls)
                 } else {
