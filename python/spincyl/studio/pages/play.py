@@ -60,6 +60,7 @@ _SCRIPTS = (
     "page.context.js",
     "page.gl.js",
     "page.draw.js",
+    "page.slope.js",
     "page.exposure.js",
     "page.eye.js",
     "play.map.js",
