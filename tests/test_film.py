@@ -184,7 +184,7 @@ def rolling_down(slope, phi0=-np.pi / 2, t=6.0):
 @pytest.mark.parametrize("slope", [0.3, 0.75, -0.9])
 def test_on_a_slope_the_picture_is_that_of_a_level_table_whose_scene_is_turned_about_y(slope):
     m = rolling_down(slope, np.copysign(np.pi / 2, -slope))
-    camera = stage(taken(m), np.array([0.0])).cameras[0]
+    camera = stage(taken(m, follow=False), np.array([0.0])).cameras[0]
     # the axes of the table as seen from the room: x points downhill
     to_room = np.array([[np.cos(slope), 0.0, -np.sin(slope)], [0.0, 1.0, 0.0], [np.sin(slope), 0.0, np.cos(slope)]])
     places = np.random.default_rng(3).normal(size=(50, 3))
@@ -193,19 +193,19 @@ def test_on_a_slope_the_picture_is_that_of_a_level_table_whose_scene_is_turned_a
     # there the camera is upright: what hangs down is vertical in the middle of the picture, and y is horizontal ...
     assert np.allclose(room.rows[0, 2], 0.0, atol=1e-15) and room.rows[1, 2] > 0.5
     x, y = np.transpose(room(room.at + np.outer([-1.0, 0.0, 1.0], [0.0, 0.0, 1.0])))
-    assert np.allclose(x, 0.0, atol=1e-12) and (np.diff(y) > 0.1).all()
+    assert np.allclose(x, 0.0, atol=1e-12) and (np.diff(y) > 0.05).all()
     # ... the camera is above the table, and the path leads down in the picture
     assert camera.rows[2, 2] > 0.02
     low, high = np.sort(camera(m.centre[[0, -1]])[:, 1])
     assert high == pytest.approx(camera(m.centre[0])[1]) and high - low > 0.1
-    assert np.abs(camera(m.centre)).max() < 1.8
+    assert np.abs(camera(m.centre) * [180 / 320, 1]).max() < 0.95
 
 
 def test_a_wheel_that_rolls_down_stands_on_the_table_that_is_drawn_and_not_as_on_a_level_one():
     m, times = rolling_down("20 deg"), np.array([0.0, 3.0])
-    (tilted,), (level,) = (list(frames(taken(x), np.array([90]))) for x in (m, rolling_down(0.0)))
+    (tilted,), (level,) = (list(frames(taken(x, follow=False), np.array([90]))) for x in (m, rolling_down(0.0)))
     assert (np.abs(tilted.astype(int) - level).max(axis=-1) > 20).mean() > 0.05
-    what = stage(taken(m), times)
+    what = stage(taken(m, follow=False), times)
     what.picture(1)
     path, camera, panel = what.moving[0].rolled.get_xydata(), what.cameras[0], what.panels[0]
     path = path[~np.isnan(path).any(axis=1)]
@@ -248,12 +248,9 @@ def test_the_lines_of_a_table_that_turns_turn_with_it_about_its_middle():
         assert distance_to_lines(beside, lines) > 0.02
 
 
-def test_on_a_slope_and_on_a_table_that_turns_the_page_shows_what_the_film_shows(shown):
-    how = {"contact": "rolling", "want": "pose"}
-    disk, start = sc.Body.solid(0.375), sc.State(1.1, 0.5, 0.0, 1.5)
-    m = sc.roll(disk, start, 8.0, table=sc.Table("25 deg", phi0=0.4), **how)
-    other = sc.roll(disk, start, 8.0, table=sc.Table("-50 deg", phi0=0.4), **how)
-    for motion in (m, other):
+def test_on_a_slope_the_page_shows_what_the_film_shows(shown):
+    ball, start, tables = sc.Body.ball(0.0, 0.4, 0.4), sc.State(1.1, 0.5, 0.0, 1.5), ("25 deg", "-50 deg")
+    for motion in (sc.roll(ball, start, np.array([0.0, 8.0]), table=sc.Table(x), want="pose") for x in tables):
         page = shown(sc.view(motion), "#t=3")
         width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
         camera = stage(taken(motion, size=(2 * (width // 2), 2 * (height // 2))), np.array([0.0])).cameras[0]
