@@ -271,6 +271,8 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert path.read_text("utf-8") == asked.html
     assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html
+    assert main(["play", "--ell", "2.5", "--slope", "5deg", "-o", str(path)]) == 0
+    assert path.read_text("utf-8") == sc.play(sc.Body.solid(2.5), table=sc.Table("5 deg")).html
     sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
     assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
