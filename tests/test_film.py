@@ -186,7 +186,9 @@ def test_on_a_slope_the_picture_is_that_of_a_level_table_whose_scene_is_turned_a
     m = rolling_down(slope, np.copysign(np.pi / 2, -slope))
     camera = stage(taken(m, follow=False), np.array([0.0])).cameras[0]
     # the axes of the table as seen from the room: x points downhill
-    to_room = np.array([[np.cos(slope), 0.0, -np.sin(slope)], [0.0, 1.0, 0.0], [np.sin(slope), 0.0, np.cos(slope)]])
+    to_room = np.array(
+        [[np.cos(slope), 0.0, -np.sin(slope)], [0.0, 1.0, 0.0], [np.sin(slope), 0.0, np.cos(slope)]]
+    )
     places = np.random.default_rng(3).normal(size=(50, 3))
     room = camera._replace(at=camera.at @ to_room, rows=camera.rows @ to_room)
     assert np.allclose(camera(places), room(places @ to_room), rtol=0, atol=1e-12)
@@ -203,7 +205,9 @@ def test_on_a_slope_the_picture_is_that_of_a_level_table_whose_scene_is_turned_a
 
 def test_a_wheel_that_rolls_down_stands_on_the_table_that_is_drawn_and_not_as_on_a_level_one():
     m, times = rolling_down("20 deg"), np.array([0.0, 3.0])
-    (tilted,), (level,) = (list(frames(taken(x, follow=False), np.array([90]))) for x in (m, rolling_down(0.0)))
+    (tilted,), (level,) = (
+        list(frames(taken(x, follow=False), np.array([90]))) for x in (m, rolling_down(0.0))
+    )
     assert (np.abs(tilted.astype(int) - level).max(axis=-1) > 20).mean() > 0.05
     what = stage(taken(m, follow=False), times)
     what.picture(1)
@@ -213,8 +217,13 @@ def test_a_wheel_that_rolls_down_stands_on_the_table_that_is_drawn_and_not_as_on
     contact = np.append(there.contact_point[0], 0.0)
     assert np.allclose(path[-1], camera(contact), atol=2e-3)
     # the lowest point of the wheel, along the normal of the table, is there
-    rim = WHEEL.ell * np.array([0, 0, 1]) + np.array([[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 2 * np.pi, 3601)])
-    rims = np.concatenate([rim, rim - 2 * WHEEL.ell * np.array([0, 0, 1])]) @ panel.rotation[1].T + panel.centre[1]
+    rim = WHEEL.ell * np.array([0, 0, 1]) + np.array(
+        [[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 2 * np.pi, 3601)]
+    )
+    rims = (
+        np.concatenate([rim, rim - 2 * WHEEL.ell * np.array([0, 0, 1])]) @ panel.rotation[1].T
+        + panel.centre[1]
+    )
     lowest = rims[np.argsort(rims[:, 2])[:2]]
     assert np.abs(lowest[:, 2]).max() < 1e-5 and np.abs(camera(lowest) - camera(contact)).max() < 0.2
     # the lines of the table pass through whole numbers of R in the table
@@ -250,7 +259,9 @@ def test_the_lines_of_a_table_that_turns_turn_with_it_about_its_middle():
 
 def test_on_a_slope_the_page_shows_what_the_film_shows(shown):
     ball, start, tables = sc.Body.ball(0.0, 0.4, 0.4), sc.State(1.1, 0.5, 0.0, 1.5), ("25 deg", "-50 deg")
-    for motion in (sc.roll(ball, start, np.array([0.0, 8.0]), table=sc.Table(x), want="pose") for x in tables):
+    for motion in (
+        sc.roll(ball, start, np.array([0.0, 8.0]), table=sc.Table(x), want="pose") for x in tables
+    ):
         page = shown(sc.view(motion), "#t=3")
         width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
         camera = stage(taken(motion, size=(2 * (width // 2), 2 * (height // 2))), np.array([0.0])).cameras[0]

@@ -400,15 +400,26 @@ def test_the_slider_of_the_slope_tilts_the_table_and_the_motion_is_that_of_the_l
     page = opened("#ell=2.5&theta=1.3")
     knob, heading = page.locator("#knob-slope"), page.locator("#knob-phi0")
     level = ask(page, "on()")
-    assert knob.is_visible() and not heading.is_visible() and "slope" not in page.locator(".clock").inner_text()
+    assert (
+        knob.is_visible() and not heading.is_visible() and "slope" not in page.locator(".clock").inner_text()
+    )
     assert ask(page, "head()")["integrated"] == 0
     for name, value in (("slope", 0.2), ("phi0", -0.7)):
-        page.locator(f"#knob-{name}").evaluate("(e, x) => { e.value = x; e.dispatchEvent(new Event('input')); }", value)
+        page.locator(f"#knob-{name}").evaluate(
+            "(e, x) => { e.value = x; e.dispatchEvent(new Event('input')); }", value
+        )
         settled(page)
     told, rows = state(page), np.array(ask(page, "tracked()"), float)
-    assert heading.is_visible() and told["slope"] == pytest.approx(0.2) and told["phi0"] == pytest.approx(-0.7)
-    assert ask(page, "head()")["integrated"] == 1 and page.locator("#what").inner_text() == "On a slope of 11.5°"
-    assert "slope 11.5°" in page.locator(".clock").inner_text().replace("\xa0", " ") and ask(page, "on()") != level
+    assert (
+        heading.is_visible() and told["slope"] == pytest.approx(0.2) and told["phi0"] == pytest.approx(-0.7)
+    )
+    assert (
+        ask(page, "head()")["integrated"] == 1 and page.locator("#what").inner_text() == "On a slope of 11.5°"
+    )
+    assert (
+        "slope 11.5°" in page.locator(".clock").inner_text().replace("\xa0", " ")
+        and ask(page, "on()") != level
+    )
     body = sc.Body.solid(2.5)
     table = sc.Table(told["slope"], phi0=told["phi0"])
     m = sc.roll(body, body.steady(1.3), rows[:, 0], table=table, want=("pose", "force"))
@@ -439,7 +450,13 @@ def test_a_table_of_the_page_has_a_slope_and_a_heading_and_its_motion_is_that_of
     assert (page.motion.centre == m.centre).all() and np.ptp(m.centre[:, 1]) > 0.1
     page.table = None
     assert "slope" not in page.address and page.table is None and page.motion.method == "exact"
-    wrong = [sc.Table(1.0), sc.Table(-0.1), sc.Table(0.1, turning=0.5), sc.Table(0.1, place=(1.0, 0.0)), sc.Table([0.1, 0.2])]
+    wrong = [
+        sc.Table(1.0),
+        sc.Table(-0.1),
+        sc.Table(0.1, turning=0.5),
+        sc.Table(0.1, place=(1.0, 0.0)),
+        sc.Table([0.1, 0.2]),
+    ]
     for table in wrong:
         with pytest.raises(ValueError, match="^(slope|table) = "):
             page.table = table

@@ -100,9 +100,7 @@ def test_steady_states_are_those_of_the_package(ask, which):
 WIDE = 18  # numbers in a row
 
 
-def compared(
-    ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE, patch=0.0, slope=(0.0, 0.0)
-):
+def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE, patch=0.0, slope=(0.0, 0.0)):
     """Compare both motions at the same times, within both claimed errors."""
     t = native.t
     end = 20.0
@@ -254,9 +252,7 @@ def test_motions_on_a_slope_agree_within_the_error_that_they_state(ask, which):
     native = sc.roll(body, state, TIMES, **how)
     slip = (0.0, 0.0) if state.slip is None else state.slip
     start = (state.theta, state.w1, state.w2, state.w3, *slip)
-    told, rows, few = compared(
-        ask, given, start, code, mu, native, losses=losses, bounce=bounce, slope=slope
-    )
+    told, rows, few = compared(ask, given, start, code, mu, native, losses=losses, bounce=bounce, slope=slope)
     assert told[0] == 1.0 and np.ptp(native.contact_point, axis=0).max() > 1.0
     # a time between two rows is computed from the row before it, with its heading and from its place
     there = sc.roll(body, state, few[:, 0], t0=0.0, **how)

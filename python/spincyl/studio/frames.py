@@ -18,7 +18,7 @@ from spincyl.studio.aloft import goes_up
 from spincyl.studio.arrows import Tip, drawings
 from spincyl.studio.artists import photo_of, surface_of
 from spincyl.studio.exposure import Shutter
-from spincyl.studio.look import Camera, Look, Tilts, camera, held, opened
+from spincyl.studio.look import Camera, Look, camera, held, opened, tilts
 from spincyl.studio.painted import Painted, Piece, ordered, painted, pieces, turned
 from spincyl.studio.poses import span
 from spincyl.studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
@@ -123,7 +123,7 @@ class _Stage:
             )
         self.half = half
         self.sizes = {name: max(p.sizes[name] for p in panels) for name in panels[0].sizes}
-        tilts = Tilts.of(m._asked.slope for m in what.motions)
+        lies = tilts([m._asked.slope for m in what.motions])
         columns, rows = _columns(len(panels), width / height)
         self.axes: list[Any] = []
         self.moving: list[_Moving] = []
@@ -137,8 +137,7 @@ class _Stage:
             ax: Any = self.figure.add_axes(place)
             ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
             ax.axis("off")
-            above, slope = look.above or self.exposes, panel.motion._asked.slope
-            seen_by = camera(panel.middle, reach, half, aspect, above, slope, tilts)
+            seen_by = camera(panel.middle, reach, half, aspect, look.above or self.exposes, lies[k])
             self.cameras.append(seen_by)
             self.bodies.append(self._made(panel.motion.body, seen_by, reach))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}

@@ -57,58 +57,51 @@ class Camera(NamedTuple):
         return found
 
 
-class Tilts(NamedTuple):
-    """The slopes of the tables of a view, in radians: all cameras are equally far and on one side."""
+class Tilt(NamedTuple):
+    """The slope of a table, in radians, and what all cameras of a view need to know of its slopes."""
 
+    slope: float = 0.0
     steepest: float = 0.0
     mirrored: bool = False  #: whether x of the first table points uphill
 
-    @classmethod
-    def of(cls, slopes: Iterable[float]) -> "Tilts":
-        """Those of tables with these slopes."""
-        first, *_ = slopes = list(slopes)
-        return cls(max(map(abs, slopes)), first < 0)
+
+_LEVEL = Tilt()
 
 
-_LEVEL = Tilts()
+def tilts(slopes: list[float]) -> list[Tilt]:
+    """The tilts of the tables of a view with these slopes: all cameras are equally far, on one side."""
+    return [Tilt(slope, max(map(abs, slopes)), slopes[0] < 0) for slope in slopes]
 
 
-def camera(
-    at: Floats,
-    reach: float,
-    half: float,
-    aspect: float,
-    above: bool,
-    slope: float = 0.0,
-    tilts: Tilts = _LEVEL,
-) -> Camera:
+def camera(at: Floats, reach: float, half: float, aspect: float, above: bool, tilt: Tilt = _LEVEL) -> Camera:
     """The first camera of the page, or one that looks straight down, with x to the right and y upwards.
 
-    The first one sees a table with a slope as it lies: its directions are turned about y, from the room to the
-    table. The other one looks along the normal of the table.
+    The first one sees a table with a slope as it lies: its directions are turned about y, from the room to
+    the table. The other one looks along the normal of the table.
     """
     azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (_AZIMUTH, _ELEVATION)
-    if not above and (slope or tilts.steepest):
-        azimuth = -math.pi - azimuth if tilts.mirrored else azimuth
+    slope = tilt.slope
+    if not above and tilt.steepest:
+        azimuth = -math.pi - azimuth if tilt.mirrored else azimuth
         # above the table
         elevation = max(elevation, _LEAST + math.atan2(-math.cos(azimuth) * math.sin(slope), math.cos(slope)))
-        half += rise(reach, tilts.steepest)
+        half += _rise(reach, tilt.steepest)
     ce, se = math.cos(elevation), math.sin(elevation)
     ca, sa = math.cos(azimuth), math.sin(azimuth)
     back, right = np.array([ce * ca, ce * sa, se]), np.array([-sa, ca, 0.0])
     high = max(1.08 * reach if above else half, 1.12 * reach / aspect)
     far = _FLAT * high if above else high / _SPREAD
     rows = np.stack([right, np.cross(back, right), back])
-    return Camera(at, far, high, rows if above or not slope else rows @ tilt(slope))
+    return Camera(at, far, high, rows if above or not slope else rows @ _to_room(slope))
 
 
-def tilt(slope: float) -> Floats:
+def _to_room(slope: float) -> Floats:
     """The rotation from the axes of a table with this slope to those of the room, with z up."""
     c, s = math.cos(slope), math.sin(slope)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
-def rise(reach: float, slope: float) -> float:
+def _rise(reach: float, slope: float) -> float:
     """By how much the half height that the camera has to show is larger on a slope."""
     seen_at = min(_ELEVATION + abs(slope), math.pi / 2)
     return 1.06 * reach * (math.sin(seen_at) - math.sin(_ELEVATION))

@@ -340,11 +340,11 @@ def play(
     losses : Loss, optional
         One law of `spincyl.loss`, which takes energy from the body.
     table : Table, optional
-        Table with a slope from 0 to 45 degrees, and `phi0`, the direction to which the axis leans at first. The
-        motion starts at the place (0, 0). Default: a level table.
+        Table with a slope from 0 to 45 degrees, and `phi0`, the direction to which the axis leans at first.
+        The motion starts at the place (0, 0). Default: a level table.
     t : float
-        Last time of a motion with friction or losses, or on a slope: 1 to 2000 sqrt(R/g), for a measured body in seconds.
-        Default: 60 sqrt(R/g). Such motions are integrated by steps.
+        Last time of a motion with friction or losses, or on a slope: 1 to 2000 sqrt(R/g), for a measured
+        body in seconds. Default: 60 sqrt(R/g). Such motions are integrated by steps.
     slow : float
         Factor of slow motion, 1 to 1000. A body without a size is shown as if R = 1 cm.
     friction : bool

@@ -23,8 +23,8 @@ from spincyl.studio.shape import Letter, marks
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
 #: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
-#: these and "aloft" if a body leaves the table or lies on both rims; "circles" for bodies of several circles; "slope"
-#: if a table is tilted or turns.
+#: these and "aloft" if a body leaves the table or lies on both rims; "circles" for bodies of several circles;
+#: "slope" if a table is tilted or turns.
 _STYLES = ("page.css", "page.slip.css", "page.aloft.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -359,6 +359,10 @@ def view(
 
     For a body that flies (`roll` with a `restitution`), the clock shows the height of the lowest point. While
     the body is in the air, no path and no force are drawn.
+
+    A table with a slope is drawn as it lies: gravity is vertical in the picture, and the clock shows the
+    slope. From above, the camera looks along the normal of the table. The lines of a table that turns turn
+    with it.
 
     For a stone the clock also shows the spin, and the time at which the spin reverses. A reversal counts when
     the spin has passed zero and reached a tenth of its first value in the other direction. A stone with an
