@@ -7,6 +7,7 @@ import sys
 from functools import cache
 
 import numpy as np
+import pages
 import pytest
 from few import few
 from page_scenes import CYLINDER, PIPE, motion_of, page_of
@@ -270,6 +271,31 @@ def test_on_a_slope_the_page_shows_what_the_film_shows(shown):
             left, top = page.evaluate("t => window.spincyl.on(0, t)", t)
             assert np.hypot(left - width / 2 - x * height / 2, top - height / 2 + y * height / 2) < 2.5
     assert "slope \u221250.0°" in page.locator(".clock").inner_text().replace("\xa0", " ")
+    assert page.complaints == []
+
+
+def test_on_the_page_too_the_lines_of_a_table_that_turns_turn_with_it(shown):
+    ball, om = sc.Body.ball(0.0, 0.4, 0.4), 0.5
+    m = sc.roll(ball, sc.State(1.0, 0.3, 0.0, 0.0), 9.0, table=sc.Table("5 deg", turning=om), want="pose")
+    page = shown(sc.view(m), "#t=0")
+    width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
+    camera = stage(taken(m, size=(2 * (width // 2), 2 * (height // 2))), np.array([0.0])).cameras[0]
+    for t in (0.0, 1.3, 7.0):
+        pages.go(page, t)
+        light = pages.picture(page).mean(axis=-1)
+        c, s = np.cos(om * t), np.sin(om * t)
+        middle = np.round([[c, s], [-s, c]] @ camera.at[:2])  # in the table
+        seen = {}
+        for aside in (2.0, 2.5, -2.0, -2.5):  # on a line of the table, and between two
+            x, y = middle[0] + np.linspace(-3.0, 3.0, 601), middle[1] + aside
+            right, up = camera(np.column_stack([c * x - s * y, s * x + c * y, 0 * x])).T
+            places = [width / 2 + right * height / 2, height / 2 - up * height / 2]
+            columns, rows = np.round(places).astype(int)
+            there = (columns > 150) & (columns < width - 2) & (rows > 1) & (rows < height - 2)
+            assert there.sum() > 200
+            near = [light[rows[there] + i, columns[there] + k] for i in (-1, 0, 1) for k in (-1, 0, 1)]
+            seen[aside] = np.median(np.min(near, axis=0))
+        assert seen[2.0] < seen[2.5] - 0.01 and seen[-2.0] < seen[-2.5] - 0.01, (t, seen)
     assert page.complaints == []
 
 
