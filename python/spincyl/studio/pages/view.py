@@ -175,7 +175,7 @@ class View:
         exposure in it consists of pixels, except for the text.
 
         An animated scene is in metres and seconds. If the view has no scale, R is one metre and sqrt(R/g) one
-        second. The bodies stand side by side.
+        second. The bodies stand side by side, each on its slope.
         """
         path = path_of("path", path)
         suffix = path.suffix.lower()
