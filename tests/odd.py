@@ -323,14 +323,14 @@ def motions():
             sc.play,
             {
                 "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "restitution": 0.5, "losses": None,
-                "t": None, "slow": 20.0, "friction": True, "title": "x",
+                "table": sc.Table(0.1), "t": None, "slow": 20.0, "friction": True, "title": "x",
             },
         ),
         **{
             f"Play.{name}": (partial(setting, name), {name: good})
             for name, good in (
                 ("body", body), ("theta", 1.3), ("kick", 0.1), ("state", state), ("contact", "rolling"),
-                ("restitution", 0.5), ("losses", None),
+                ("restitution", 0.5), ("losses", None), ("table", sc.Table(0.1)),
             )
         },
     }  # fmt: skip

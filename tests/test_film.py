@@ -7,6 +7,7 @@ import sys
 from functools import cache
 
 import numpy as np
+import pages
 import pytest
 from few import few
 from page_scenes import CYLINDER, PIPE, motion_of, page_of
@@ -167,6 +168,136 @@ def test_the_camera_is_that_of_the_page(shown):
             x, y = camera(m.wanting("pose", t=[t]).centre[0])
             left, top = page.evaluate("t => window.spincyl.on(0, t)", t)
             assert np.hypot(left - width / 2 - x * height / 2, top - height / 2 + y * height / 2) < 2.5
+
+
+# tables that are tilted or turn
+
+WHEEL = sc.Body.solid(0.1)
+
+
+def rolling_down(slope, phi0=-np.pi / 2, t=6.0):
+    """A wheel that rolls straight down a slope from rest."""
+    how = {"contact": sc.Coulomb(1.5), "restitution": 0.0, "want": "pose"}
+    table = sc.Table(slope, phi0=phi0) if slope else None
+    return sc.roll(WHEEL, sc.State(np.pi / 2, 0.0, 0.0, 0.0), np.linspace(0.0, t, 61), table=table, **how)
+
+
+@pytest.mark.parametrize("slope", [0.3, 0.75, -0.9])
+def test_on_a_slope_the_picture_is_that_of_a_level_table_whose_scene_is_turned_about_y(slope):
+    m = rolling_down(slope, np.copysign(np.pi / 2, -slope))
+    camera = stage(taken(m, follow=False), np.array([0.0])).cameras[0]
+    # the axes of the table as seen from the room: x points downhill
+    to_room = np.array(
+        [[np.cos(slope), 0.0, -np.sin(slope)], [0.0, 1.0, 0.0], [np.sin(slope), 0.0, np.cos(slope)]]
+    )
+    places = np.random.default_rng(3).normal(size=(50, 3))
+    room = camera._replace(at=camera.at @ to_room, rows=camera.rows @ to_room)
+    assert np.allclose(camera(places), room(places @ to_room), rtol=0, atol=1e-12)
+    # there the camera is upright: what hangs down is vertical in the middle of the picture, and y is horizontal ...
+    assert np.allclose(room.rows[0, 2], 0.0, atol=1e-15) and room.rows[1, 2] > 0.5
+    x, y = np.transpose(room(room.at + np.outer([-1.0, 0.0, 1.0], [0.0, 0.0, 1.0])))
+    assert np.allclose(x, 0.0, atol=1e-12) and (np.diff(y) > 0.05).all()
+    # ... the camera is above the table, and the path leads down in the picture
+    assert camera.rows[2, 2] > 0.02
+    low, high = np.sort(camera(m.centre[[0, -1]])[:, 1])
+    assert high == pytest.approx(camera(m.centre[0])[1]) and high - low > 0.1
+    assert np.abs(camera(m.centre) * [180 / 320, 1]).max() < 0.95
+
+
+def test_a_wheel_that_rolls_down_stands_on_the_table_that_is_drawn_and_not_as_on_a_level_one():
+    m, times = rolling_down("20 deg"), np.array([0.0, 3.0])
+    (tilted,), (level,) = (
+        list(frames(taken(x, follow=False), np.array([90]))) for x in (m, rolling_down(0.0))
+    )
+    assert (np.abs(tilted.astype(int) - level).max(axis=-1) > 20).mean() > 0.05
+    what = stage(taken(m, follow=False), times)
+    what.picture(1)
+    path, camera, panel = what.moving[0].rolled.get_xydata(), what.cameras[0], what.panels[0]
+    path = path[~np.isnan(path).any(axis=1)]
+    there = m.wanting("pose", t=[3.0])
+    contact = np.append(there.contact_point[0], 0.0)
+    assert np.allclose(path[-1], camera(contact), atol=2e-3)
+    # the lowest point of the wheel, along the normal of the table, is there
+    rim = WHEEL.ell * np.array([0, 0, 1]) + np.array(
+        [[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 2 * np.pi, 3601)]
+    )
+    rims = (
+        np.concatenate([rim, rim - 2 * WHEEL.ell * np.array([0, 0, 1])]) @ panel.rotation[1].T
+        + panel.centre[1]
+    )
+    lowest = rims[np.argsort(rims[:, 2])[:2]]
+    assert np.abs(lowest[:, 2]).max() < 1e-5 and np.abs(camera(lowest) - camera(contact)).max() < 0.2
+    # the lines of the table pass through whole numbers of R in the table
+    lines = what.axes[0].grid_lines.get_segments()
+    crossing = camera(np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.0]]))
+    ends = np.array([end for line in lines for end in line])
+    assert all(distance_to_lines(point, lines) < 1e-6 for point in crossing) and len(ends) > 100
+    assert "slope 20.0°" in what.moving[0].clock.get_text()
+
+
+def distance_to_lines(point, lines):
+    """The least distance of a point from straight pieces of lines."""
+    a, b = np.array([[line[0], line[-1]] for line in lines]).transpose(1, 0, 2)
+    along = b - a
+    share = np.clip(((point - a) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
+    return np.hypot(*(a + share[:, None] * along - point).T).min()
+
+
+def test_the_lines_of_a_table_that_turns_turn_with_it_about_its_middle():
+    ball, om = sc.Body.ball(0.0, 0.4, 0.4), 0.5
+    m = sc.roll(ball, sc.State(1.0, 0.3, 0.0, 0.0), 20.0, table=sc.Table("5 deg", turning=om), want="pose")
+    times = np.array([0.0, 1.3, 7.0])
+    what = stage(taken(m), times)
+    for k, t in enumerate(times):
+        what.picture(k)
+        lines = what.axes[0].grid_lines.get_segments()
+        c, s = np.cos(om * t), np.sin(om * t)
+        marked = np.array([[c, s, 0.0], [2 * c - s, 2 * s + c, 0.0]])  # (1, 0) and (2, 1) of the table
+        assert all(distance_to_lines(point, lines) < 1e-6 for point in what.cameras[0](marked))
+        beside = what.cameras[0](np.array([0.5 * c - 0.5 * s, 0.5 * s + 0.5 * c, 0.0]))
+        assert distance_to_lines(beside, lines) > 0.02
+
+
+def test_on_a_slope_the_page_shows_what_the_film_shows(shown):
+    ball, start, tables = sc.Body.ball(0.0, 0.4, 0.4), sc.State(1.1, 0.5, 0.0, 1.5), ("25 deg", "-50 deg")
+    for motion in (
+        sc.roll(ball, start, np.array([0.0, 8.0]), table=sc.Table(x), want="pose") for x in tables
+    ):
+        page = shown(sc.view(motion), "#t=3")
+        width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
+        camera = stage(taken(motion, size=(2 * (width // 2), 2 * (height // 2))), np.array([0.0])).cameras[0]
+        for t in np.linspace(0.0, motion.t[-1], 4):
+            x, y = camera(motion.wanting("pose", t=[t]).centre[0])
+            left, top = page.evaluate("t => window.spincyl.on(0, t)", t)
+            assert np.hypot(left - width / 2 - x * height / 2, top - height / 2 + y * height / 2) < 2.5
+    assert "slope \u221250.0°" in page.locator(".clock").inner_text().replace("\xa0", " ")
+    assert page.complaints == []
+
+
+def test_on_the_page_too_the_lines_of_a_table_that_turns_turn_with_it(shown):
+    ball, om = sc.Body.ball(0.0, 0.4, 0.4), 0.5
+    table = sc.Table("5 deg", turning=om, place=(6.0, 0.0))
+    m = sc.roll(ball, sc.State(np.pi / 2, 0.0, 0.0, -6.0 * om), 9.0, table=table, want="pose")
+    page = shown(sc.view(m), "#t=0")
+    width, height = page.evaluate("[stage.clientWidth, stage.clientHeight]")
+    camera = stage(taken(m, size=(2 * (width // 2), 2 * (height // 2))), np.array([0.0])).cameras[0]
+    for t in (0.0, 1.3, 7.0):
+        pages.go(page, t)
+        light = pages.picture(page).mean(axis=-1)
+        c, s = np.cos(om * t), np.sin(om * t)
+        middle = np.round([[c, s], [-s, c]] @ camera.at[:2])  # in the table
+        seen = {}
+        for aside in (2.0, 2.5, -2.0, -2.5):  # on a line of the table, and between two
+            x, y = middle[0] + np.linspace(-3.0, 3.0, 601), middle[1] + aside
+            right, up = camera(np.column_stack([c * x - s * y, s * x + c * y, 0 * x])).T
+            places = [width / 2 + right * height / 2, height / 2 - up * height / 2]
+            columns, rows = np.round(places).astype(int)
+            there = (columns > 150) & (columns < width - 2) & (rows > 1) & (rows < height - 2)
+            assert there.sum() > 80
+            near = [light[rows[there] + i, columns[there] + k] for i in (-1, 0, 1) for k in (-1, 0, 1)]
+            seen[aside] = np.median(np.min(near, axis=0))
+        assert seen[2.0] < seen[2.5] - 0.01 and seen[-2.0] < seen[-2.5] - 0.01, (t, seen)
+    assert page.complaints == []
 
 
 def test_several_motions_stand_side_by_side_and_the_shadow_darkens_once():

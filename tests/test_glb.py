@@ -61,6 +61,23 @@ def test_a_round_body_is_round_there_too_and_stands_on_the_table(tmp_path, body,
     assert len(places) > 4000 and size[np.hypot(*places[:, :2].T) > 1e-3].min() > 1 - 1e-5
 
 
+def test_on_a_slope_the_scene_is_turned_so_that_x_leads_down(tmp_path):
+    import trimesh
+
+    ball, beta = sc.Body.ball(0.0, 0.4, 0.4), 0.3
+    m, level = (
+        sc.roll(ball, sc.State(1.0, 0.0, 0.0, 0.0), 5.0, table=sc.Table(slope, place=(2.0, 0.5)))
+        for slope in (beta, 0.0)
+    )
+    scene = trimesh.load_scene(sc.view(m).save(tmp_path / "slope.glb"))
+    sine, cosine = np.sin(beta), np.cos(beta)
+    at = [2 * cosine + sine, cosine - 2 * sine, -0.5]  # y upwards
+    assert np.mean(scene.bounds, axis=0) == pytest.approx(at, abs=2e-3)
+    both = trimesh.load_scene(sc.view(level, m).save(tmp_path / "both.glb"))
+    low, high = both.bounds
+    assert high[0] - low[0] > 4.0 and low[1] == pytest.approx(min(0.0, at[1] - 1), abs=2e-3)
+
+
 def test_its_frames_are_poses_of_the_motion_in_seconds(tmp_path):
     from pygltflib import GLTF2
 

@@ -271,6 +271,8 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert path.read_text("utf-8") == asked.html
     assert main(["play", "--contact", "viscous", "--viscosity", "0.2", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html
+    assert main(["play", "--ell", "2.5", "--slope", "5deg", "-o", str(path)]) == 0
+    assert path.read_text("utf-8") == sc.play(sc.Body.solid(2.5), table=sc.Table("5 deg")).html
     sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
     assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
@@ -392,3 +394,73 @@ def test_a_weak_flick_lies_on_its_side_and_rolls_straight_unless_it_is_told_to_e
     assert not knob.is_visible() and not patch.is_visible()
     page.wait_for_function("() => !location.hash.includes('restitution')")
     assert page.complaints == []
+
+
+def test_the_slider_of_the_slope_tilts_the_table_and_the_motion_is_that_of_the_library(opened):
+    page = opened("#ell=2.5&theta=1.3")
+    knob, heading = page.locator("#knob-slope"), page.locator("#knob-phi0")
+    level = ask(page, "on()")
+    assert (
+        knob.is_visible() and not heading.is_visible() and "slope" not in page.locator(".clock").inner_text()
+    )
+    assert ask(page, "head()")["integrated"] == 0
+    for name, value in (("slope", 0.2), ("phi0", -0.7)):
+        page.locator(f"#knob-{name}").evaluate(
+            "(e, x) => { e.value = x; e.dispatchEvent(new Event('input')); }", value
+        )
+        settled(page)
+    told, rows = state(page), np.array(ask(page, "tracked()"), float)
+    assert (
+        heading.is_visible() and told["slope"] == pytest.approx(0.2) and told["phi0"] == pytest.approx(-0.7)
+    )
+    assert (
+        ask(page, "head()")["integrated"] == 1 and page.locator("#what").inner_text() == "On a slope of 11.5°"
+    )
+    assert (
+        "slope 11.5°" in page.locator(".clock").inner_text().replace("\xa0", " ")
+        and ask(page, "on()") != level
+    )
+    body = sc.Body.solid(2.5)
+    table = sc.Table(told["slope"], phi0=told["phi0"])
+    m = sc.roll(body, body.steady(1.3), rows[:, 0], table=table, want=("pose", "force"))
+    assert np.abs(rows[:, 1] - m.theta).max() < 1e-6 and np.abs(rows[:, 7:9] - m.contact_point).max() < 1e-6
+    assert np.hypot(*(m.contact_point[-1] - m.contact_point[0])) > 5.0
+    # between two rows; the force is that of the table alone
+    now = float(rows[7, 0] + 0.4 * (rows[8, 0] - rows[7, 0]))
+    pose = ask(page, f"pose({now!r})")
+    there = sc.roll(body, body.steady(1.3), [0.0, now], table=table, want=("pose", "force"))
+    assert pose["centre"] == pytest.approx(there.centre[1].tolist(), abs=1e-6)
+    force = [x + y for x, y in zip(pose["normal"], pose["friction"], strict=True)]
+    assert force == pytest.approx(there.contact_force[1].tolist(), abs=1e-3)
+    page.wait_for_function("() => location.hash.includes('slope=0.2') && location.hash.includes('phi0=-0.7')")
+    page.select_option("#knob-contact", "coulomb")
+    page.locator("#knob-patch").evaluate("e => { e.value = -1; e.dispatchEvent(new Event('input')); }")
+    settled(page)
+    assert "A slope is not computed with a patch of contact" in page.locator("#because").inner_text()
+    knob.evaluate("e => { e.value = 0; e.dispatchEvent(new Event('input')); }")
+    page.wait_for_function("() => !location.hash.includes('slope') && !location.hash.includes('phi0')")
+    assert not heading.is_visible() and page.complaints == []
+
+
+def test_a_table_of_the_page_has_a_slope_and_a_heading_and_its_motion_is_that_of_roll():
+    body = sc.Body.solid(2.5)
+    page = sc.play(body, 1.3, table=sc.Table(0.2, phi0=-0.7), t=5.0)
+    assert page.address.endswith("&slope=0.2&phi0=-0.7") and page.table == sc.Table(0.2, phi0=-0.7)
+    m = sc.roll(body, body.steady(1.3), page.motion.t, table=page.table, want="pose")
+    assert (page.motion.centre == m.centre).all() and np.ptp(m.centre[:, 1]) > 0.1
+    page.table = None
+    assert "slope" not in page.address and page.table is None and page.motion.method == "exact"
+    wrong = [
+        sc.Table(1.0),
+        sc.Table(-0.1),
+        sc.Table(0.1, turning=0.5),
+        sc.Table(0.1, place=(1.0, 0.0)),
+        sc.Table([0.1, 0.2]),
+    ]
+    for table in wrong:
+        with pytest.raises(ValueError, match="^(slope|table) = "):
+            page.table = table
+    with pytest.raises(TypeError, match="table: expected a Table, not float"):
+        sc.play(body, table=0.1)
+    with pytest.raises(ValueError, match="friction = False: a slope needs friction=True"):
+        sc.play(body, friction=False, table=sc.Table(0.1))

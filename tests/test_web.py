@@ -100,20 +100,21 @@ def test_steady_states_are_those_of_the_package(ask, which):
 WIDE = 18  # numbers in a row
 
 
-def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE, patch=0.0):
+def compared(ask, given, start, table, mu, native, losses=(0, 0.0), bounce=NONE, patch=0.0, slope=(0.0, 0.0)):
     """Compare both motions at the same times, within both claimed errors."""
     t = native.t
     end = 20.0
     answers = ask(
         given,
         ("losses", losses),
+        ("slope", slope),
         ("start", (*start, table, mu, patch, end, 301, bounce)),
         ("follow", (301, 0.0, end)),
         ("follow", (7, 0.123, 0.9 * end)),
         ("poses", (0.0, end, 301)),
     )
-    assert [x.code for x in answers] == [0] * 6
-    told, rows, few, poses = answers[2].out, answers[3].out.reshape(-1, WIDE), answers[4].out, answers[5].out
+    assert [x.code for x in answers] == [0] * 7
+    told, rows, few, poses = answers[3].out, answers[4].out.reshape(-1, WIDE), answers[5].out, answers[6].out
     assert told[1] == native.status
     np.testing.assert_array_equal(rows[:, 0], t)
     off = np.abs(np.column_stack([rows[:, 1] - native.theta, rows[:, 2:5] - native.w])).max()
@@ -227,6 +228,54 @@ def test_flights_impacts_and_lying_agree_within_the_error_that_they_state(ask, w
     np.testing.assert_array_equal(few[:, 14], there.phase)
     whole = rows[:, 13] + rows[:, 15]
     assert np.ptp(whole) < 1e-8 * np.abs(whole).max()
+
+
+ROLLS_DOWN = sc.State(HALF, 0.1, 0.0, 0.4)
+SLOPES = {
+    "rolls": ("disk", sc.State(1.2, 0.5, 0.0, 1.5), "rolling", 0, ENDLESS, None, (0, 0.0), NONE),
+    "slides on ice": ("cylinder", sc.State(1.35, 1.0, 0.1, 2.0), "smooth", 1, ENDLESS, None, (0, 0.0), NONE),
+    "slips": ("cylinder", sc.State(1.35, 1.0, 0.1, 2.0, slip=(0.3, -0.1)), sc.Coulomb(0.5), 2, 0.5, None, (0, 0.0), 0.5),
+    "is wet": ("rounded", sc.State(1.2, 0.4, 0.0, 1.0, slip=(0.2, 0.1)), sc.Viscous(0.4), 3, 0.4, None, (0, 0.0), 0.5),
+    "loses": ("disk", sc.State(1.2, 0.5, 0.0, 1.5), "rolling", 0, ENDLESS, sc.loss.RollingResistance(2e-3), (2, 2e-3), NONE),
+    "hops": ("pipe", sc.flicked(TUBE, w1=3.0, launch=3.0), sc.Coulomb(0.3), 2, 0.3, None, (0, 0.0), 0.5),
+    "lies": ("cylinder", ROLLS_DOWN, sc.Coulomb(0.6), 2, 0.6, None, (0, 0.0), 0.5),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("which", SLOPES)
+def test_motions_on_a_slope_agree_within_the_error_that_they_state(ask, which):
+    name, state, contact, code, mu, loss, losses, bounce = SLOPES[which]
+    given, body = BODIES[name]
+    slope = 0.1, -1.2
+    how = {"contact": contact, "losses": loss, "table": sc.Table(slope[0], phi0=slope[1]), "want": WANT}
+    how |= {} if np.isnan(bounce) else {"restitution": bounce}
+    native = sc.roll(body, state, TIMES, **how)
+    slip = (0.0, 0.0) if state.slip is None else state.slip
+    start = (state.theta, state.w1, state.w2, state.w3, *slip)
+    told, rows, few = compared(ask, given, start, code, mu, native, losses=losses, bounce=bounce, slope=slope)
+    assert told[0] == 1.0 and np.ptp(native.contact_point, axis=0).max() > 1.0
+    # a time between two rows is computed from the row before it, with its heading and from its place
+    there = sc.roll(body, state, few[:, 0], t0=0.0, **how)
+    assert np.abs(few[:, 1] - there.theta).max() <= 2 * told[8] + there.error
+    turned = (few[:, 5:7] - np.column_stack([there.phi, there.psi]) + np.pi) % (2 * np.pi) - np.pi
+    off = np.column_stack([turned, few[:, 7:9] - there.contact_point])
+    assert np.abs(off).max() <= 2 * told[9] + there.pose_error
+    np.testing.assert_allclose(rows[:, 13], native.energy, rtol=0, atol=1e3 * (told[8] + native.error))
+    whole = rows[:, 13] + rows[:, 15]
+    assert np.ptp(whole) < 1e-8 * max(1.0, np.abs(whole).max())
+
+
+def test_a_slope_needs_friction_in_the_core_and_no_patch_and_stays_until_it_is_set_again(ask):
+    given, start = BODIES["cylinder"][0], (1.3, *STEADY[1:], 0.0, 0.0, 0.0, ENDLESS, 0.0, 9.0, 9, NONE)
+    patch = (*start[:6], 2.0, 0.3, 0.1, 9.0, 9, NONE)
+    asked = [given, ("slope", (0.1, 0.5)), ("start", start), ("start", patch), ("slope", (2.0, 0.0)), ("start", start),
+             ("slope", (0.0, 0.0)), ("start", start)]  # fmt: skip
+    _, _, tilted, on_patch, _, upright, _, level = ask(*asked)
+    assert [x.code for x in (tilted, on_patch, upright, level)] == [0, 1, 1, 0]
+    assert on_patch.words[0] == upright.words[0] == "slope" and "patch" in on_patch.words[1]
+    assert tilted.out[0] == 1.0 and level.out[0] == 0.0
+    *_, refused = core.ask((COMMITTED / "core.wasm.gz").read_bytes(), asked[:3])
+    assert refused.code == 12
 
 
 CUP = sc.Body.frustum(0.7, 1.0, 2.0)
@@ -365,7 +414,7 @@ def test_a_refusal_is_a_code_with_a_meaning(ask, why):
 
 CALLS = {
     "tube": 3, "body": 5, "frustum": 3, "critical": 2, "map": 8, "curves": 5, "at_rest": 1, "by_rate": 1, "circular": 2,
-    "losses": 2, "start": 12, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
+    "losses": 2, "slope": 2, "start": 12, "follow": 3, "poses": 3, "phases": 0, "flick": 4, "thrown": 2, "rattleback": 8,
 }  # fmt: skip
 
 

@@ -46,6 +46,7 @@ exports! {
     by_rate(rate);
     circular(theta, precession);
     losses(law, coefficient);
+    slope(slope, heading);
     start(theta, w1, w2, w3, u_h, u_2, table, mu, patch, t, n, restitution);
     follow(n, t0, t1);
     poses(t0, t1, n);

@@ -28,7 +28,7 @@ pub use refusal::Refusal;
 use spincyl::Body;
 use spincyl::loss::Losses;
 
-/// The current body, its losses and its motion, and the last answer.
+/// The current body, its losses, its table and its motion, and the last answer.
 #[derive(Debug, Default)]
 pub struct Desk {
     /// The numbers of the last answer.
@@ -39,6 +39,8 @@ pub struct Desk {
     pub words: String,
     body: Option<Body>,
     losses: Losses,
+    /// The slope of the table, and the direction of the first lean from downhill.
+    slope: [f64; 2],
     motion: Option<Kept>,
 }
 

@@ -81,6 +81,12 @@ impl Desk {
         Ok(())
     }
 
+    /// Sets the slope of the table, and the direction in which the axis leans at first, from downhill.
+    pub fn slope(&mut self, [slope, heading]: [f64; 2]) -> Answer {
+        (self.slope, self.motion) = ([slope, heading], None);
+        Ok(())
+    }
+
     /// Begins a motion from theta, w, slip, the table (0 rolling, 1 smooth, 2 Coulomb, 3 viscous) with its mu
     /// or c, the radius of the patch of dry friction, the last time, the number of rows of a motion that is integrated,
     /// and the coefficient of restitution, with NaN for a motion that ends where the body leaves the table.
@@ -104,7 +110,7 @@ impl Desk {
         let restitution = (!e.is_nan()).then_some(e);
         let table = kind.with([mu, mu, patch]);
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), table, t, n, restitution };
-        if kind.rubs() || !self.losses.is_none() || restitution.is_some() {
+        if kind.rubs() || !self.losses.is_none() || restitution.is_some() || self.slope[0] != 0.0 {
             #[cfg(feature = "friction")]
             return self.walk(&wish);
             #[cfg(not(feature = "friction"))]

@@ -2,7 +2,8 @@
 //!
 //! The motion is integrated once, and its rows are kept; any other time is reached from the last row before it. The
 //! pose of a motion that starts with a row is turned and moved to the pose of this row. With a restitution the motion
-//! goes on in the air and on both rims, and its rows are told from the rim that the library tells them from.
+//! goes on in the air and on both rims, and its rows are told from the rim that the library tells them from. On a slope a
+//! motion that starts with a row has the heading and the place of this row.
 
 use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
@@ -37,9 +38,10 @@ impl Desk {
     pub(crate) fn walk(&mut self, wish: &Wish) -> Answer {
         let mut ask = Ask::on(wish.table);
         (ask.losses, ask.method, ask.pose, ask.force) = (self.losses, Method::Tolerance(TOL), true, true);
-        ask.restitution = wish.restitution;
         let &Wish { body, start: (y, slip), t, n, .. } = wish;
-        let start = Start::from(y).with_slip(slip);
+        let [slope, heading] = self.slope;
+        (ask.restitution, ask.slope) = (wish.restitution, slope);
+        let start = Start::from(y).with_slip(slip).with_heading(if slope == 0.0 { 0.0 } else { heading });
         let motion = follow(&body, &start, &times(0.0, t, n.max(2)).collect::<Vec<_>>(), &ask)?;
         let Some(path) = &motion.path else { return Err(Refusal::Work) };
         let (code, time) = told(motion.event);
@@ -92,7 +94,11 @@ impl Walked {
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
             let aloft = (near.kind == Kind::Flying).then_some([near.pose.height, near.lift]);
-            let start = Start::from(near.y).with_slip(near.slip).with_aloft(aloft);
+            let mut start = Start::from(near.y).with_slip(near.slip).with_aloft(aloft);
+            if self.ask.slope != 0.0 {
+                let at = near.pose.contact_point;
+                start = start.with_heading(near.pose.phi.rest).with_place([at.x, at.y]);
+            }
             // A motion can pass through a row from which no motion can be started.
             if let Ok(motion) = follow(&self.body, &start, &since, &self.ask) {
                 return Ok(self.read(&motion, Some(near)));
@@ -100,6 +106,37 @@ impl Walked {
         }
         let motion = follow(&self.body, &self.start, &wanted, &self.ask)?;
         Ok(self.read(&motion, None))
+    }
+
+    /// What the energy has on a slope beside that on a level table.
+    fn energy_of_fall(&self, body: &Body, row: &Row) -> f64 {
+        let (sin, cos) = self.ask.slope.sin_cos();
+        let centre = row.pose.centre(body, &row.y);
+        // On ice the centre has also gained speed.
+        let falls = if self.ask.table == Table::Smooth { sin * row.t } else { 0.0 };
+        0.5 * falls * falls - (1.0 - cos) * centre.z - sin * centre.x
+    }
+
+    /// The pose that follows the pose of a row by the change `by` in the time `t`; about the axis of a body that has
+    /// `turned` over since then the first pose counts backwards.
+    fn moved(&self, from: &Row, (t, by): (f64, &Pose), turned: bool) -> Pose {
+        let Pose { phi, psi: Angle { turns, rest }, contact_point, .. } = from.pose;
+        let psi = if turned { Angle { turns: -turns, rest: -rest } } else { from.pose.psi };
+        let psi = added(psi, by.psi);
+        if self.ask.slope != 0.0 {
+            // It has begun with this phi, at this place. On ice the centre was already falling.
+            let phi = Angle { turns: phi.turns + by.phi.turns, rest: by.phi.rest };
+            let mut at = by.contact_point;
+            if self.ask.table == Table::Smooth {
+                at.x += self.ask.slope.sin() * from.t * t;
+            }
+            return Pose { phi, psi, contact_point: at, ..*by };
+        }
+        let (sin, cos) = phi.rest.sin_cos();
+        let (mut at, to) = (contact_point, by.contact_point);
+        at.x += to.x * cos - to.y * sin;
+        at.y += to.x * sin + to.y * cos;
+        Pose { phi: added(phi, by.phi), psi, contact_point: at, height: by.height }
     }
 
     /// The rows of an integrated path, which starts at the start of the motion or at the row `from`.
@@ -125,18 +162,14 @@ impl Walked {
             };
             let row =
                 Row { t, y, pose: *pose, force: *force, slip, kind: path.kinds[i], energy, lost, lift, rim };
-            from.map_or(row, |from| {
+            let row = from.map_or(row, |from| {
                 // Two equal rims are told from the rim at the start, more from the lower end of the body.
                 let turned = !self.is_uneven() && rim == 1;
                 let rim = if self.is_uneven() { rim } else { from.rim ^ rim };
-                Row {
-                    t: from.t + t,
-                    pose: moved(&from.pose, pose, turned),
-                    lost: from.lost + lost,
-                    rim,
-                    ..row
-                }
-            })
+                let pose = self.moved(from, (t, pose), turned);
+                Row { t: from.t + t, pose, lost: from.lost + lost, rim, ..row }
+            });
+            Row { energy: row.energy + self.energy_of_fall(&body, &row), ..row }
         };
         poses.zip(forces).enumerate().map(row).collect()
     }
@@ -152,19 +185,9 @@ fn follow(body: &Body, start: &Start, times: &[f64], ask: &Ask) -> Result<Motion
     if motion.is_interrupted() { Err(Refusal::Work) } else { Ok(motion) }
 }
 
-/// The pose that follows the pose `from` by the change `by`; about the axis of a body that has `turned` over since then the
-/// first pose counts backwards.
-fn moved(from: &Pose, by: &Pose, turned: bool) -> Pose {
-    let added = |a: Angle, b: Angle| {
-        let (sum, whole) = (a.rest + b.rest, a.turns + b.turns);
-        let turns = (sum / TAU).round();
-        Angle { turns: whole + turns, rest: sum - turns * TAU }
-    };
-    let Angle { turns, rest } = from.psi;
-    let psi = if turned { Angle { turns: -turns, rest: -rest } } else { from.psi };
-    let (sin, cos) = from.phi.rest.sin_cos();
-    let (mut at, to) = (from.contact_point, by.contact_point);
-    at.x += to.x * cos - to.y * sin;
-    at.y += to.x * sin + to.y * cos;
-    Pose { phi: added(from.phi, by.phi), psi: added(psi, by.psi), contact_point: at, height: by.height }
+/// The sum of two angles.
+fn added(a: Angle, b: Angle) -> Angle {
+    let (sum, whole) = (a.rest + b.rest, a.turns + b.turns);
+    let turns = (sum / TAU).round();
+    Angle { turns: whole + turns, rest: sum - turns * TAU }
 }

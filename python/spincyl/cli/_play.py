@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from dataclasses import replace
 from pathlib import Path
 
-from spincyl import play
+from spincyl import Table, play
 from spincyl._contact import AnyContact
 from spincyl._input.units import angle, part
 from spincyl._scale import Scale
@@ -30,6 +30,7 @@ spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
 spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
 spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --t 400 -o whirr.html
 spincyl play --ell 0.5 --theta 1.2 --contact coulomb --mu 0.3 --restitution 0.5 -o hops.html
+spincyl play --ell 2.5 --slope 5deg -o slope.html
 spincyl play --theta 80deg --contact coulomb --mu 0.3 --patch 0.01 -o dry.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
@@ -58,6 +59,9 @@ def play_options(sub: ArgumentParser) -> None:
     bounce = "coefficient of restitution, 0 to 1, with friction (default: the motion ends at lift-off)"
     how.add_argument("--restitution", type=float, metavar="BOUNCE", help=bounce)
     option(how, "--loss")
+    how.add_argument(
+        "--slope", type=angle, metavar="ANGLE", help="slope of the table, 0 to 45deg (default: level)"
+    )
     how.add_argument(
         "--t",
         type=float,
@@ -97,6 +101,7 @@ def run(args: Namespace) -> None:
         contact=_table(args, scale),
         losses=losses_of(args, scale),
         restitution=args.restitution,
+        table=None if args.slope is None else Table(args.slope),
         t=args.t,
         slow=args.slow,
         friction=not args.lean,

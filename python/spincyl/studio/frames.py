@@ -18,7 +18,7 @@ from spincyl.studio.aloft import goes_up
 from spincyl.studio.arrows import Tip, drawings
 from spincyl.studio.artists import photo_of, surface_of
 from spincyl.studio.exposure import Shutter
-from spincyl.studio.look import Camera, Look, camera, held, opened
+from spincyl.studio.look import Camera, Look, camera, held, opened, tilts
 from spincyl.studio.painted import Painted, Piece, ordered, painted, pieces, turned
 from spincyl.studio.poses import span
 from spincyl.studio.shadow import LAMPS, MANY, Caster, caster, lamps, layer, outline, shadows
@@ -123,6 +123,7 @@ class _Stage:
             )
         self.half = half
         self.sizes = {name: max(p.sizes[name] for p in panels) for name in panels[0].sizes}
+        lies = tilts([m._asked.slope for m in what.motions])
         columns, rows = _columns(len(panels), width / height)
         self.axes: list[Any] = []
         self.moving: list[_Moving] = []
@@ -136,7 +137,7 @@ class _Stage:
             ax: Any = self.figure.add_axes(place)
             ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
             ax.axis("off")
-            seen_by = camera(panel.middle, reach, half, aspect, look.above or self.exposes)
+            seen_by = camera(panel.middle, reach, half, aspect, look.above or self.exposes, lies[k])
             self.cameras.append(seen_by)
             self.bodies.append(self._made(panel.motion.body, seen_by, reach))
             around: dict[str, Any] = {"color": self.colour["ink"], "transform": ax.transAxes, "zorder": 9}
@@ -189,10 +190,12 @@ class _Stage:
         if not self.vector:
             self._tint(ax, camera, far, aspect)
         ax.set(xlim=(-aspect, aspect), ylim=(-1, 1))
-        ax.grid_lines = LineCollection([], linewidths=0.6, zorder=2, animated=self.follows)
+        ax.turning = self.panels[index].motion._asked.turning
+        ax.moves = self.follows or ax.turning != 0
+        ax.grid_lines = LineCollection([], linewidths=0.6, zorder=2, animated=ax.moves)
         ax.add_collection(ax.grid_lines, autolim=False)
         ax.cell, ax.far = cell, far
-        self._rule(ax, camera)
+        self._rule(ax, camera, 0.0)
 
     def _tint(self, ax: Any, camera: Camera, far: float, aspect: float) -> None:
         """Draw the colour of the table, which fades into that of the paper."""
@@ -230,18 +233,21 @@ class _Stage:
         clock.set_animated(True)
         return _Moving(rolled, slipped, shades, surface_of(ax, self.vector), photo, clock, [])
 
-    def _rule(self, ax: Any, camera: Camera) -> None:
-        """Set the lines of the table that this camera sees."""
+    def _rule(self, ax: Any, camera: Camera, t: float) -> None:
+        """Set the lines of the table that this camera sees; they turn with it about its middle."""
         steps = np.arange(-math.ceil(ax.far / ax.cell), math.ceil(ax.far / ax.cell) + 1)
         pieces = np.linspace(-ax.far, ax.far, 25 if self.vector else 81)
         sets = []
+        c, s = math.cos(ax.turning * t), math.sin(ax.turning * t)
+        turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        at = turn @ camera.at
         for axis in (0, 1):
-            across = ax.cell * (np.round(camera.at[axis] / ax.cell) + steps)
-            along = camera.at[1 - axis] + pieces
+            across = ax.cell * (np.round(at[axis] / ax.cell) + steps)
+            along = at[1 - axis] + pieces
             places = np.zeros((across.size, along.size, 3))
             places[..., axis], places[..., 1 - axis] = across[:, None], along
             sets.append(np.stack([places[:, :-1], places[:, 1:]], 2).reshape(-1, 2, 3))
-        segments = np.concatenate(sets)
+        segments = np.concatenate(sets) @ turn
         middle = segments.mean(axis=1) - camera.at
         there = 0.8 * _fades(np.linalg.norm(middle[:, :2], axis=-1) / ax.far)
         ahead = (camera.far - (segments - camera.at) @ camera.rows[2] > 0.05 * camera.far).all(axis=1)
@@ -257,14 +263,17 @@ class _Stage:
         note = self._note(index, t)
         told = f"{note[0]}{self._clock(note[1])}" if note else self._clock(t)
         spin = "" if panel.spin is None else "\n" + self._spin(float(panel.spin[k]))
-        clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{spin}{self._open}")
+        slope = panel.motion._asked.slope
+        tilted = f"\nslope {math.degrees(slope):.1f}°".replace("-", "\N{MINUS SIGN}") if slope else ""
+        clock.set_text(f"{told}\nθ = {math.degrees(panel.theta[k]):.1f}°{tilted}{spin}{self._open}")
         if self.exposes:
             photo.set_data(self._developed(index, t))
             artists = [photo, *ax.texts]
         else:
             if self.follows:
                 camera = camera._replace(at=np.array([*panel.centre[k, :2], panel.middle[2]]))
-                self._rule(ax, camera)
+            if ax.moves:
+                self._rule(ax, camera, t)
             if "path" in self.what.drawn:
                 count = int(np.searchsorted(panel.along, t, "right"))
                 way = np.where(panel.gaps[:count, np.newaxis], np.nan, camera(panel.path[:count]))
@@ -277,7 +286,7 @@ class _Stage:
             found, tips = self._besides(panel, k, camera)
             surface.put([*self._body(index, k, camera, note is not None), *found])
             self._named(ax, words, tips)
-            artists = [*([ax.grid_lines] if self.follows else []), rolled, slipped, *shades, surface, clock]
+            artists = [*([ax.grid_lines] if ax.moves else []), rolled, slipped, *shades, surface, clock]
         if not self.vector:
             for artist in (*artists, *words):
                 ax.draw_artist(artist)

@@ -67,9 +67,10 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
         meshes.append({"name": label or "body", "primitives": primitives})
         t, centre, orientation = _frames(m)
         reach = np.ptp(centre[:, 0]) / 2 + farthest(m.body)
+        slope, aside = m._asked.slope, 0.0
         if len(motions) > 1:
             aside = beside + reach - (centre[:, 0].min() + centre[:, 0].max()) / 2
-            centre = centre + np.array([aside, 0.0, 0.0])
+            centre = centre + np.array([0.0 if slope else aside, 0.0, 0.0])
             beside += 2 * reach + 1
         nodes.append(
             {
@@ -79,6 +80,11 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
                 "rotation": orientation[0].tolist(),
             }
         )
+        body = len(nodes) - 1
+        if slope:  # the table is turned about y: x points downhill
+            turned = [0.0, float(np.sin(slope / 2)), 0.0, float(np.cos(slope / 2))]
+            place = [float(aside), 0.0, 0.0]
+            nodes.append({"name": "slope", "translation": place, "rotation": turned, "children": [body]})
         nodes[0]["children"].append(len(nodes) - 1)
         seconds = ((t - t[0]) * second).astype("<f4")
         later = np.append(True, np.diff(seconds) > 0)  # in single precision, close times may coincide
@@ -88,7 +94,7 @@ def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, u
             samplers.append(
                 {"input": times, "output": accessor(values, kind, _FLOAT), "interpolation": "LINEAR"}
             )
-            channels.append({"sampler": len(samplers) - 1, "target": {"node": len(nodes) - 1, "path": path}})
+            channels.append({"sampler": len(samplers) - 1, "target": {"node": body, "path": path}})
 
     binary = b"".join(chunks)
     tree = {

@@ -10,6 +10,7 @@ from spincyl._input.numbers import Floats, flag, known_words, number
 
 _AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
 _SPREAD = math.tan(0.3)  # tangent of half the angle of view
+_LEAST = 0.03  # angle between a table and the least steep view of it
 _FLAT = 1e6  # distance of a camera above the table, over half the height that it shows
 #: Lines and vectors that can be drawn with the body.
 DRAWN = ("path", "omega", "momentum", "velocity", "force", "axis")
@@ -56,15 +57,54 @@ class Camera(NamedTuple):
         return found
 
 
-def camera(at: Floats, reach: float, half: float, aspect: float, above: bool) -> Camera:
-    """The first camera of the page, or one that looks straight down, with x to the right and y upwards."""
+class Tilt(NamedTuple):
+    """The slope of a table, in radians, and what all cameras of a view need to know of its slopes."""
+
+    slope: float = 0.0
+    steepest: float = 0.0
+    mirrored: bool = False  #: whether x of the first table points uphill
+
+
+_LEVEL = Tilt()
+
+
+def tilts(slopes: list[float]) -> list[Tilt]:
+    """The tilts of the tables of a view with these slopes: all cameras are equally far, on one side."""
+    return [Tilt(slope, max(map(abs, slopes)), slopes[0] < 0) for slope in slopes]
+
+
+def camera(at: Floats, reach: float, half: float, aspect: float, above: bool, tilt: Tilt = _LEVEL) -> Camera:
+    """The first camera of the page, or one that looks straight down, with x to the right and y upwards.
+
+    The first one sees a table with a slope as it lies: its directions are turned about y, from the room to
+    the table. The other one looks along the normal of the table.
+    """
     azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (_AZIMUTH, _ELEVATION)
+    slope = tilt.slope
+    if not above and tilt.steepest:
+        azimuth = -math.pi - azimuth if tilt.mirrored else azimuth
+        # above the table
+        elevation = max(elevation, _LEAST + math.atan2(-math.cos(azimuth) * math.sin(slope), math.cos(slope)))
+        half += _rise(reach, tilt.steepest)
     ce, se = math.cos(elevation), math.sin(elevation)
     ca, sa = math.cos(azimuth), math.sin(azimuth)
     back, right = np.array([ce * ca, ce * sa, se]), np.array([-sa, ca, 0.0])
     high = max(1.08 * reach if above else half, 1.12 * reach / aspect)
     far = _FLAT * high if above else high / _SPREAD
-    return Camera(at, far, high, np.stack([right, np.cross(back, right), back]))
+    rows = np.stack([right, np.cross(back, right), back])
+    return Camera(at, far, high, rows if above or not slope else rows @ _to_room(slope))
+
+
+def _to_room(slope: float) -> Floats:
+    """The rotation from the axes of a table with this slope to those of the room, with z up."""
+    c, s = math.cos(slope), math.sin(slope)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def _rise(reach: float, slope: float) -> float:
+    """By how much the half height that the camera has to show is larger on a slope."""
+    seen_at = min(_ELEVATION + abs(slope), math.pi / 2)
+    return 1.06 * reach * (math.sin(seen_at) - math.sin(_ELEVATION))
 
 
 def held(reach: float, top: float) -> float:

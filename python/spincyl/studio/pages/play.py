@@ -15,19 +15,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from spincyl._body import Body
-from spincyl._contact import AnyContact, check_contact_scale, contact_in_words, has_patch
+from spincyl._contact import AnyContact, contact_in_words
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, writing_whole
 from spincyl._input.numbers import flag, in_range, instance_of, si
-from spincyl._loss import Loss, checked_law, command_line_name
+from spincyl._loss import Loss, command_line_name
 from spincyl._motion import Motion
 from spincyl._roll import roll
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl._table import Table
 from spincyl.loss import KINDS
 from spincyl.studio.cards import drawing
 from spincyl.studio.pages.deflated import packed
+from spincyl.studio.pages.fits import check_bounces, check_circles, check_contents, check_table
 from spincyl.studio.pages.joined import filled, frame, line, script, style
 from spincyl.studio.pages.words import (
     body_of,
@@ -35,18 +37,20 @@ from spincyl.studio.pages.words import (
     paper_tube,
     restitution_of,
     scenes,
+    slope_of,
     state_of,
     table_of,
     words_of_body,
     words_of_loss,
     words_of_restitution,
+    words_of_slope,
     words_of_state,
     words_of_table,
 )
 
 if TYPE_CHECKING:
     #: Not defined at run time: completion by jedi fails for classes with a property of a Literal type.
-    from spincyl._contact import AnyContact as Table
+    from spincyl._contact import AnyContact as Contact
 
 #: The scripts in their order; the renderer is shared with the recorded page.
 _SCRIPTS = (
@@ -60,6 +64,7 @@ _SCRIPTS = (
     "page.context.js",
     "page.gl.js",
     "page.draw.js",
+    "page.slope.js",
     "page.exposure.js",
     "page.eye.js",
     "play.map.js",
@@ -127,7 +132,7 @@ class Play:
     @body.setter
     def body(self, body: Body) -> None:
         told = words_of_body(body)
-        _check_circles(told, self.contact)
+        check_circles(told, self.contact)
         self._set(told, gone=(*_BODY, "w", "precession", "stone"))
         self._body = body
 
@@ -160,15 +165,15 @@ class Play:
         self._set(words_of_state(state) | {"kick": 0.0}, gone=("precession",))
 
     @property
-    def contact(self) -> "Table":
+    def contact(self) -> "Contact":
         """Contact with the table, as in `roll`; can be set."""
         return table_of(self._told)
 
     @contact.setter
     def contact(self, contact: AnyContact) -> None:
-        _check_contents(self.friction, contact, None, None if self._told.get("stone") else self.body)
-        _check_bounces(self.friction, contact, self.restitution)
-        _check_circles(self._told, contact)
+        check_contents(self.friction, contact, None, None if self._told.get("stone") else self.body)
+        check_bounces(self.friction, contact, self.restitution)
+        check_circles(self._told, contact)
         self._set(words_of_table(contact), gone=("patch",))
 
     @property
@@ -179,8 +184,18 @@ class Play:
 
     @restitution.setter
     def restitution(self, restitution: float | None) -> None:
-        _check_bounces(self.friction, self.contact, restitution)
+        check_bounces(self.friction, self.contact, restitution)
         self._set(words_of_restitution(restitution), gone=("restitution",))
+
+    @property
+    def table(self) -> Table | None:
+        """Table with a slope of up to 45 degrees, as in `roll`, or None for a level one; can be set."""
+        return slope_of(self._told)
+
+    @table.setter
+    def table(self, table: Table | None) -> None:
+        check_table(self.friction, table)
+        self._set(words_of_slope(table), gone=("slope", "phi0"))
 
     @property
     def losses(self) -> Loss | None:
@@ -189,7 +204,7 @@ class Play:
 
     @losses.setter
     def losses(self, losses: Loss | None) -> None:
-        _check_contents(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
+        check_contents(self.friction, "rolling", losses, None if self._told.get("stone") else self.body)
         self._set(words_of_loss(losses) or {"law": "none"})
 
     @property
@@ -202,7 +217,7 @@ class Play:
             return _rattleback_motion(self._told)
         body = self.body
         t = np.linspace(0.0, float(self._told["until"]) * body._second, 2001)
-        how: dict[str, Any] = {"contact": self.contact, "losses": self.losses}
+        how: dict[str, Any] = {"contact": self.contact, "losses": self.losses, "table": self.table}
         bounce = restitution_of(self._told)
         return roll(body, self.state, t, want=("pose", "force"), restitution=bounce, **how)
 
@@ -293,6 +308,7 @@ def play(
     contact: AnyContact = "rolling",
     restitution: float | None = None,
     losses: Loss | None = None,
+    table: Table | None = None,
     t: float | None = None,
     slow: float = 20.0,
     friction: bool = True,
@@ -323,9 +339,12 @@ def play(
         the table or its other rim lands.
     losses : Loss, optional
         One law of `spincyl.loss`, which takes energy from the body.
+    table : Table, optional
+        Table with a slope from 0 to 45 degrees, and `phi0`, the direction to which the axis leans at first.
+        The motion starts at the place (0, 0). Default: a level table.
     t : float
-        Last time of a motion with friction or losses: 1 to 2000 sqrt(R/g), for a measured body in seconds.
-        Default: 60 sqrt(R/g). Such motions are integrated by steps.
+        Last time of a motion with friction or losses, or on a slope: 1 to 2000 sqrt(R/g), for a measured
+        body in seconds. Default: 60 sqrt(R/g). Such motions are integrated by steps.
     slow : float
         Factor of slow motion, 1 to 1000. A body without a size is shown as if R = 1 cm.
     friction : bool
@@ -379,9 +398,11 @@ def play(
         told |= {"until": in_range("t", si("t", t, "second"), unit, 2000 * unit) / unit}
     told |= {"slow": in_range("slow", slow, 1, 1000)}
     told |= words_of_table(contact) | words_of_restitution(restitution) | words_of_loss(losses)
-    _check_circles(told, contact)
-    _check_contents(friction, contact, losses, body)
-    _check_bounces(friction, contact, restitution)
+    told |= words_of_slope(table)
+    check_circles(told, contact)
+    check_contents(friction, contact, losses, body)
+    check_bounces(friction, contact, restitution)
+    check_table(friction, table)
     return Play(told, line("title", title), friction, body)
 
 
@@ -393,35 +414,6 @@ def _rattleback_motion(words: dict[str, Any]) -> EllipsoidMotion:
     push, unit = np.radians(0.02), instance_of("scale", stone.scale, Scale).seconds(1.0)
     start = stone.spinning(words["spin"] * unit, pitch=push, roll=push)
     return roll(stone, start, np.linspace(0.0, 20.0, 2401), want="pose")
-
-
-def _check_contents(
-    friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None
-) -> None:
-    """Check that the page includes friction and losses if needed, and that numbers have a fitting unit."""
-    if losses is not None:
-        checked_law(losses, body)
-    if body is not None:
-        check_contact_scale(contact, body.scale)
-    if not friction and (losses is not None or not isinstance(contact, str)):
-        raise ValueError("friction = False: a law of friction or losses need friction=True")
-
-
-def _check_bounces(friction: bool, contact: AnyContact, restitution: float | None) -> None:
-    """Raise ValueError for a restitution on a page without friction, or with a contact patch."""
-    if not friction and restitution is not None:
-        raise ValueError("friction = False: a restitution needs friction=True")
-    if restitution is not None and has_patch(contact):
-        raise ValueError(
-            f"restitution = {restitution}: expected None, since the contact has a patch, {contact!r}"
-        )
-
-
-def _check_circles(told: dict[str, Any], contact: AnyContact) -> None:
-    """Raise ValueError for a frustum whose contact has no law of friction, or has a patch."""
-    if "height" in told and (isinstance(contact, str) or has_patch(contact)):
-        why = "a page moves a frustum with friction at a point: give sc.Coulomb(mu) or sc.Viscous(c)"
-        raise ValueError(f"contact = {contact!r}: {why}")
 
 
 def _json(what: Any) -> str:

@@ -23,7 +23,8 @@ from spincyl.studio.shape import Letter, marks
 
 #: The style sheets and scripts of the page, in their order. "rounded" is used if a body has a fillet or is a
 #: stone, "stone" and "spin" if there is a stone, "forces" and "slip" if a contact has a law of friction, and
-#: these and "aloft" if a body leaves the table or lies on both rims; "circles" for bodies of several circles.
+#: these and "aloft" if a body leaves the table or lies on both rims; "circles" for bodies of several circles;
+#: "slope" if a table is tilted or turns.
 _STYLES = ("page.css", "page.slip.css", "page.aloft.css")
 _SCRIPTS = tuple(
     f"page.{x}.js"
@@ -41,6 +42,7 @@ _SCRIPTS = tuple(
         "context",
         "gl",
         "draw",
+        "slope",
         "recorded",
         "exposure",
         "eye",
@@ -91,6 +93,7 @@ class View:
         there = {"rounded": rounded, "forces": self._slips, "slip": self._slips}
         there |= dict.fromkeys(("stone", "spin"), any(not m._nods for m in self.motions))
         there["aloft"], there["circles"] = any(map(goes_up, self.motions)), circles
+        there["slope"] = any(m._asked.slope or m._asked.turning for m in self.motions)
         useless = [word for word in there if not there[word]]
         styles, scripts = (
             [x for x in names if not any(f".{word}." in x for word in useless)]
@@ -172,7 +175,7 @@ class View:
         exposure in it consists of pixels, except for the text.
 
         An animated scene is in metres and seconds. If the view has no scale, R is one metre and sqrt(R/g) one
-        second. The bodies stand side by side.
+        second. The bodies stand side by side, each on its slope.
         """
         path = path_of("path", path)
         suffix = path.suffix.lower()
@@ -210,7 +213,9 @@ class View:
             shape = turned(m.body, self.upper)
             if shape not in shapes:
                 shapes.append(shape)
-            motions.append({"label": label, "shape": shapes.index(shape)} | edges(m) | poses)
+            table = {"slope": m._asked.slope, "turning": m._asked.turning}
+            lies = {name: x for name, x in table.items() if x}
+            motions.append({"label": label, "shape": shapes.index(shape)} | edges(m) | poses | lies)
         return (
             {
                 "unit": 1.0 if self.scale is None else self.scale.seconds(1.0),
@@ -354,6 +359,10 @@ def view(
 
     For a body that flies (`roll` with a `restitution`), the clock shows the height of the lowest point. While
     the body is in the air, no path and no force are drawn.
+
+    A table with a slope is drawn as it lies: gravity is vertical in the picture, and the clock shows the
+    slope. From above, the camera looks along the normal of the table. The lines of a table that turns turn
+    with it.
 
     For a stone the clock also shows the spin, and the time at which the spin reverses. A reversal counts when
     the spin has passed zero and reached a tenth of its first value in the other direction. A stone with an

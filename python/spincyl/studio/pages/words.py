@@ -14,11 +14,14 @@ from spincyl._loss import Loss, command_line_name, marked_as_si
 from spincyl._measured import measured
 from spincyl._scale import Scale
 from spincyl._state import State
+from spincyl._table import Table
 from spincyl._throw import pressed, thrown
 from spincyl.loss import KINDS
 from spincyl.studio import parts_shape
 from spincyl.studio.surface import SHADE
 
+#: The greatest slope of a table on the page.
+STEEP = np.pi / 4
 #: Least and greatest height of a frustum on the page, in units of its larger radius.
 TALL = 0.05, 20.0
 
@@ -115,6 +118,20 @@ def words_of_restitution(restitution: float | None) -> dict[str, Any]:
     return {} if restitution is None else {"restitution": in_range("restitution", restitution, 0, 1)}
 
 
+def words_of_slope(table: Table | None) -> dict[str, Any]:
+    """Words for a slope, and the direction of the first lean; none for a level table."""
+    if table is None:
+        return {}
+    instance_of("table", table, Table)
+    if not is_scalar(table.slope, table.phi0, *table.place):
+        raise ValueError(f"table = {table!r}: expected single numbers, not arrays")
+    if table.turning != 0 or any(x != 0 for x in table.place):
+        raise ValueError(f"table = {table!r}: expected turning = 0 and place = (0, 0), as on the page")
+    slope = in_range("slope", float(table.slope), 0, STEEP, "radians")
+    phi0 = in_range("phi0", float(table.phi0), -np.pi, np.pi, "radians")
+    return {"slope": slope, "phi0": phi0} if slope else {}
+
+
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
     """Words for a loss law: its name on the command line, and its coefficient."""
     if losses is None:
@@ -181,6 +198,12 @@ def restitution_of(words: Mapping[str, Any]) -> float | None:
     if found is None and words.get("height") is not None:
         return 0.0  # a page follows a frustum on both of its circles
     return found if words.get("contact") in ("coulomb", "viscous") else None
+
+
+def slope_of(words: Mapping[str, Any]) -> Table | None:
+    """The table that the words describe; None for a level one."""
+    slope = words.get("slope")
+    return Table(slope, phi0=words.get("phi0") or 0.0) if slope else None
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:

@@ -138,6 +138,9 @@ const LAMPS = Array.from({ length: 6 }, (_, k) => {
 const times4 = (a, b) => b.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + i % 4] * b[4 * (i >> 2) + k], 0));
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
+// replaced where a table turns: the camera and the middle of its lines
+function laid(m, t, view) { return [view, m.at]; }
+
 function draw(m, t, aspect) {
   const paint = paints(), p = moving(m, t);
   m.at = aim(m, p);
@@ -148,9 +151,10 @@ function draw(m, t, aspect) {
   gl.enable(gl.CULL_FACE);
   gl.enable(gl.BLEND);
   gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+  const [lines, middle] = laid(m, t, view);
   gl.useProgram(table.made);
-  gl.uniformMatrix4fv(table.camera, false, view);
-  gl.uniform3fv(table.at, m.at);
+  gl.uniformMatrix4fv(table.camera, false, lines);
+  gl.uniform3fv(table.at, middle);
   gl.uniform1f(table.far, 4 * reach);
   gl.uniform1f(table.cell, reach > 12 ? 5 : 1);
   gl.uniform3fv(table.ground, paint.ground);

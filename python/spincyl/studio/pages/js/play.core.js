@@ -38,5 +38,5 @@ const REFUSED = {
 function refusal(code) {
   if (code !== 1) return REFUSED[code] || "The core has no answer here.";
   const [name, expected] = new TextDecoder().decode(new Uint8Array(core.memory.buffer, core.words(), core.words_len())).split("\n");
-  return `${name} is out of range: ${expected}.`;
+  return name === "slope" && expected.startsWith("0 ") ? `A slope is not computed ${expected.slice(2)}.` : `${name} is out of range: ${expected}.`;
 }

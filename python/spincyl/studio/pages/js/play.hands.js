@@ -13,6 +13,8 @@ const KNOBS = [
   { name: "kick", text: "kick θ′", low: -0.6, high: () => 0.6, ...same, told: x => decimal(x, 3) },
   { name: "precession", text: "centre’s circle", low: -1, high: () => 1, ...same, told: () => Number.isFinite(s.precession) ? decimal(here.circle) + " R" : "at rest" },
   { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
+  { name: "slope", text: "slope", low: 0, high: () => Math.PI / 4, ...same, told: x => x ? degrees(x) : "level" },
+  { name: "phi0", text: "leans to φ", low: -Math.PI, high: () => Math.PI, ...same, told: x => degrees(x, 0) },
   { name: "mu", text: "friction μ", low: 0, high: () => 1, ...same, told: x => decimal(x) },
   { name: "patch", text: "patch", low: -4.2, high: () => Math.log10(0.5), to: x => x < -4 ? 0 : 10 ** x, from: x => x > 0 ? Math.log10(x) : -4.2, told: x => x > 0 ? sized() ? decimal(1e3 * s.radius * x, 3) + " mm" : decimal(x, 4) + " R" : "a point" },
   { name: "c", text: "friction c", low: 0, high: () => 1, ...same, told: x => decimal(x) },
@@ -22,7 +24,7 @@ const KNOBS = [
 ];
 if (!rubs) {
   for (const law of ["coulomb", "viscous"]) delete KNOBS.find(knob => knob.name === "contact").choices[law];
-  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "mu"), 6); // also removes the patch, c, the bounce and the losses, which follow
+  KNOBS.splice(KNOBS.findIndex(knob => knob.name === "slope"), 8); // also removes friction, the bounce and the losses, which follow
   $("flick").hidden = true;
 }
 const form = $("knobs");
@@ -68,6 +70,8 @@ function knobs() {
     if (["bottom", "top", "height"].includes(knob.name)) knob.label.hidden = !isFrustum();
     // a patch belongs to dry friction, and excludes a restitution
     if (knob.name === "patch") knob.label.hidden = s.contact !== "coulomb" || Number.isFinite(s.restitution);
+    // on a level table every direction is the same
+    if (knob.name === "phi0") knob.label.hidden = !s.slope;
     // bounces need a rim and friction
     if (knob.name === "restitution") knob.label.hidden = !rubbing() || s.contact === "coulomb" && s.patch > 0 || !body.circles && body.most !== (body.ell > 0 && body.fillet < 1 ? Math.PI / 2 : Math.PI);
     knob.label.classList.toggle("off", off);
@@ -163,7 +167,7 @@ function flick(hard = 1) {
   const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
   if (code) { $("because").textContent = "A flick needs a body with two ends: " + refusal(code); return; }
   const [theta, ...w] = out, patch = s.contact === "coulomb" ? s.patch : 0;
-  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, patch, c: s.c, restitution: patch > 0 ? NaN : s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss });
+  scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, patch, c: s.c, restitution: patch > 0 ? NaN : s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss, slope: s.slope, phi0: s.phi0 });
 }
 const HARD = 2;
 $("flick").onclick = e => flick(e.shiftKey ? HARD : 1);

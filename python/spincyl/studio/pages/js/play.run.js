@@ -23,6 +23,7 @@ function change(part, more = {}) {
 function solve({ restart, name = "" } = {}) {
   $("preset").value = name; // a state changed by hand is no preset
   const began = performance.now();
+  live.slope = s.stone ? 0 : s.slope;
   begin();
   if (!body.code) dress();
   // a motion without an end continues from the present time; any other starts anew
@@ -92,7 +93,7 @@ function frame(at) {
 }
 // the phase, and in the air the height of the lower rim
 const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + (body.circles ? 0 : Math.min(0, 2 * body.ell * Math.cos(row[1])))); return kind ? `\n${KINDS[kind]}${kind === FLIES ? sized() ? ` ${decimal(100 * high * size(), 1)} cm high` : ` ${decimal(high)} R high` : ""}` : ""; };
-function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${phased(row)}${live.over ? "\n" + ending() : ""}`; }
+function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${sloping(live)}${phased(row)}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
   named(live, p, ARROWS.map(v => without ? null : arrowOf(p, v)), width, height);

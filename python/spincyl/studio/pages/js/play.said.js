@@ -31,6 +31,7 @@ function verdict() {
   const ice = s.contact === "smooth", wet = s.contact === "viscous", over = known() && head.ending > 0 && !lossy() && !unsure(), turning = Number.isFinite(s.precession) && !s.w;
   if (s.w && !s.w.some(Boolean)) return ["Let go at rest", "it does not turn, as it would in a steady state."];
   if (s.w && aloft()) return aloft();
+  if (s.slope) return [`On a slope of ${degrees(s.slope)}`, `it starts ${s.w ? "as it was set free" : here.code ? "at rest" : "as it spins steadily on a level table"}. The map and the other inclinations are those of a level table.`];
   if (s.w) return s.w[3] || s.w[4] ? ["Set free, slipping", slowed()] : ["Set free", "it does not start in a steady state."];
   if (isTube() && s.ell > 0 && s.theta > Math.PI / 2 - 1e-9) return ["On its side", "lying on both rims, every tube has the rate 1."];
   if (s.theta > steep() - 1e-9 && known() && !lasting()) return ["On both ends", "it lies on the table."];
@@ -53,7 +54,10 @@ function details() {
   const d = head.high - head.low < 0.02 ? 3 : 1;
   let least = Infinity, need = 0;
   for (const row of tracked.rows) { if (row[OF_ROW.kind] < FLIES) least = Math.min(least, row[OF_ROW.normal]); need = Math.max(need, row[OF_ROW.demand]); }
-  if (!here.code && !s.w) {
+  if (s.slope && lasting()) {
+    const [from, to] = [0, -1].map(k => placed(tracked.rows.at(k)).centre), [down, across] = [0, 1].map(k => to[k] - from[k]);
+    told.push(`its centre comes ${decimal(Math.abs(down))} R ${down < 0 ? "up" : "down"} and ${decimal(Math.abs(across))} R to the ${across < 0 ? "right" : "left"}`);
+  } else if (!here.code && !s.w) {
     if (Number.isFinite(here.rate)) told.push(`rate ${rated(here.rate)}`);
     else if (sized()) told.push(`goes round ${decimal(hertz(here.precession))} times a second`);
     if (here.symbols < 1e3) told.push(`${decimal(here.symbols, 2)} still symbols`);
@@ -74,7 +78,7 @@ function say(on) {
   const grown = " The least push grows until it decides", ends = !known() ? "" : !lasting() ? ` At the very start ${ending() || "it ends"}. There is no motion to show, so the body stands still.`
     : unsure() ? grown + (head.ending ? `. Here, at about ${at(1)}, ${ending()}.` : ": the last part shows one of many possible motions.")
       : head.ending ? ` At ${at(3)} ${ending()}.` : "";
-  const turns = sized() && !here.code && !s.w && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
+  const turns = sized() && !here.code && !s.w && !s.slope && here.rate > 0 ? ` It turns ${decimal(hertzOf(here.rate))} times a second.` : "";
   $("what").textContent = (on ? `On the ${on === "fold" || on === "ridge" ? on : "line " + on}. ` : "") + what;
   $("because").textContent = why.charAt(0).toUpperCase() + why.slice(1) + turns + ends;
   const wrong = odd.length ? [`not understood in the address: ${odd.join(", ")}`] : [];
@@ -83,7 +87,7 @@ function say(on) {
   const button = (textContent, title, onclick) => Object.assign(document.createElement("button"), { type: "button", textContent, title, onclick });
   $("others").replaceChildren(...ghosts.map((theta, i) => button(`also at ${others[i]}`, "the same rate at another inclination", () => change({ theta }))));
   // the still symbols of the paper, with one click
-  if (known() && !s.w && !without && here.symbols > 1.5 && here.symbols < 40) $("others").append(button("see the still symbols", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
+  if (known() && !s.w && !s.slope && !without && here.symbols > 1.5 && here.symbols < 40) $("others").append(button("see the still symbols", "open the shutter for one turn", () => { $("shutter").value = "1"; $("shutter").onchange(); }));
   clearTimeout(say.later); // screen readers get the text when the user pauses
   say.later = setTimeout(() => { $("said").textContent = `${$("what").textContent}. ${$("because").textContent} Aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}. ${$("details").textContent}`; }, 700);
 }

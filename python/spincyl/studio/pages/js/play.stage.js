@@ -2,7 +2,7 @@
 
 const stage = $("stage");
 
-const live = { shape: 0, ell: 1, first: 0, last: 1, label: "", usual: 1 }, motions = [live], shapes = [[]];
+const live = { shape: 0, slope: 0, ell: 1, first: 0, last: 1, label: "", usual: 1 }, motions = [live], shapes = [[]];
 live.before = live.after = { at: NaN, event: false };
 let now = 0, playing = false;
 
@@ -14,17 +14,17 @@ function placed(row) {
   if (row[OF_ROW.turned] && !body.circles) for (const i of [4, 5, 6, 8, 9, 10]) p.matrix[i] *= -1;
   // for a body on both rims the sum of the forces is shown, in the middle
   const contact = lies ? [p.centre[0], p.centre[1], 0] : [x, y, 0];
-  return Object.assign(p, { high, lies, stands: row[OF_ROW.kind] === ON_FACE, contact, normal: [0, 0, lies ? 1 : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
+  return Object.assign(p, { high, lies, stands: row[OF_ROW.kind] === ON_FACE, contact, normal: [0, 0, lies ? Math.cos(live.slope) : row[OF_ROW.normal] || 0], friction: [0, 0, 0], usual: 1 });
 }
 let latest = null;
 const placeAt = t => rowAt(Math.min(Math.max(t, 0), head?.lasts ?? t)) || latest;
-// adds the contact forces: N, and friction from second differences of the centre's position
+// adds the contact forces: N, and friction from second differences of the centre's position, on a slope without its pull
 function pose(m, t) {
   const row = placeAt(t), p = placed(row), h = 2e-3;
   if (s.contact !== "smooth" && head.lasts > 2 * h) {
     const middle = Math.min(Math.max(h, t), head.lasts - h), near = [-h, 0, h].map(d => placeAt(middle + d)), [a, b, c] = near.map(row => placed(row).centre);
     // no force is shown in the air or for an impact
-    if (near.every(row => row[OF_ROW.kind] !== FLIES)) p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2).concat(0);
+    if (near.every(row => row[OF_ROW.kind] !== FLIES)) p.friction = [0, 1].map(k => (a[k] - 2 * b[k] + c[k]) / h ** 2 - (k ? 0 : Math.sin(live.slope))).concat(0);
   }
   return p;
 }

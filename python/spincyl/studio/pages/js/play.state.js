@@ -4,7 +4,7 @@
 const RANGE = {
   __proto__: null, // no inherited keys: an address may contain "toString"
   ell: [-1, 8], bore: [0, 1], fillet: [0, 1], i1: [0, 1e3], i3: [0, 1e3], end: [0, Math.PI], theta: [1e-3, Math.PI], kick: [-3, 3],
-  precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50], bottom: [0, 1], top: [0, 1], height: [0.05, 20],
+  precession: [-20, 20], mu: [0, 5], patch: [0, 0.5], c: [0, 20], restitution: [0, 1], loss: [0, 1], until: [1, 2000], slow: [1, 1000], t: [0, 1e9], expose: [0, 3], radius: [1e-6, 1e3], mass: [1e-9, 1e9], gravity: [1e-6, 1e6], twist: [-0.3, 0.3], spin: [-50, 50], bottom: [0, 1], top: [0, 1], height: [0.05, 20], slope: [0, Math.PI / 4], phi0: [-Math.PI, Math.PI],
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
 // the loss laws in the order of the core, which Python tells: name and label
@@ -12,8 +12,8 @@ const LAWS = Object.fromEntries(["none", ...JSON.parse(document.getElementById("
 // i1 and i3 belong to a body that is not a tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
-// radians per second. bottom, top and height belong to a frustum, such as a cup or a cone, with a larger radius of 1. parts are the surfaces of a body that was put together, from Python; an address that has the same body keeps them.
-const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, patch: 0, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, parts: null, stone: null, twist: 2 * Math.PI / 180, spin: -5, bottom: NaN, top: NaN, height: NaN };
+// radians per second. bottom, top and height belong to a frustum, such as a cup or a cone, with a larger radius of 1. slope is that of the table, and phi0 the direction to which the axis leans at first, from downhill. parts are the surfaces of a body that was put together, from Python; an address that has the same body keeps them.
+const BLANK = { ell: 2.5, bore: 0, fillet: 0, i1: NaN, i3: NaN, end: NaN, theta: 1.3, kick: 0, precession: NaN, contact: "rolling", mu: 0.3, patch: 0, c: 0.3, restitution: NaN, law: "none", loss: 1e-3, w: null, until: 60, slow: 20, radius: NaN, mass: NaN, gravity: 9.80665, parts: null, stone: null, twist: 2 * Math.PI / 180, spin: -5, bottom: NaN, top: NaN, height: NaN, slope: 0, phi0: 0 };
 const s = { ...BLANK, ...given };
 
 // a figure in a page of text shows the body, and the map or the tracks beside it
@@ -29,7 +29,7 @@ function address() {
     if (name === "parts") continue;
     if (s.stone ? !ofStone && (Object.is(value, BLANK[name]) || !["slow", "gravity"].includes(name)) : ofStone) continue;
     if (!ofStone && (name === "w" ? !value : name === "contact" || name === "law" ? value === BLANK[name] : Object.is(value, BLANK[name]) && !["ell", "theta"].includes(name) || name === "ell" && isFrustum())) continue;
-    if (["mu", "patch"].includes(name) && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none") continue;
+    if (["mu", "patch"].includes(name) && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none" || name === "phi0" && !s.slope) continue;
     words.push(`${name}=${typeof value === "string" ? value : Array.isArray(value) ? value.map(short).join(",") : short(value)}`);
   }
   return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
@@ -95,6 +95,7 @@ function begin() {
   s.theta = Math.min(s.theta, steep());
   if (body.circles && Math.abs(s.theta - body.most) < 1e-6) s.theta = body.most; // addresses have few digits
   damped();
+  core.slope(s.slope, s.phi0);
   const turning = Number.isFinite(s.precession) && !s.w;
   const { code, out } = turning ? ask("circular", s.theta, s.precession) : ask("at_rest", s.theta);
   here = code ? { code, region: code === 3 ? 1 : code === 4 ? 2 : 0 } : { code, ...labelled(OF_STEADY, out) };
@@ -104,7 +105,7 @@ function begin() {
   }
   const [w1, w2, w3, u, v] = s.w || (code ? [0, 0, 0, 0, 0] : [here.w1, here.w2, here.w3, 0, 0]);
   start = { w1, w2: w2 - s.kick, w3 };
-  const kind = CONTACTS.indexOf(s.contact), exact = kind < 2 && !lossy();
+  const kind = CONTACTS.indexOf(s.contact), exact = kind < 2 && !lossy() && !s.slope;
   const begun = ask("start", s.theta, w1, w2 - s.kick, w3, u, v, kind, kind < 2 ? Infinity : kind < 3 ? s.mu : s.c, s.patch, exact ? LONG : s.until, ROWS, rubbing() ? s.restitution : NaN);
   if (begun.code) head = { code: begun.code, why: refusal(begun.code) };
   else head = { code: 0, ...labelled(OF_START, begun.out) };
