@@ -46,9 +46,8 @@ coded! {
 
 /// The forces on a body at rest on two circles, on a slope with this tangent, and the couple that holds it if it is held.
 fn on_two(body: &Body, held: bool, [t, phi]: [f64; 2]) -> Lain<f64> {
-    let holds = Holds { contour: held, ..Holds::default() };
-    let losses =
-        Couples { ways: Some(Ways { holds, ..Ways::default() }), ..Couples::of(&Losses::NONE, |x| x) };
+    let mut losses = Couples::of(&Losses::NONE, |x| x);
+    losses.ways = Some(Ways { holds: Holds { contour: held, ..Holds::default() }, ..Ways::default() });
     let (law, (sin, cos)) = (Lying::on(body, &Friction::coulomb(0.0), &Losses::NONE), phi.sin_cos());
     Lying { losses: Some(losses), pull: Some([t * cos, -(t * sin)]), ..law }.rolls([0.0; 4])
 }

@@ -51,6 +51,7 @@ mod slope_stones;
 mod stability;
 mod standing;
 mod steady_states;
+mod steep;
 mod sticking;
 mod stone;
 mod stone_claims;
