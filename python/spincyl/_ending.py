@@ -183,7 +183,7 @@ def held(m: "Motion") -> Held | None:
         same = m.t.size > 0 and m.t[-1] == m.event.time
         phi = float((m if same else m.at([m.event.time])).phi[-1])
     body = [float(x) for x in m.body._raw], m.body._rows
-    losses = None if laws is None else [float(x) for x in laws._coefficients]  # type: ignore[arg-type]
+    losses = None if laws is None else [float(x) for x in laws._coefficients]
     table = table_for_core(m.contact, m._asked.mu)
     posture, theta = _POSTURE_OF[m.rests_on], m.event.state.theta
     shares = _core.shares_on_slope(body, theta, table, losses, posture, (slope, phi))

@@ -268,9 +268,7 @@ class Laws(Circles):
         return self._limit_of_slope(0, posture, reals("mu", mu), phi, theta)
 
     @elementwise
-    def tip_slope(
-        self, posture: Posture = "standing", *, phi: Reals = 0.0, theta: Reals = None
-    ) -> Result:
+    def tip_slope(self, posture: Posture = "standing", *, phi: Reals = 0.0, theta: Reals = None) -> Result:
         """Slope beyond which this body tips over, in radians; pi/2 if it never does.
 
         A body that stands on its face tips over the edge if tan(slope) > a/Z, with the radius a of the face

@@ -183,14 +183,14 @@ fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first
         let y = steady::circular(&body, theta, omega).unwrap();
         let [across, resonance] = slope_drift(&body, &y);
         assert!(stability::rolling(&body, &y) > 0.0 && (resonance - 1.0).abs() > 0.3);
-        // Filon's weight takes the circle and the nutation away: the mean velocity over whole turns, averaged again.
+        // The mean velocity over a turn, averaged with a weight that vanishes at both ends: nothing of the nutation is left.
         let (turns, per) = (40, 32);
         let times: Vec<f64> = (0..=turns * per).map(|i| f64::from(i) * 2.0 * PI / omega / f64::from(per)).collect();
         let mut errors = Vec::new();
         for beta in [4e-4, 2e-4] {
             let ask = Ask::default().with_slope(beta).with_pose(true);
             let m = roll_with(&body, y.into(), &times, &ask, || true).unwrap().unwrap();
-            let centre: Vec<_> = (0..m.states.len()).map(|i| m.sample(i).centre(&body).unwrap()).collect();
+            let centre: Vec<_> = m.samples().map(|now| now.centre(&body).unwrap()).collect();
             let (mut weights, mut sums) = (0.0, [0.0; 2]);
             for i in 0..=(turns - 1) * per {
                 let x = f64::from(i) / f64::from((turns - 1) * per);
