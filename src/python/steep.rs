@@ -7,8 +7,6 @@ use crate::laws::loss::{COUNT, Losses};
 use crate::laws::steep::{Posture, shares, slip_slope, tip_slope};
 use pyo3::prelude::*;
 
-type Row = [f64; 3];
-
 /// The slopes beyond which a body of several circles slips and tips, or ValueError.
 #[pyfunction]
 pub fn slopes_of_circles(
@@ -27,11 +25,11 @@ pub fn slopes_of_circles(
 pub fn shares_on_slope(
     body: NumbersOfBody,
     theta: f64,
-    contact: (u8, Row),
+    contact: (u8, [f64; 3]),
     losses: Option<[f64; COUNT]>,
     posture: u8,
     slope_and_phi: [f64; 2],
-) -> PyResult<Row> {
+) -> PyResult<[f64; 3]> {
     let mu = table_of(contact.0)?.with(contact.1).mu();
     let losses = losses.map_or(Losses::NONE, |coefficients| Losses { coefficients });
     let on = Posture::try_from(posture)?;

@@ -185,7 +185,8 @@ fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first
         assert!(stability::rolling(&body, &y) > 0.0 && (resonance - 1.0).abs() > 0.3);
         // The mean velocity over a turn, averaged with a weight that vanishes at both ends: nothing of the nutation is left.
         let (turns, per) = (40, 32);
-        let times: Vec<f64> = (0..=turns * per).map(|i| f64::from(i) * 2.0 * PI / omega / f64::from(per)).collect();
+        let times: Vec<f64> =
+            (0..=turns * per).map(|i| f64::from(i) * 2.0 * PI / omega / f64::from(per)).collect();
         let mut errors = Vec::new();
         for beta in [4e-4, 2e-4] {
             let ask = Ask::default().with_slope(beta).with_pose(true);
