@@ -29,8 +29,8 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
         who looks downhill, as for a body that precesses counterclockwise and stably. There is none along x.
     resonance : float or array
         Stability kappa over the squared precession. The drift is valid for small slopes while this is
-        positive and away from 1: at 1, as for a uniform ball, the body runs downhill; below 0 it leaves the
-        steady state.
+        positive and away from 1: at 1, as for a uniform ball, the body runs downhill, and the drift is NaN or
+        of no meaning; below 0 it leaves the steady state.
 
     Raises
     ------
@@ -54,6 +54,6 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     instance_of("state", state, State)
     given = body._at(*numbers_without_slip(state, "expected a state without slip"))
     drift, resonance = _core.slope_drift(*given), _core.slope_resonance(*given)
-    if is_scalar(drift) and np.isnan(drift):
+    if is_scalar(resonance) and np.isnan(resonance):
         raise ValueError(f"state = {state!r}: expected a steady state of this body, which precesses")
     return drift, resonance
