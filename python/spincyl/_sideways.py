@@ -48,7 +48,7 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     >>> tube = sc.Body.tube(6.0, bore=0.8)
     >>> drift, resonance = sc.slope_drift(tube, tube.steady(1.45))
     >>> round(float(drift), 6), round(float(resonance), 6)
-    (0.397597, 0.27947)
+    (0.397597, 0.279467)
     """
     instance_of("body", body, Body)
     instance_of("state", state, State)

@@ -77,7 +77,7 @@ proptest! {
 
     #[test]
     fn a_body_tips_over_the_edge_of_its_face_where_its_weight_meets_the_table_beyond_it(
-        body in prop_oneof![any_body(), general_rounded()], mu in 0.0..2.0f64,
+        body in prop_oneof![any_body(), general_rounded()], mu in 0.01..2.0f64,
     ) {
         prop_assume!(body.fillet() < 1.0);
         let (a, z) = (1.0 - body.fillet(), body.ell() + body.fillet());
@@ -88,7 +88,8 @@ proptest! {
             let slope = 0.9 * tips;
             let [slips, _, tips] =
                 shares(&body, 0.0, mu, &Losses::NONE, Posture::Standing, [slope, 0.3]).unwrap();
-            prop_assert!((tips - slope.tan() * z / a).abs() < 1e-13 * tips && (slips * mu - slope.tan()).abs() < 1e-13);
+            let near = |x: f64, y: f64| (x / y - 1.0).abs() < 1e-12;
+            prop_assert!(near(tips, slope.tan() * z / a) && near(slips, slope.tan() / mu), "{slips} {tips}");
         }
     }
 }
@@ -99,7 +100,8 @@ fn stays(body: &Body, theta: f64, mu: f64, losses: Losses, slope: f64, phi: f64)
     let ask = Ask::on(Friction::coulomb(mu)).with_slope(slope).with_losses(losses).with_restitution(0.0);
     let m = roll_with(body, start, &[0.0, 1e-3], &ask, || true).unwrap().unwrap();
     let kinds = m.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind);
-    m.ending() == Ending::Stops || kinds.clone().all(|kind| kind == Kind::RollingOnItsSide)
+    m.ending() == Ending::Stops
+        || m.event.is_none() && kinds.clone().all(|kind| kind == Kind::RollingOnItsSide)
 }
 
 #[test]
@@ -140,7 +142,7 @@ fn the_shares_of_a_body_at_rest_are_those_of_the_slopes_at_which_it_lets_go() {
     let [slip, roll, tip] = of(Posture::Edge, &ball, 0.3);
     let (high, lever) = (1.0 - 0.2 * 0.3f64.cos(), -0.2 * 0.3f64.sin());
     let couple = (high * t * phi.sin()).hypot(lever - high * t * phi.cos());
-    assert!((slip - t / 0.3).abs() < 1e-14 && (roll - couple / 0.06).abs() < 1e-13 && tip == 0.0, "{roll}");
+    assert!((slip - t / 0.3).abs() < 1e-14 && (roll - couple / 0.06).abs() < 1e-13 && tip < 1e-16, "{roll}");
     // Dry losses hold no more where the share exceeds 1.
     for (share, holds) in [(1.0 - 1e-9, true), (1.0 + 1e-9, false)] {
         let arm = Losses::of(Law::RollingResistance, couple / share);
@@ -163,7 +165,7 @@ fn a_spinning_body_drifts_across_a_slope_as_fast_as_was_measured() {
         let y = steady::state(&body, theta).unwrap();
         let [found, resonance] = slope_drift(&body, &y);
         assert!((y.precession() - precession).abs() < 1e-9);
-        assert!((found - across).abs() < 1e-10, "{found} {across}");
+        assert!((found - across).abs() < 2e-10, "{found} {across}");
         assert!((resonance - kappa / (precession * precession)).abs() < 1e-9);
         // In the mirror it drifts to the other side.
         let mirrored = State { w1: -y.w1, w3: -y.w3, ..y };
@@ -178,8 +180,10 @@ fn a_spinning_body_drifts_across_a_slope_as_fast_as_was_measured() {
 
 #[test]
 fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first_order_says() {
-    let rounded = Body::rounded_tube(0.4, 0.3, 0.1).unwrap();
-    for (body, theta, omega) in [(Body::solid(0.3).unwrap(), 0.9, 2.2), (rounded, 0.8, 2.5)] {
+    let rounded = Body::rounded_tube(2.0, 0.3, 0.1).unwrap();
+    for (body, theta, faster) in [(Body::solid(2.5).unwrap(), 1.2, 1.1), (rounded, 1.2, 0.9)] {
+        // The centre moves on a circle.
+        let omega = faster * steady::state(&body, theta).unwrap().precession();
         let y = steady::circular(&body, theta, omega).unwrap();
         let [across, resonance] = slope_drift(&body, &y);
         assert!(stability::rolling(&body, &y) > 0.0 && (resonance - 1.0).abs() > 0.3);
