@@ -107,7 +107,7 @@ fn stays(body: &Body, theta: f64, mu: f64, losses: Losses, slope: f64, phi: f64)
 #[test]
 fn the_motion_of_a_body_let_go_on_its_side_is_on_both_sides_of_the_limit_what_it_says() {
     let mut next = wander(9);
-    for k in 0..20 {
+    for k in 0..6 {
         let (l, m, mu) = (0.3 + 2.0 * next(), 0.3 + 2.0 * next(), 0.1 + 0.7 * next());
         let (posture, losses) = match k % 2 {
             0 => (Posture::Rolling, Losses::NONE),
@@ -173,9 +173,9 @@ fn a_spinning_body_drifts_across_a_slope_as_fast_as_was_measured() {
         assert_eq!(slope_drift(&body, &mirrored), [-found, resonance]);
     }
     let disk = Body::solid(0.0).unwrap();
-    let [near_flat, _] = slope_drift(&disk, &steady::state(&disk, 0.01).unwrap());
-    let omega = steady::state(&disk, 0.01).unwrap().precession();
-    assert!((near_flat * omega * 2.0 * (1.0 + disk.i3()) - 1.0).abs() < 1e-3);
+    let [near_flat, _] = slope_drift(&disk, &steady::state(&disk, 0.001).unwrap());
+    let omega = steady::state(&disk, 0.001).unwrap().precession();
+    assert!((near_flat * omega * 2.0 * (1.0 + disk.i3()) - 1.0).abs() < 1e-4);
     assert!(slope_drift(&disk, &State { theta: 1.0, w1: 0.3, w2: 0.0, w3: 0.2 })[0].is_nan());
 }
 
