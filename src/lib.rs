@@ -19,9 +19,11 @@
 //! | | [`contact`] | the contact force: [`rolling`], [`smooth`], slip; the landing of a rim | F = v' + Wf x v + z |
 //! | | [`throw`] | the state in which a body leaves the hand | v_2 = J (f cos beta - sin beta) + Q |
 //! | | [`topple`] | a body on its face that topples, or that a kerb stops | mu Z > a, w2 = -v Z/J |
+//! | | [`steep`] | the slope on which a body slips, tips or rolls | tan(slope) = mu (k + A^2)/k, a/Z |
 //! | | [`pose`] | the orientation, the contact path and the centre of the body | P' = A psi' e2 - rho theta' e_h |
 //! | `states` | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
 //! | | [`stability`] | stability of steady states: smooth, rolling | kappa = -dtheta''/dtheta along the lines |
+//! | | [`sideways`] | the drift of a spinning body across a slope | v_y = sin(beta)/2 ((I1 A^2 + I3 L^2)/(D Om) - ...) |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
 //! | | [`measured`] | bodies with a size and a mass, and their motions in SI | I1 = i1/(M R^2) |
@@ -51,12 +53,12 @@ mod numbers;
 mod python;
 mod states;
 
-pub use laws::{body, contact, loss, newton, pose, scale, state, throw, topple};
+pub use laws::{body, contact, loss, newton, pose, scale, state, steep, throw, topple};
 #[cfg(feature = "many")]
 pub use many::{maps as sweep, motions as ensemble};
 pub use methods::rk4;
 pub use motions::{exact, measured, motion, turning};
-pub use states::{stability, steady};
+pub use states::{sideways, stability, steady};
 
 #[cfg(feature = "many")]
 pub mod drift {

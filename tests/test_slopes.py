@@ -249,3 +249,110 @@ def test_a_table_that_turns_takes_a_ball_round_and_does_work():
 def test_the_gravity_of_a_scene_is_turned():
     scene = sc.scene(sc.roll(DISK, START, [0.0, 1.0], table=sc.Table(0.2)), scale=sc.Scale(0.01, 0.01))
     assert np.allclose(scene.data["gravity"], [9.80665 * np.sin(0.2), 0, -9.80665 * np.cos(0.2)])
+
+
+CAN = sc.Body.solid(1.5)
+ACROSS = -np.pi / 2
+
+
+def test_a_body_slips_and_tips_where_friction_and_its_weight_say():
+    mu = np.array([0.1, 0.4])
+    assert np.allclose(np.tan(CAN.slip_slope(mu)), 3 * mu, rtol=1e-14)
+    assert np.allclose(np.tan(sc.Body.tube([0.0, 2.0], bore=1.0).slip_slope(0.3)), 0.6, rtol=1e-14)
+    assert np.allclose(np.tan(sc.Body.ball(0.0, 0.4, 0.4).slip_slope(0.3, phi=1.0)), 0.3 * 3.5, rtol=1e-14)
+    assert np.allclose(np.tan(CAN.slip_slope(mu, "standing")), mu) and CAN.topples(0.7)
+    assert np.isclose(np.tan(CAN.tip_slope()), 1 / 1.5) and CAN.tip_slope() < CAN.slip_slope(0.7, "standing")
+    assert np.allclose(np.tan(CAN.slip_slope(mu, "lying", phi=0.0)), mu, rtol=1e-14)
+    askew = CAN.slip_slope(0.4, "lying", phi=[0.0, -0.8, ACROSS])
+    assert askew[1] < min(askew[0], askew[2]) and CAN.tip_slope("lying", phi=ACROSS) == pytest.approx(
+        np.pi / 2
+    )
+    # any body of several circles: a barrel rolls on two, a cup stands on either end and tips over
+    axle = sc.Body.profile([[0.5, -1.5, 0.0], [0.8, -1.0, 0.0], [0.8, 1.0, 0.0], [0.5, 1.5, 0.0]], 0.9, 0.3)
+    side = axle.borders[1]
+    assert np.tan(axle.slip_slope(0.2, theta=side)) == pytest.approx(0.2 * (0.3 + 0.64) / 0.3)
+    assert np.tan(axle.tip_slope("lying", theta=side)) == pytest.approx(1.0 / 0.8)
+    cup = sc.Body.frustum(0.7, 1.0, 2.0)
+    low, high = cup.circles[0, :2], cup.circles[-1, :2]
+    assert np.tan(cup.tip_slope(theta=[0.0, np.pi])) == pytest.approx([low[0] / -low[1], high[0] / high[1]])
+    lies = cup.slip_slope(0.3, "lying", phi=[0.0, np.pi])
+    assert np.tan(lies) == pytest.approx(0.3) and lies.shape == (2,)
+
+
+def test_slopes_of_arrays_have_their_shape_and_impossible_ones_are_nan():
+    found = sc.Body.solid([[0.5], [1.5]]).slip_slope([0.1, -0.1, 0.3], "lying", phi=0.3)
+    assert found.shape == (2, 3) and np.isnan(found[:, 1]).all() and np.isfinite(found[:, [0, 2]]).all()
+    assert found[1, 2] == CAN.slip_slope(0.3, "lying", phi=0.3)
+    mu = xarray.DataArray([0.1, 0.2], dims="mu")
+    assert CAN.slip_slope(mu).dims == ("mu",)
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: CAN.slip_slope(-0.1), "mu = -0.1"),
+        (lambda: CAN.slip_slope(0.1, "sitting"), "posture = 'sitting'"),
+        (lambda: CAN.slip_slope(0.1, phi=90.0), "phi = 90.0"),
+        (lambda: CAN.slip_slope(0.1, "standing", theta=90.0), "theta = 90.0"),
+        (lambda: sc.Body.ball(0.0, 0.4, 0.4).tip_slope(), "posture = 'standing'"),
+        (lambda: sc.Body.solid(0.0).slip_slope(0.1, phi=0.0), "posture = 'rolling'"),
+        (lambda: sc.slope_drift(CAN, START), "state"),
+        (lambda: sc.slope_drift(CAN, sc.State(1.0, 0.1, 0.0, 0.2)), "state"),
+        (lambda: sc.slope_drift(CAN, sc.spun(CAN, 1.0)), "state"),
+    ],
+)
+def test_a_slope_that_no_body_has_is_refused_by_name(call, word):
+    with pytest.raises((ValueError, TypeError), match=word):
+        call()
+
+
+def test_a_spinning_body_goes_across_the_slope_as_fast_as_known():
+    tube = sc.Body.tube(6.0, bore=0.8)
+    drift, resonance = sc.slope_drift(tube, tube.steady([1.45, 1.5]))
+    assert drift[0] == pytest.approx(0.3975972353, abs=1e-10) and drift.shape == resonance.shape == (2,)
+    assert resonance[0] == pytest.approx(0.4848096432 / 1.3171047454**2, abs=1e-9)
+    ball = sc.Body.ball(0.0, 0.4, 0.4)
+    assert sc.slope_drift(ball, ball.circular(1.0, 2.0))[1] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "start", "how", "lets_go", "share"),
+    [
+        (DISK, sc.State(0.0, 0.0, 0.0, 0.0), {"contact": sc.Coulomb(0.3)}, "slips", np.tan(0.1) / 0.3),
+        (sc.Body.solid(6.0), sc.State(0.0, 0.0, 0.0, 0.0), {}, "tips", 6 * np.tan(0.1)),
+        (
+            sc.Body.ball(0.0, 0.4, 0.4),
+            sc.State(1.0, 0.0, 0.0, 0.0),
+            {"contact": sc.Coulomb(0.3), "losses": sc.loss.RollingResistance(0.15)},
+            "rolls",
+            np.tan(0.1) / 0.15,
+        ),
+        (
+            CAN,
+            sc.State(np.pi / 2, 0.0, 0.0, 0.0),
+            {"contact": sc.Coulomb(0.11), "losses": sc.loss.RollingResistance(0.15), "restitution": 0.0},
+            "slips",
+            np.tan(0.1) / np.tan(CAN.slip_slope(0.11, "lying", phi=-1.4)),
+        ),
+    ],
+)
+def test_a_body_at_rest_says_how_near_to_its_limit_it_is(body, start, how, lets_go, share):
+    m = sc.roll(body, start, 5.0, table=sc.Table(0.1, phi0=-1.4), **how)
+    assert m.status == sc.Ending.STOPS
+    assert m.held == sc.Held(pytest.approx(share, rel=1e-12), lets_go)
+
+
+@pytest.mark.filterwarnings("ignore:the estimated error")
+def test_a_ball_that_comes_to_rest_is_held_and_one_that_rolls_on_is_not():
+    ball, arm = sc.Body.ball(0.0, 0.4, 0.4), sc.loss.RollingResistance(0.3)
+    rolls = sc.State(np.pi / 2, 0.0, 0.0, 1.0)
+    for slope, share in ((0.0, 0.0), (0.2, np.tan(0.2) / 0.3)):
+        how = {"contact": sc.Coulomb(0.8), "losses": arm, "table": sc.Table(slope, phi0=0.3)}
+        m = sc.roll(ball, rolls, 50.0, **how)
+        assert m.held.share == pytest.approx(share) and m.event.time > 0
+    assert sc.roll(ball, rolls, 1.0).held is None
+    coin = sc.measured(outer_diameter="22mm", length="2mm", mass="5g")
+    table, contact = sc.Table("10 deg"), sc.Coulomb(0.3)
+    m = sc.roll(coin, sc.State(0.0, 0.0, 0.0, 0.0), 1.0, table=table, contact=contact)
+    assert m.held == sc.Held(pytest.approx(np.tan(np.radians(10)) / 0.3), "slips")
+    assert sc.roll(STONE, STONE.spinning(1.0, pitch=0.1), 0.1, table=table).held is None

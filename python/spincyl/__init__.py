@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from spincyl._body import Body
 from spincyl._circles import Apex
 from spincyl._contact import Coulomb, Viscous
-from spincyl._ending import Ending, ErrorWarning, Event, RestsOn
+from spincyl._ending import Ending, ErrorWarning, Event, Held, RestsOn
 from spincyl._input.hints import proposal as _instead
 from spincyl._laws import Region
 from spincyl._measured import measured
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState, Rocking
     from spincyl._rising import rising_spin
+    from spincyl._sideways import slope_drift
     from spincyl.parts import assembled
     from spincyl.studio.exposure import exposure
     from spincyl.studio.pages.play import Play, play
@@ -67,6 +68,7 @@ __all__ = [
     "Ending",
     "ErrorWarning",
     "Event",
+    "Held",
     "Impact",
     "Motion",
     "Phase",
@@ -99,6 +101,7 @@ __all__ = [
     "rising_spin",
     "roll",
     "scene",
+    "slope_drift",
     "spun",
     "sweep",
     "swing",
@@ -120,6 +123,7 @@ _LATER: dict[str, str | None] = {
     "exposure": "studio.exposure",
     **dict.fromkeys(("play", "Play"), "studio.pages.play"),
     "rising_spin": "_rising",
+    "slope_drift": "_sideways",
     **dict.fromkeys(("Deviation", "scene", "Scene"), "studio.scene"),
     **dict.fromkeys(("view", "View"), "studio.pages.view"),
 }

@@ -90,6 +90,11 @@ __all__ = [
     "rising_spin",
     "rocking",
     "roll",
+    "shares_on_slope",
+    "slip_slope",
+    "slope_drift",
+    "slope_resonance",
+    "slopes_of_circles",
     "speed_o",
     "speed_x",
     "spin",
@@ -121,6 +126,7 @@ __all__ = [
     "thrown",
     "thrown_slip",
     "thrown_w3",
+    "tip_slope",
     "topples",
     "tripped_w2",
     "turning_spin",
@@ -184,6 +190,10 @@ pressed_w3: np.ufunc
 pressed_slip: np.ufunc
 launch_number: np.ufunc
 launch_spin: np.ufunc
+slip_slope: np.ufunc
+tip_slope: np.ufunc
+slope_drift: np.ufunc
+slope_resonance: np.ufunc
 topples: np.ufunc
 tripped_w2: np.ufunc
 loss_power: np.ufunc
@@ -222,6 +232,17 @@ def check_profile(rows: Sequence[Sequence[float]], i1: float, i3: float) -> tupl
 def body_circles(
     body: Sequence[float], rows: Sequence[Sequence[float]]
 ) -> tuple[list[list[float]], list[list[float]]]: ...
+def slopes_of_circles(
+    body: tuple[list[float], list[list[float]]], theta: float, mu: float, posture: int, phi: float
+) -> list[float]: ...
+def shares_on_slope(
+    body: tuple[list[float], list[list[float]]],
+    theta: float,
+    contact: tuple[int, tuple[float, float, float]],
+    losses: Sequence[float] | None,
+    posture: int,
+    slope_and_phi: tuple[float, float],
+) -> list[float]: ...
 def frustum(bottom: float, top: float, height: float, wall: float | None) -> _NumbersOfBody: ...
 def lathe(points: Sequence[Sequence[float]]) -> _NumbersOfBody: ...
 def unequal_balls(radii: Sequence[float], separation: float) -> _NumbersOfBody: ...

@@ -1,10 +1,17 @@
 """Endings of a motion."""
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
+import numpy as np
+
+from spincyl import _core
+from spincyl._contact import table_for_core
 from spincyl._phases import Rim
 from spincyl._state import State
+
+if TYPE_CHECKING:
+    from spincyl._motion import Motion
 
 
 class Ending(IntEnum):
@@ -27,7 +34,8 @@ class Ending(IntEnum):
     PAINLEVE
         The law of friction allows no contact force, or more than one.
     STOPS
-        The body has come to rest on its face, or in a motion with losses, and dry friction holds it.
+        The body has come to rest on its face, or in a motion with losses, and dry friction holds it;
+        `Motion.held` is the share of the limit at which it does.
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
@@ -141,3 +149,42 @@ class Event(NamedTuple):
     time: float
     state: State
     rim: Rim = "first"
+
+
+class Held(NamedTuple):
+    """How near to its limit dry friction holds a body at rest.
+
+    Attributes
+    ----------
+    share : float
+        What the body needs, as a share of what holds it, from 0 (nothing) to 1 (the limit). For a slip and
+        for tipping it is tan(slope) over that of `Body.slip_slope` and `Body.tip_slope`, and for rolling the
+        couple over the largest one of the dry losses.
+    lets_go : {"slips", "rolls", "tips"}
+        What the body does where the share exceeds 1: the way out of its rest that has the largest share.
+    """
+
+    share: float
+    lets_go: Literal["slips", "rolls", "tips"]
+
+
+#: The ways out of a rest, in the order of the core; and the postures on a face, on the side and on an edge.
+_WAYS_OUT: tuple[Literal["slips", "rolls", "tips"], ...] = ("slips", "rolls", "tips")
+_POSTURE_OF = {RestsOn.FACE: 0, RestsOn.OTHER_FACE: 0, RestsOn.SIDE: 2, RestsOn.EDGE: 3}
+
+
+def held(m: "Motion") -> Held | None:
+    """How friction holds the body at the end of a motion in natural units; None if it does not."""
+    own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
+    if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own:
+        return None
+    slope, phi, laws = m._asked.slope, 0.0, None if m.losses is None else m.losses._built_in
+    if slope != 0:
+        same = m.t.size > 0 and m.t[-1] == m.event.time
+        phi = float((m if same else m.at([m.event.time])).phi[-1])
+    body = [float(x) for x in m.body._raw], m.body._rows
+    losses = None if laws is None else [float(x) for x in laws._coefficients]
+    table = table_for_core(m.contact, m._asked.mu)
+    posture, theta = _POSTURE_OF[m.rests_on], m.event.state.theta
+    shares = _core.shares_on_slope(body, theta, table, losses, posture, (slope, phi))
+    return Held(max(shares), _WAYS_OUT[int(np.argmax(shares))])

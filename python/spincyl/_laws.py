@@ -3,7 +3,7 @@
 import warnings
 from dataclasses import replace
 from enum import IntEnum
-from typing import Any
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from spincyl._input.numbers import (
     elementwise,
     is_scalar,
     keywords,
+    one_of,
     radians,
     reals,
     refuse_bad_value,
@@ -25,6 +26,11 @@ from spincyl._slip import slip_of, velocity_of
 from spincyl._state import State, numbers, numbers_without_slip
 
 _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
+
+
+#: How a body is on a slope.
+Posture: TypeAlias = Literal["standing", "rolling", "lying"]
+POSTURES: tuple[str, ...] = get_args(Posture)
 
 
 class Region(IntEnum):
@@ -214,6 +220,92 @@ class Laws(Circles):
             refuse_bad_value("mu", given, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
             raise ValueError("body: expected a body with a face; a ball has none")
         return found > 0
+
+    @elementwise
+    def slip_slope(
+        self, mu: Reals, posture: Posture = "rolling", *, phi: Reals = -np.pi / 2, theta: Reals = None
+    ) -> Result:
+        """Slope beyond which the contact of this body slips, in radians.
+
+        Parameters
+        ----------
+        mu : array_like
+            Coefficient of static friction, 0 or more.
+        posture : {"rolling", "lying", "standing"}
+            "rolling": on its side, or upright on one rim, and free to roll. "lying": the same, but rolling
+            resistance or a chock holds it from rolling. "standing": on its face.
+        phi : array_like, optional
+            Direction to which the axis leans, in radians from downhill. Default: the axis lies across, so
+            that the body rolls straight down; with 0 the axis of a body on its side points downhill.
+        theta : array_like, optional
+            Of a body of several circles the inclination at which it rests: one of `borders`, 0 or pi.
+            Default: the first one at which it `rests` on two circles; 0 if it stands.
+
+        Returns
+        -------
+        float or array
+            Broadcast shape of arguments and body; NaN for impossible ones in an array. Absolute error 1e-14.
+
+        Raises
+        ------
+        ValueError
+            If a single body has no such posture, or an argument is out of range; the message names it.
+
+        Notes
+        -----
+        A body that rolls straight down slips if tan(slope) > mu (I3 + A^2)/I3, where A is the radius of the
+        circles on which it rolls; one that is held, or stands, if tan(slope) > mu. On its side at another
+        phi a body slips earlier, since its upper circle, which carries less, has to share the friction. Such
+        a body may tip first: see `tip_slope`.
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> can = sc.Body.solid(2.0)
+        >>> np.tan([can.slip_slope(0.2), can.slip_slope(0.2, "lying"), can.slip_slope(0.2, "standing")])
+        array([0.6, 0.2, 0.2])
+        """
+        return self._limit_of_slope(0, posture, reals("mu", mu), phi, theta)
+
+    @elementwise
+    def tip_slope(self, posture: Posture = "standing", *, phi: Reals = 0.0, theta: Reals = None) -> Result:
+        """Slope beyond which this body tips over, in radians; pi/2 if it never does.
+
+        A body that stands on its face tips over the edge if tan(slope) > a/Z, with the radius a of the face
+        and the height Z of the centre of mass; one on its side with phi = 0 over its lower circle. Whether it
+        slips before tells the smaller of `slip_slope` and `tip_slope`. Arguments, shapes and errors are those
+        of `slip_slope`.
+
+        Examples
+        --------
+        >>> import spincyl as sc
+        >>> can = sc.Body.solid(2.0)
+        >>> np.tan([can.tip_slope(), can.tip_slope("lying")])
+        array([0.5, 2. ])
+        """
+        return self._limit_of_slope(1, posture, 0.0, phi, theta)
+
+    def _limit_of_slope(self, which: int, posture: Posture, mu: Reals, phi: Reals, theta: Reals) -> Result:
+        code, phi = POSTURES.index(one_of("posture", posture, POSTURES)), radians("phi", phi)
+        rests = () if code == 0 or self.rims is None or theta is not None else self.rests()
+        theta = (self.borders[rests[0]] if rests else 0.0) if theta is None else theta
+        theta = radians("theta", theta, "0, pi or one of body.borders")
+        if self.rims is None or code == 0:
+            given = code, phi, *self._at(theta)[1:]
+            found = _core.tip_slope(*given) if which else _core.slip_slope(mu, *given)
+        else:
+            self._told()
+            body = [float(x) for x in self._raw], self._rows
+
+            def of_circles(*given: Reals) -> float:
+                return _core.slopes_of_circles(body, *given)[which]
+
+            found = np.vectorize(of_circles, otypes=[float])(theta, mu, code, phi)[()]
+        if is_scalar(found) and np.isnan(found):
+            refuse_bad_value("mu", mu, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
+            needs = "a body that can be so; on one rim only a disk or a ball, with its axis across"
+            raise ValueError(f"posture = {posture!r}: expected {needs}")
+        return found
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
         """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""

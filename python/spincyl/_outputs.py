@@ -1,12 +1,14 @@
 """Outputs of a motion as properties; the error for a missing output says how to compute it."""
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
 from spincyl._body import Body
 from spincyl._contact import Coulomb, contact_in_words
+from spincyl._ending import Held, held
 from spincyl._input.numbers import Floats
 
 if TYPE_CHECKING:
@@ -196,4 +198,14 @@ class Outputs:
         """(n,) work of a table that turns since the first time, M g R or J."""
         heat = self.dissipated if "dissipated" in self._extra else 0.0
         found: Floats = self.energy - self.energy[0] + heat
+        return found
+
+    @cached_property
+    def held(self) -> Held | None:
+        """How near to its limit dry friction holds the body; None unless a body of revolution `STOPS`.
+
+        On a level table the share is 0, but for a body that dry losses hold on its edge off its balance. Laws
+        of your own have none.
+        """
+        found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found

@@ -8,6 +8,7 @@ pub mod newton;
 pub mod pose;
 pub mod scale;
 pub mod state;
+pub mod steep;
 pub mod stone;
 pub mod throw;
 pub mod topple;

@@ -10,6 +10,7 @@ mod motion;
 mod options;
 mod parts;
 mod pointer;
+mod steep;
 mod stone;
 mod sweep;
 mod ufunc;
@@ -18,8 +19,10 @@ mod watch;
 use crate::laws::body::Circle;
 use crate::laws::contact::landing::two_rims;
 use crate::laws::contact::slip::{self, centre_velocity};
+use crate::laws::steep::{Posture, slip_slope, tip_slope};
 use crate::laws::{throw, topple};
 use crate::motions::turning::jellett_spin;
+use crate::states::sideways::slope_drift;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
 use crate::{Body, Contact, Error, Scale, State};
@@ -75,6 +78,10 @@ fn capsule_end(tube: &Body) -> f64 {
 
 fn state_of(x: &[f64]) -> State {
     State { theta: x[0], w1: x[1], w2: x[2], w3: x[3] }
+}
+
+fn posture(code: f64) -> Result<Posture, Error> {
+    Posture::try_from(code as u8)
 }
 
 /// One number, chosen by `pick`, of the state and the slip of a thrown or pressed body; NaN for an error.
@@ -332,6 +339,30 @@ static LAWS: &[ArrayFunction] = &[
         }),
     },
     ArrayFunction {
+        name: "slip_slope",
+        inputs: 9,
+        value: Value::One(|x| {
+            of_body(&x[3..], |b| or_nan(posture(x[1]).and_then(|on| slip_slope(b, 0.0, x[0], on, x[2]))))
+        }),
+    },
+    ArrayFunction {
+        name: "tip_slope",
+        inputs: 8,
+        value: Value::One(|x| {
+            of_body(&x[2..], |b| or_nan(posture(x[0]).and_then(|on| tip_slope(b, 0.0, on, x[1]))))
+        }),
+    },
+    ArrayFunction {
+        name: "slope_drift",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[0])),
+    },
+    ArrayFunction {
+        name: "slope_resonance",
+        inputs: 10,
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[1])),
+    },
+    ArrayFunction {
         name: "tripped_w2",
         inputs: 7,
         value: Value::One(|x| of_body(&x[1..], |b| or_nan(topple::tripped(b, x[0]).map(|y| y.w2)))),
@@ -376,6 +407,8 @@ mod _core {
     use super::options::motion_options;
     #[pymodule_export]
     use super::parts::{body_circles, check_profile, frustum, lathe, of_parts, unequal_balls};
+    #[pymodule_export]
+    use super::steep::{shares_on_slope, slopes_of_circles};
     #[pymodule_export]
     use super::stone::{
         check_stone, check_stones, egg, rattleback, rocking, spin_limits, stone_columns, stone_energies,

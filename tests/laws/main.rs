@@ -52,6 +52,7 @@ mod slope_stones;
 mod stability;
 mod standing;
 mod steady_states;
+mod steep;
 mod sticking;
 mod stone;
 mod stone_claims;

@@ -59,9 +59,14 @@ const STOPS_AT_ONCE: f64 = 1e-6;
 const NUDGED: f64 = 1e-12;
 /// Number of directions at which the growth of a slip is evaluated.
 const DIRECTIONS: usize = 240;
-/// The times by which a body rolls on that friction has just ceased to hold on both rims, before it is known which of them
-/// slips: the next one where the search does not end with the one before.
-const ROLLS_ON: [f64; 3] = [1e-6, 1e-5, 1e-4];
+/// The shares by which friction that has just ceased to hold both rims is smaller than what they need: the next one where
+/// the search does not end with the one before.
+const RELEASED: [f64; 3] = [1e-9, 1e-7, 1e-5];
+/// A slip from rest with a smaller rate hardly begins.
+const BEGINS: f64 = 1e-4;
+/// The times for which a body rolls on that friction has just ceased to hold on both rims, so slowly that the slips follow
+/// their growth: the next one where the search does not end with the one before.
+const ROLLS_ON: [f64; 2] = [1e-3, 1e-4];
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
@@ -247,40 +252,49 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let lower = flow.lain(&self.at).force.iter().position(|force| force[0] < 0.0);
             return lower.map_or(Next::Ends(Ending::Slip), |lower| self.rises_on(lower == 1, true));
         }
-        self.slips_from_rest(flow, false).unwrap_or(Next::Ends(Ending::Landing))
+        self.slips_from_rest(flow, None).unwrap_or(Next::Ends(Ending::Landing))
     }
 
-    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just let one go. None if
-    /// the search for it does not end.
+    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just ceased to: for some
+    /// time, or by this share. None if the search for it does not end.
     #[inline(never)]
-    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: bool) -> Option<Next> {
+    fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: Option<(f64, f64)>) -> Option<Next> {
         flow.stance = Stance::Slips;
         flow.holds_all(&self.at);
         let w = [self.at[W1], self.at[W3]];
         let begins = |flow: &LyingFlow<G>| {
             let law = flow.law_here(&self.at);
-            law.begins(w, if released { law.strength } else { [flow.fixed; 2] })
+            let Some((share, _)) = released else { return law.begins(w, [flow.fixed; 2]) };
+            let mu = law.strength.map(|mu| mu * (1.0 - share));
+            Lying { strength: mu, ..law }.begins(w, mu)
         };
         let mut found = begins(&flow);
         if found.is_some_and(|begun| flow.lets_roll(&begun.lain)) {
             found = begins(&flow);
         }
-        // Both rims let go at once so slowly that steps do not follow it.
-        let begun = found.filter(|begun| !released || begun.moves[0] != begun.moves[1])?;
+        let begun = found?;
+        let fastest = begun.slips.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if released.is_some_and(|(_, lasts)| lasts == 0.0 && fastest < BEGINS || begun.moves == [false; 2]) {
+            return None;
+        }
         let [here, there] = begun.lain.force.map(|force| force[0] > 0.0);
         if !(here && there) {
             let rises = here || there;
             return Some(if rises { self.rises_on(here, true) } else { Next::Ends(Ending::LiftOff) });
         }
-        let fastest = begun.slips.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let moment = if fastest > 0.0 { NUDGED / fastest } else { 0.0 };
-        // A slip may begin with next to no rate: the drilling belongs to it, but not what the rolling gains until then.
+        // The rate of a slip that hardly begins has grown from zero for this time.
+        let moment = match released {
+            Some((_, lasts)) if lasts > 0.0 => 0.5 * lasts,
+            _ if fastest > 0.0 => NUDGED / fastest,
+            _ => 0.0,
+        };
+        // The drilling belongs to the slips, but not what the rolling gains until then.
         let [drilling, rolling] = flow.law.turning(w[0], w[1]);
         let [turns, rolls] = flow.law.turning(begun.lain.w[0], begun.lain.w[1]);
         let rolls = rolls * moment.min(NUDGED);
         [self.at[W1], self.at[W3]] = flow.law.turned_by([drilling + moment * turns, rolling + rolls]);
         self.sets_state();
-        self.claims(NUDGED);
+        self.claims(NUDGED.max(fastest * moment * moment));
         let stance = match begun.moves {
             [false, false] => {
                 self.rolls_along(&flow.law);
@@ -308,13 +322,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (begin, mut rates) = (self.at, [0.0; N]);
         flow.write_rates(&begin, &mut rates);
         let later = |t: f64| core::array::from_fn(|i| begin[i] + t * rates[i]);
+        if let Some(next) =
+            RELEASED.into_iter().find_map(|share| self.slips_from_rest(*flow, Some((share, 0.0))))
+        {
+            return next;
+        }
         for lasts in ROLLS_ON {
             while let Some(t) = self.until().filter(|t| *t <= begin[TIME] + lasts) {
                 self.writes_lying(flow, &later(t - begin[TIME]));
             }
             self.at = later(lasts);
             self.sets_state();
-            if let Some(next) = self.slips_from_rest(*flow, true) {
+            if let Some(next) = self.slips_from_rest(*flow, Some((0.0, lasts))) {
                 return next;
             }
         }

@@ -1,0 +1,163 @@
+//! How steep a table may be before a body on it slips, tips over or begins to roll.
+//!
+//! ```text
+//! t = tan(slope),   G = t (cos phi, -sin phi) along e_h and e2,   k = I3;   A, Z, L and g as in `body::rim`
+//! stands on its face     slips at t = mu,   tips at t = a/Z
+//! rolls straight down    slips at t = mu (k + A^2)/k
+//! lies on two circles    N, F_2 of each as in `contact::lying`, c = sqrt((mu N)^2 - F_2^2):   slips at c + c' = |G_h|
+//!                        tips at Z |G_h| = |g| of the lower circle;   begins to roll at Z |G_2| = its dry couple
+//! rests on one circle    begins to roll at hypot(Z G_2, g - Z G_h) = delta
+//! ```
+//! Two circles that are alike, with the centre of mass between them, need F_2 = q t, q = |sin phi| held or k |sin phi|/(1 + k) rolling; then
+//!
+//! ```text
+//! t^2 = mu^2 (l^2 - mu^2)/(l^2 (cos^2 phi + q^2) - mu^2 cos^2 phi),  or  t = mu l/(q l + mu |cos phi|)  for  mu q l > (l^2 - mu^2) |cos phi|
+//! ```
+//! In the second case the upper circle, which carries less, has no friction left along the axis. The first one is a special case of a
+//! general equation of fourth degree in t, so that both are found as the change of sign of the margin.
+//!
+//! Error: 8 ulp for one circle or a face, and 1e-14 for two circles; a test of `steep` compares with these formulas.
+
+use super::body::Body;
+use super::contact::lying::{Lain, Lying};
+use super::contact::slip::Friction;
+use super::loss::{Couples, Holds, Law, Losses, Ways};
+use crate::error::{Error, within};
+use crate::methods::search::crossing;
+use crate::numbers::codes::coded;
+use core::f64::consts::{FRAC_PI_2, PI};
+
+/// Couples and forces below this are rounding errors.
+const NO_COUPLE: f64 = 1e-14;
+
+coded! {
+    /// How a body is on a table that is tilted.
+    pub enum Posture {
+        /// It stands on its face.
+        Standing = 0,
+        /// It lies on two circles, or stands on one with its axis across, and is free to roll.
+        Rolling = 1,
+        /// It lies on two circles, and dry losses hold it from rolling.
+        Lying = 2,
+        /// Dry losses hold it on one circle.
+        Edge = 3,
+    }
+}
+
+/// The forces on a body at rest on two circles, on a slope with this tangent, and the couple that holds it if it is held.
+fn on_two(body: &Body, held: bool, [t, phi]: [f64; 2]) -> Lain<f64> {
+    let mut losses = Couples::of(&Losses::NONE, |x| x);
+    losses.ways = Some(Ways { holds: Holds { contour: held, ..Holds::default() }, ..Ways::default() });
+    let (law, (sin, cos)) = (Lying::on(body, &Friction::coulomb(0.0), &Losses::NONE), phi.sin_cos());
+    Lying { losses: Some(losses), pull: Some([t * cos, -(t * sin)]), ..law }.rolls([0.0; 4])
+}
+
+/// The body on the circle that carries it at this inclination, and phi as seen from there.
+fn seen(body: &Body, theta: f64, phi: f64) -> (Body, f64) {
+    let body = body.at(theta);
+    (body, if body.view().over { phi + PI } else { phi })
+}
+
+/// The slope, in radians, beyond which a contact with this coefficient of friction slips. `phi` is the angle from downhill
+/// to the direction to which the axis leans; `theta` says on which face or circles a body of several circles rests.
+///
+/// ```
+/// use spincyl::{Body, steep::{Posture, slip_slope}};
+///
+/// let side = std::f64::consts::FRAC_PI_2;
+/// let slope = slip_slope(&Body::solid(2.0)?, side, 0.2, Posture::Rolling, -side)?;
+/// assert!((slope.tan() - 0.6).abs() < 1e-15); // three times mu
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) -> Result<f64, Error> {
+    within("mu", mu, (0.0, f64::MAX), "0 <= mu, finite")?;
+    within("phi", phi, (-f64::MAX, f64::MAX), "a finite angle")?;
+    if matches!(posture, Posture::Standing | Posture::Edge) {
+        face_or(body, theta, posture)?;
+        return Ok(mu.atan());
+    }
+    let (body, phi) = seen(body, theta, phi);
+    if !body.has_two_rims() {
+        let ell = within(
+            "ell",
+            body.ell(),
+            (-NO_COUPLE, NO_COUPLE),
+            "two circles on the table, or a ball or disk",
+        )?;
+        let alone = body.is_uniform_ball() || phi.cos().abs() < NO_COUPLE;
+        if posture == Posture::Rolling && !alone {
+            let expected = "pi/2 or -pi/2 for a body on one circle, which falls over with another direction";
+            return Err(Error::OutOfRange { name: "phi", value: phi, expected });
+        }
+        let (k, radius) = (body.i3(), body.shape().rim.radius((1.0, ell)));
+        let rolls = if posture == Posture::Rolling { (k + radius * radius) / k } else { 1.0 };
+        return Ok((mu * rolls).atan());
+    }
+    let held = posture == Posture::Lying;
+    // Forces are in units of the weight, so that none is infinite.
+    let margin = |slope: f64| {
+        let (Lain { force, .. }, cos) = (on_two(&body, held, [slope.tan(), phi]), slope.cos());
+        let [a, b] = force.map(|[n, across, _]| [mu * n * cos, (across * cos).abs()]);
+        let along = [a, b].map(|[most, across]| (most * most - across * across).max(0.0).sqrt());
+        (a[0] - a[1]).min(b[0] - b[1]).min(along[0] + along[1] - (slope.sin() * phi.cos()).abs())
+    };
+    let [level, steep] = [0.0, FRAC_PI_2].map(margin);
+    Ok(if level > 0.0 { crossing(margin, 0.0, FRAC_PI_2, level, steep) } else { 0.0 })
+}
+
+/// The slope, in radians, beyond which a body tips over the edge of its face, or over the lower circle of the two on which
+/// it lies; pi/2 if it never does. Arguments as for [`slip_slope`].
+pub fn tip_slope(body: &Body, theta: f64, posture: Posture, phi: f64) -> Result<f64, Error> {
+    within("phi", phi, (-f64::MAX, f64::MAX), "a finite angle")?;
+    if posture == Posture::Standing {
+        let [a, z] = face_or(body, theta, posture)?;
+        return Ok(if z > 0.0 { (a / z).atan() } else { FRAC_PI_2 });
+    }
+    let (body, phi) = seen(body, theta, phi);
+    if !body.has_two_rims() {
+        return Ok(FRAC_PI_2);
+    }
+    let (border, cos) = (body.border(), phi.cos());
+    let lower = border.circles[usize::from(cos < 0.0)].lever * cos.signum();
+    Ok(lower.max(0.0).atan2(border.height * cos.abs()))
+}
+
+/// The radius of the face at an inclination of 0 or pi, and the height of the centre of mass above it.
+fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error> {
+    let (rim, flat) = (body.told_at(theta).shape().rim, (0.0, theta.cos().signum()));
+    let a = rim.radius(flat);
+    if posture == Posture::Standing {
+        within("a", a, (f64::MIN_POSITIVE, f64::MAX), "a body with a face: a ball has none")?;
+    }
+    Ok([a, rim.height(flat)])
+}
+
+/// What a body at rest on a table needs, as a share of what holds it there, from slipping, rolling and tipping: the last two
+/// numbers are the slope and phi.
+pub fn shares(
+    body: &Body,
+    theta: f64,
+    mu: f64,
+    losses: &Losses,
+    posture: Posture,
+    [slope, phi]: [f64; 2],
+) -> Result<[f64; 3], Error> {
+    let t = slope.tan();
+    let of = |need: f64, most: f64| if need.abs() < NO_COUPLE { 0.0 } else { (need / most).abs() };
+    let slips = if mu < f64::INFINITY { slip_slope(body, theta, mu, posture, phi)? } else { FRAC_PI_2 };
+    let rolls = match posture {
+        Posture::Lying => {
+            let (body, phi) = seen(body, theta, phi);
+            let (at, law) =
+                (on_two(&body, true, [t, phi]), Lying::on(&body, &Friction::coulomb(0.0), losses));
+            of(at.couple[1], law.limits(at.force.map(|force| force[0]))[1])
+        }
+        Posture::Edge => {
+            let (rim, angle, (sin, cos)) = (body.told_at(theta).shape().rim, theta.sin_cos(), phi.sin_cos());
+            let (high, lever) = (rim.height(angle), rim.lever(angle));
+            of((high * t * sin).hypot(lever - high * t * cos), losses.coefficient(Law::RollingResistance))
+        }
+        _ => 0.0,
+    };
+    Ok([of(t, slips.tan()), rolls, of(t, tip_slope(body, theta, posture, phi)?.tan())])
+}

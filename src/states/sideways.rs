@@ -1,0 +1,49 @@
+//! The drift of a body that spins steadily on a slope: across it, not down.
+//!
+//! ```text
+//! theta - theta0 = -sin(beta) C cos phi                                 it leans a little more on one side of its circle
+//! v_y = sin(beta)/2 ((I1 A^2 + I3 L^2)/(D Om) - (V_t + Z Om) C - (V/Om) W)
+//! C = (Z + (S3 I1 A - S1 I3 L)/(D Om))/(J (kappa - Om^2)),   W = -(I3 L/(D Om) + (w1_t - ct w1) C)/s
+//! S1 = -2 I1 ct w1 + I3 w3 + (Z/s)(V - L w1),   S3 = I3 w1 + (Z/s) A w1        d(J w2')/d(w1, w3)
+//! ```
+//! This is the steady rolling to first order in the slope beta: Om is the precession, V the velocity of the centre along e2, and
+//! w1_t, w3_t, V_t are derivatives with respect to theta along the lines of `contact::reduced`, where A, L, J, D and ct are explained, too;
+//! Z is the height of the centre. At kappa = Om^2 the nutation is in resonance with the precession, and the body runs downhill. With
+//! kappa < 0 it leaves the steady state.
+//!
+//! Error: 64 ulp of the largest term; of second order in the slope as a law of motions.
+
+use super::stability;
+use crate::laws::body::Body;
+use crate::laws::contact::Contact;
+use crate::laws::contact::rolling::centre_velocity;
+use crate::laws::state::{State, drilling_of};
+
+/// The velocity across the slope, along y, over the sine of the slope, and kappa/Om^2; NaN for a state that is not steady in
+/// rolling, and that does not precess.
+///
+/// ```
+/// use spincyl::{Body, sideways::slope_drift, steady};
+///
+/// let tube = Body::tube(6.0, 0.8)?;
+/// let [across, resonance] = slope_drift(&tube, &steady::state(&tube, 1.45)?);
+/// assert!((across - 0.397_597_235_3).abs() < 1e-10 && resonance < 0.3);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+pub fn slope_drift(body: &Body, y: &State) -> [f64; 2] {
+    let (law, angle, &State { w1, w3, .. }) = (Contact::Rolling.reduced(body), y.theta.sin_cos(), y);
+    let (of, rim, (i1, i3), (s, c)) = (law.at(angle), law.shape.rim, (law.shape.i1, law.shape.i3), angle);
+    let [radius, depth, height] = [rim.radius(angle), rim.depth(angle), rim.height(angle)];
+    let (turns, ct, kappa) = (w1 / s, c / s, stability::rolling(body, y));
+    let [_, speed, _] = centre_velocity(&law.shape, angle, [w1, 0.0, w3]);
+    let [w1_t, w3_t] = law.lines(&of, angle, w1, w3);
+    let speed_t = rim.rho * drilling_of(angle, w1, w3) + radius * w3_t - depth * w1_t;
+    let s1 = -2.0 * i1 * ct * w1 + i3 * w3 + height / s * (speed - depth * w1);
+    let s3 = i3 * w1 + height / s * radius * w1;
+    let shares = [i1 * radius, i3 * depth].map(|x| x * of.per_d / turns);
+    let swings =
+        (height + s3 * shares[0] - s1 * shares[1]) / (law.inertia(|| angle) * (kappa - turns * turns));
+    let aside = -(shares[1] + (w1_t - ct * w1) * swings) / s;
+    let across = shares[0] * radius + shares[1] * depth - (speed_t + height * turns) * swings;
+    [0.5 * (across - speed / turns * aside), kappa / (turns * turns)]
+}
