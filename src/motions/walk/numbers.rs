@@ -76,7 +76,7 @@ pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64
 }
 
 /// The sine of a heading straight up or down a slope: no number is exactly pi, and a lean uphill is unstable in phi.
-const STRAIGHT: f64 = 2.0 * f64::EPSILON;
+const UP_OR_DOWN: f64 = 2.0 * f64::EPSILON;
 
 /// The pull of a table whose slope has this tangent, along e_h and e2; 0 if the pose is not among the numbers.
 #[inline(always)]
@@ -85,7 +85,7 @@ pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
         return [0.0; 2];
     }
     let (sin, cos) = y[PHI].sin_cos();
-    [tilt * cos, if sin.abs() <= STRAIGHT { 0.0 } else { -(tilt * sin) }]
+    [tilt * cos, if sin.abs() <= UP_OR_DOWN { 0.0 } else { -(tilt * sin) }]
 }
 
 /// The velocity of a table that turns at this rate under the contact point, along e_h and e2.

@@ -328,7 +328,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let falls = mu * normal + z * grows + nu * a * w + up * pull_h;
         // theta'' grows with the drag of a film, and that drag with the slip: a third power of the time.
         let film = if falls < 0.0 { thick } else { 0.0 };
-        let faster = -(z * film * falls / shape.i1);
+        let faster = if film > 0.0 { -(z * film * falls / shape.i1) } else { 0.0 };
         let bends = film * (falls - a * faster * slip) - if film > 0.0 { z * faster } else { 0.0 };
         // A face that just rests has no direction in which it turns.
         let lasts = (2.0 * RISEN / grows).sqrt().min((6.0 * RISEN / faster).cbrt());
