@@ -42,8 +42,8 @@ class Table(Hinting):
     -----
     The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
     (docs/slopes.md). Bodies of revolution roll, slip, fly, bounce and slide on their face there, under every
-    law of friction at a point, and lose energy by rolling resistance, viscous friction and the air. Stones roll and slip there,
-    with the same losses; their table does not turn.
+    law of friction at a point, and lose energy by all laws but dry friction along the contour and drilling
+    friction together. Stones roll and slip there, with the same losses; their table does not turn.
 
     Examples
     --------

@@ -51,6 +51,7 @@ fn any_loss() -> impl Strategy<Value = Losses> {
         2 => Just(Losses::NONE),
         1 => of(Law::RollingResistance, 0.05),
         1 => of(Law::AirLinear, 0.1),
+        1 => of(Law::Drilling, 0.1),
         1 => (0.001..0.05f64, 0.001..0.1f64).prop_map(|(rolling, air)| {
             Losses::of(Law::RollingResistance, rolling).with(Law::AirQuadratic, air)
         }),
