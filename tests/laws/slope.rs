@@ -423,7 +423,7 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
         &body,
         start.with_slip([0.0; 2]),
         &times,
-        &Ask::default().with_slope(0.3),
+        &Ask::default().with_slope(0.3).with_pose(true),
         laws,
         || true,
     );

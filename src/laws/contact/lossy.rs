@@ -16,7 +16,7 @@
 
 use super::reduced::{Coefficients, Rates, Reduced};
 use super::{Contact, rolling};
-use crate::laws::body::Body;
+use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couple, Couples, Law, Losses, OwnCouple, UnderCouple, rolling_couple_needed};
 use crate::laws::newton;
 use crate::laws::state::{State, drilling_of, rolling_of};
@@ -112,15 +112,28 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// The response of the body at the sine and cosine of theta, phi' = w1/s, and w.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
+        self.under(self.losses.pull, angle, precession, w, held)
+    }
+
+    /// The same under this pull of the table.
+    #[inline(always)]
+    pub fn under(
+        &self,
+        pull: Option<[T; 2]>,
+        angle: (T, T),
+        precession: T,
+        w: [T; 3],
+        held: Held<T>,
+    ) -> Acted<T> {
         let ((s, c), [w1, w2, w3], reduced) = (angle, w, self.rates.reduced());
         if matches!(held, Held::Rolling) {
-            return self.pivoting_response(angle, precession, w);
+            return self.pivoting_response(pull, angle, precession, w);
         }
         let (shape, of) = (&reduced.shape, reduced.at(angle));
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
         let [mut d1, mut d2, mut d3] = self.rates.at(s, c, w);
         let seen = self.losses.seen(&shape.rim, angle, precession, w);
-        let tilts = self.losses.tilts();
+        let tilts = pull.is_some() || self.losses.tilts();
         let mut per_inertia = one;
         if tilts {
             per_inertia = one
@@ -130,7 +143,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 );
         }
         let carried = slope * w2 * w2;
-        let pulled = self.pulled(angle);
+        let pulled = self.couple_of_pull(pull, angle);
         if let Some([m1, m2, m3]) = pulled {
             [d1, d3] = Self::add_couple(&of, [d1, d3], m1, m3);
             d2 = m2.mac(per_inertia, d2);
@@ -176,7 +189,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 (rolling::force_along(shape, angle, w, [r1, tilting, r3], m3), across)
             }
         };
-        let (along, across) = self.without_pull(along, across);
+        let (along, across) = self.without_pull(pull, along, across);
         let power = self.losses.power(&seen, pressing);
         Acted { w: [r1, tilting, r3], force: [normal, along, across], power, held: stays }
     }
@@ -185,15 +198,16 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
 impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// The couple of the pull of a tilted table about a contact point that rolls.
     #[inline(always)]
-    fn pulled(&self, angle: (T, T)) -> Option<[T; 3]> {
-        let Reduced { contact, shape, .. } = self.rates.reduced();
-        if *contact == Contact::Smooth { None } else { self.losses.couple_of_pull(&shape.rim, angle) }
+    fn couple_of_pull(&self, pull: Option<[T; 2]>, angle: (T, T)) -> Option<[T; 3]> {
+        let Reduced { contact, shape: Shape { rim, .. }, .. } = self.rates.reduced();
+        let [along_h, along_2] = pull.filter(|_| *contact == Contact::Rolling)?;
+        Some([-(rim.depth(angle) * along_2), rim.height(angle) * along_h, rim.radius(angle) * along_2])
     }
 
     /// The friction, which accelerates the centre beside the pull.
     #[inline(always)]
-    fn without_pull(&self, along: T, across: T) -> (T, T) {
-        match self.losses.pull {
+    fn without_pull(&self, pull: Option<[T; 2]>, along: T, across: T) -> (T, T) {
+        match pull {
             Some(pull) if self.rates.reduced().contact == Contact::Rolling => {
                 (along - pull[1], across - pull[0])
             }
@@ -204,7 +218,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
     /// The response of a body that only turns about the vertical, with N = 1, and the couple of rolling resistance that
     /// this needs, with its limit. A rolling contact point is at rest, so that the centre moves on a circle.
     #[inline(always)]
-    fn pivoting_response(&self, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
+    fn pivoting_response(&self, pull: Option<[T; 2]>, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
         let ((s, c), [w1, _, w3], reduced) = (angle, w, self.rates.reduced());
         let (rim, i1, i3) = (&reduced.shape.rim, reduced.shape.i1, reduced.shape.i3);
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
@@ -217,7 +231,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
                 |_| one,
             )
             .under(one);
-        if let Some(pulled) = self.pulled(angle) {
+        if let Some(pulled) = self.couple_of_pull(pull, angle) {
             (0..3).for_each(|i| couple[i] = couple[i] + pulled[i]);
         }
         let [m1, m2, m3] = couple;
@@ -236,7 +250,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let needs = rolling_couple_needed([c * more1 - s * more3, more2], contour);
         let held = [needs, self.losses.coefficient(Law::RollingResistance)];
         let power = self.losses.power(&seen, one);
-        let (along, across) = self.without_pull(along, across);
+        let (along, across) = self.without_pull(pull, along, across);
         Acted { w: [s * turn, zero, c * turn], force: [one, along, across], power, held }
     }
 }

@@ -384,13 +384,6 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         Couples { coefficients, present, ways, pull, given: Some(Couple { pressed, ..given }) }
     }
 
-    /// The couple of the pull about a contact point that does not slip; None on a level table.
-    #[inline(always)]
-    pub fn couple_of_pull(&self, rim: &Rim<T>, angle: (T, T)) -> Option<[T; 3]> {
-        let [along_h, along_2] = self.pull?;
-        Some([-(rim.depth(angle) * along_2), rim.height(angle) * along_h, rim.radius(angle) * along_2])
-    }
-
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {

@@ -26,7 +26,7 @@ use crate::laws::contact::Table;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::Standstill;
-use crate::laws::loss::Losses;
+use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::walk::numbers::{
@@ -38,7 +38,7 @@ use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
 /// A point of a ring is at rest whose slip is below this share of the velocity of the centre.
-const SLIPS_OFF: f64 = 1e-6;
+const SLIPS_OFF: f64 = 1e-4;
 /// Slower velocities are those of a body at rest.
 const UNMOVED: f64 = 1e-13;
 /// The inclination from which a rising body is followed on its rim. It is above that at which a face has landed.
@@ -197,7 +197,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         };
         // Its pressure cannot leave the ring, at rest and in a slide.
         let [rests, slides] = [slope <= holds, slope > holds && rubs * z <= a];
-        if rests && slope * z <= a { None } else { Some(!slides) }
+        if rests && slope * z <= a + self.resists_tipping() { None } else { Some(!slides) }
+    }
+
+    /// The arm of rolling resistance, which acts on the one point of the ring over which a body tips.
+    fn resists_tipping(&self) -> f64 {
+        self.ask.losses.coefficient(Law::RollingResistance)
     }
 
     /// The phase of a body at rest that a slope tips over the lowest point of its ring.
@@ -306,8 +311,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         };
         // In a film that a slope makes drag more and more, the body topples from lam = 1 on.
         let lam = if thick > 0.0 { (mu * z / a).max(1.0) } else { mu * z / a };
-        // A spin as fast as the slide leaves no slip at this point, which stays.
-        let stays = slip < SLIPS_OFF * v;
+        // A spin as fast as the slide leaves no slip at this point, which stays. Rolling resistance may keep the body from rising.
+        let stays = slip < SLIPS_OFF * v || (lam - 1.0) * a < self.resists_tipping();
         if stays || !(mu * a * z < shape.i1 + a * a) {
             return Next::Ends(Ending::Painleve);
         }

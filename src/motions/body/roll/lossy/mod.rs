@@ -150,15 +150,18 @@ impl<G: Own> LossyFlow<G> {
         driven(self.om, tilted, contact_velocity(rim, angle, w2, spin, with))
     }
 
-    /// The law with the pull of the table at these numbers of the flow; None on a level table.
+    /// The pull of the table at these numbers of the flow; None on a level table.
     #[inline(always)]
-    fn tilted<const N: usize>(&self, y: &[f64; N]) -> Option<Lossy<f64, G>> {
-        (poses(N) && self.is_pulled()).then(|| {
-            let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-            let spin = if self.moves { w[2] - y[COS] * precession } else { 0.0 };
-            let pull = self.pull_at(y, (y[SIN], y[COS]), y[W2], spin);
-            Lossy { losses: self.law.losses.pulled(pull), ..self.law }
-        })
+    fn tilted<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        if !(poses(N) && self.is_pulled()) {
+            return None;
+        }
+        if self.om == 0.0 {
+            return Some(pull(self.tilt, y));
+        }
+        let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
+        let spin = if self.moves { w[2] - y[COS] * precession } else { 0.0 };
+        Some(self.pull_at(y, (y[SIN], y[COS]), y[W2], spin))
     }
 
     /// The same flow with the pull of the slope at these numbers.
@@ -237,20 +240,20 @@ impl<G: Own> LossyFlow<G> {
     }
 
     fn response(&self, angle: (f64, f64), precession: f64, w: [f64; 3], held: Held<f64>) -> Acted<f64> {
-        self.response_under(&self.law, angle, precession, w, held)
+        self.response_under(self.law.losses.pull, angle, precession, w, held)
     }
 
     #[inline(always)]
     fn response_under(
         &self,
-        law: &Lossy<f64, G>,
+        pull: Option<[f64; 2]>,
         angle: (f64, f64),
         precession: f64,
         w: [f64; 3],
         held: Held<f64>,
     ) -> Acted<f64> {
         let drills = matches!(held, Held::Drilling);
-        let acted = law.at(angle, precession, w, held);
+        let acted = self.law.under(pull, angle, precession, w, held);
         self.patch.filter(|_| drills).map_or(acted, |patch| self.held_by(&patch, acted))
     }
 

@@ -47,13 +47,11 @@ impl<G: Own> LossyFlow<G> {
         w2: f64,
         pull: Option<[f64; 2]>,
     ) -> (f64, [f64; 3], Acted<f64>, f64) {
-        let bare = self.bare;
-        let bare = pull.map_or(bare, |pull| Lossy { losses: bare.losses.pulled(pull), ..bare });
         let radius = self.law.rates.reduced().shape.rim.radius(angle);
         let way = if self.settled { self.settled_way } else { self.ways().contour };
         let act = |precession: f64, w: [f64; 3], rate: f64| {
             let held = Held::Contour(rate);
-            let acted = bare.at(angle, precession, w, held);
+            let acted = self.bare.under(pull, angle, precession, w, held);
             Turned { acted, push: acted.held[0], normal: acted.force[0] }
         };
         let Balance { precession, w, turned: Turned { acted, push, .. }, spin } =
@@ -94,9 +92,7 @@ impl<G: Own> LossyFlow<G> {
         let y = &place.y;
         let angle = y.angle();
         let (_, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-        let tilted = self.tilted(y);
-        let law = tilted.as_ref().unwrap_or(&self.law);
-        let acted = self.response_under(law, angle, w[0] / angle.0, w, self.held(0.0));
+        let acted = self.response_under(self.tilted(y), angle, w[0] / angle.0, w, self.held(0.0));
         rolling_growth(angle, w, acted.w)
     }
 
@@ -133,13 +129,14 @@ impl<G: Own> LossyFlow<G> {
     fn margins_of<T: Real, H: OwnCouple<T>>(
         &self,
         law: &Lossy<T, H>,
+        tilted: Option<[T; 2]>,
         y: [T; 5],
         grips: Option<f64>,
     ) -> [T; MARGINS] {
         let [s, c, _, w2, _] = y;
         let (precession, w) = self.turning(y);
         let one = s.splat(1.0);
-        let acted = law.at((s, c), precession, w, self.held(s));
+        let acted = law.under(tilted, (s, c), precession, w, self.held(s));
         let endless = self.moves && self.law.losses.turn_endlessly();
         let number = |x: f64| s.splat(x);
         // A ball may have passed its pole, beyond which s is negative.
@@ -186,13 +183,12 @@ impl<G: Own> LossyFlow<G> {
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         let tilted = self.tilted(y);
-        let law = tilted.as_ref().unwrap_or(&self.law);
         let (precession, w, acted) = if self.settled {
-            let (precession, w, acted, _) = self.settled((s, c), y[P], w2, law.losses.pull);
+            let (precession, w, acted, _) = self.settled((s, c), y[P], w2, tilted);
             (precession, w, acted)
         } else {
             let (precession, w) = self.turning([s, c, y[P], w2, y[W3]]);
-            (precession, w, self.response_under(law, (s, c), precession, w, self.held(0.0)))
+            (precession, w, self.response_under(tilted, (s, c), precession, w, self.held(0.0)))
         };
         let [d1, d2, d3] = acted.w;
         let (turn, free) = if self.moves {
@@ -249,17 +245,13 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
-        if poses(N) && self.is_pulled() {
-            let tilted = Lossy { losses: self.sloped.losses.pulled(self.sloped_pull(place)), ..self.sloped };
-            return self.margins_of(&tilted, y, self.grips(&place.y));
-        }
-        self.margins_of(&self.sloped, y, self.grips(&place.y))
+        let tilted = (poses(N) && self.is_pulled()).then(|| self.sloped_pull(place));
+        self.margins_of(&self.sloped, tilted, y, self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let tilted = self.tilted(y);
-        let law = tilted.as_ref().unwrap_or(&self.law);
-        self.margins_of(law, core::array::from_fn(|k| y[k]), self.grips(y))[i]
+        let y5 = core::array::from_fn(|k| y[k]);
+        self.margins_of(&self.law, self.tilted(y), y5, self.grips(y))[i]
     }
 
     fn end(&self, i: usize) -> Halt {
