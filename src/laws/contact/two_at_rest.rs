@@ -29,11 +29,12 @@ pub(crate) struct Begun {
 impl Lying<f64> {
     /// How a body begins to move whose circles are at rest and which does not turn about the vertical. The coefficient of
     /// friction of each circle is that of `fixed` while it sticks, and that of sliding if it cannot. None if no answer is
-    /// found, or if one that slips could also stick.
-    pub fn begins(&self, w: [f64; 2], fixed: [f64; 2]) -> Option<Begun> {
+    /// found, or if one that slips could also stick. The search for friction, along e_h and e2 at each circle, begins at `near`:
+    /// it is slow in directions in which friction changes the slips little.
+    pub fn begins(&self, w: [f64; 2], fixed: [f64; 2], near: [[f64; 2]; 2]) -> Option<Begun> {
         let (mut most, mut lets_go) = (fixed, [false; 2]);
         loop {
-            let begun = self.begins_under(w, most)?;
+            let begun = self.begins_under(w, most, near)?;
             let more = [0, 1].map(|k| begun.moves[k] || lets_go[k]);
             if more == lets_go || fixed == self.strength {
                 let sound = fixed == self.strength || begun.moves == lets_go;
@@ -45,8 +46,8 @@ impl Lying<f64> {
     }
 
     /// The same with these largest coefficients.
-    fn begins_under(&self, w: [f64; 2], most: [f64; 2]) -> Option<Begun> {
-        let mut q = [[0.0; 2]; 2];
+    fn begins_under(&self, w: [f64; 2], most: [f64; 2], near: [[f64; 2]; 2]) -> Option<Begun> {
+        let mut q = near;
         let mut velocity = 0.0;
         let step = self.step();
         for _ in 0..SEARCH_STEPS {

@@ -259,14 +259,19 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// time, or by this share. None if the search for it does not end.
     #[inline(never)]
     fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: Option<(f64, f64)>) -> Option<Next> {
+        // Friction that has just held both rims is at its limit.
+        let (held, along) =
+            (flow.lain(&self.at).force, flow.law_here(&self.at).pulls_to_apex(flat(&self.at)));
+        let [c, d] = flow.holds_along(&held);
+        let near = [0, 1].map(|k| [along * [c, d][k] / (c + d).max(f64::MIN_POSITIVE), held[k][1]]);
         flow.stance = Stance::Slips;
         flow.holds_all(&self.at);
         let w = [self.at[W1], self.at[W3]];
         let begins = |flow: &LyingFlow<G>| {
             let law = flow.law_here(&self.at);
-            let Some((share, _)) = released else { return law.begins(w, [flow.fixed; 2]) };
+            let Some((share, _)) = released else { return law.begins(w, [flow.fixed; 2], [[0.0; 2]; 2]) };
             let mu = law.strength.map(|mu| mu * (1.0 - share));
-            Lying { strength: mu, ..law }.begins(w, mu)
+            Lying { strength: mu, ..law }.begins(w, mu, near)
         };
         let mut found = begins(&flow);
         if found.is_some_and(|begun| flow.lets_roll(&begun.lain)) {

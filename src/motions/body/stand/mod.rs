@@ -304,16 +304,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
         let ([v_h, v_2], w) = (flow.velocity(&self.at), up * self.at[W3]);
         let v = v_h.hypot(v_2);
-        let slip = ((v - a * w.abs()) * (v + a * w.abs())).sqrt();
+        let square = (v - a * w.abs()) * (v + a * w.abs());
+        // A spin as fast as the slide leaves no slip at this point, which stays.
+        if square <= (SLIPS_OFF * v).powi(2) {
+            return Next::Ends(Ending::Painleve);
+        }
+        let slip = square.sqrt();
         let (mu, thick) = match friction {
             Friction::Coulomb { mu, .. } => (*mu, 0.0),
             Friction::Viscous { c } => (c * slip, *c),
         };
         // In a film that a slope makes drag more and more, the body topples from lam = 1 on.
         let lam = if thick > 0.0 { (mu * z / a).max(1.0) } else { mu * z / a };
-        // A spin as fast as the slide leaves no slip at this point, which stays. Rolling resistance may keep the body from rising.
-        let stays = slip < SLIPS_OFF * v || (lam - 1.0) * a < self.resists_tipping();
-        if stays || !(mu * a * z < shape.i1 + a * a) {
+        // Rolling resistance may keep the body from rising.
+        if (lam - 1.0) * a < self.resists_tipping() || mu * a * z >= shape.i1 + a * a {
             return Next::Ends(Ending::Painleve);
         }
         let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
@@ -412,10 +416,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             () => here / (here - there),
         };
         let rates = follows(nu).1;
-        let lasts = if rises > 0.0 { RISEN / rises } else { (2.0 * RISEN / (-up * rates[W2])).sqrt() };
-        if !(lasts > 0.0) {
+        let lifts = -up * rates[W2];
+        if rises == 0.0 && lifts <= 0.0 {
             return Next::Ends(Ending::Painleve);
         }
+        let lasts = if rises > 0.0 { RISEN / rises } else { (2.0 * RISEN / lifts).sqrt() };
         self.claims(if rises > 0.0 { 0.0 } else { lasts * lasts });
         self.sees_face();
         self.begins_phase(if sticks { Kind::Rolling } else { Kind::Slipping });
