@@ -436,7 +436,7 @@ def test_the_slider_of_the_slope_tilts_the_table_and_the_motion_is_that_of_the_l
     page.select_option("#knob-contact", "coulomb")
     page.locator("#knob-patch").evaluate("e => { e.value = -1; e.dispatchEvent(new Event('input')); }")
     settled(page)
-    assert "A slope is not computed with a patch of contact" in page.locator("#because").inner_text()
+    assert "not computed" not in page.locator("#because").inner_text()
     knob.evaluate("e => { e.value = 0; e.dispatchEvent(new Event('input')); }")
     page.wait_for_function("() => !location.hash.includes('slope') && !location.hash.includes('phi0')")
     assert not heading.is_visible() and page.complaints == []

@@ -51,7 +51,6 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     }
     match () {
         () if slope == 0.0 => Ok(()),
-        () if ask.table.friction().patch() > 0.0 => refuses("0 with a patch of contact"),
         () if dry => refuses("0 with dry friction along the contour and drilling friction together"),
         () => Ok(()),
     }

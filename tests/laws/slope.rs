@@ -2,7 +2,7 @@
 
 use crate::common::rim::place;
 use crate::common::wander;
-use spincyl::contact::{Friction, slip};
+use spincyl::contact::{Friction, Table, slip};
 use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
@@ -164,7 +164,8 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
         1 => Ask::on(Friction::Viscous { c: within(next, 0.1, 2.0) }),
         _ => {
             let mu = within(next, 0.05, 0.6);
-            Ask::on(Friction::Coulomb { mu, fixed: mu * within(next, 1.0, 1.5), patch: 0.0 })
+            let patch = if next() < 0.3 { within(next, 0.001, 0.1) } else { 0.0 };
+            Ask::on(Friction::Coulomb { mu, fixed: mu * within(next, 1.0, 1.5), patch })
         }
     };
     if ask.table.rubs() && next() < 0.7 {
@@ -197,7 +198,8 @@ fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
     let (mut followed, mut hops, mut ends) = (0, 0, 0);
     for _ in 0..400 {
         let (body, start, mut ask) = drawn(&mut next);
-        if ask.table.rubs() && next() < 0.5 {
+        let point = !matches!(ask.table, Table::Rubs(Friction::Coulomb { patch, .. }) if patch > 0.0);
+        if ask.table.rubs() && point && next() < 0.5 {
             ask = ask.with_restitution(0.9 * next());
         }
         let times: Vec<f64> = (0..=20).map(|k| 0.25 * f64::from(k)).collect();
@@ -219,7 +221,7 @@ fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
             assert!(off < claim, "{off:e} {claim:e} at {}: {body:?} {start:?} {ask:?}", m.times[i]);
         }
     }
-    assert!(followed > 380 && hops > 20 && ends > 40, "{followed} {hops} {ends}");
+    assert!(followed > 370 && hops > 20 && ends > 40, "{followed} {hops} {ends}");
 }
 
 #[test]
@@ -380,7 +382,6 @@ fn what_is_not_computed_on_a_slope_is_refused_by_name() {
     for ask in [
         Ask::default().with_slope(FRAC_PI_2),
         Ask::default().with_slope(f64::NAN),
-        Ask::on(patch).with_slope(0.1),
         Ask::default()
             .with_losses(Losses::of(Law::DryContour, 0.01) + Losses::of(Law::Drilling, 0.01))
             .with_slope(0.1),
@@ -438,4 +439,39 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
     for (a, b) in own.states.iter().zip(&known.states) {
         assert!((0..3).all(|i| (a.w[i] - b.w[i]).abs() < 1e-8), "{:?} {:?}", a.w, b.w);
     }
+}
+
+#[test]
+fn a_ball_that_drills_on_a_patch_creeps_down_as_far_from_rolling_as_the_slope_asks() {
+    // While it drills, the slip over the speed of the rim of the patch has friction for what rolling needs: I/(1 + I) of the
+    // pull.
+    let (mu, beta, radius) = (0.3, 0.2f64, 0.05);
+    let friction = Friction::Coulomb { mu, fixed: mu, patch: radius };
+    let start = Start::from(State { theta: FRAC_PI_2, w1: 3.0, w2: 0.0, w3: 0.0 });
+    let m = rolled(&ball(), start, &[3.0, 5.0, 8.0], &Ask::on(friction).with_slope(beta));
+    for i in 0..3 {
+        let u = m.path.as_ref().unwrap().slip[i];
+        let drills = {
+            let y = m.states[i];
+            y.theta.sin() * y.w1 + y.theta.cos() * y.w3
+        };
+        let share = patch_share(u[0].hypot(u[1]) / (radius * drills.abs()));
+        let needed = 0.4 / 1.4 * beta.tan() / mu;
+        assert!((share / needed - 1.0).abs() < 0.01, "{share} {needed}");
+    }
+}
+
+/// The share of friction that a patch has against a slip of k times the speed of its rim, by a sum over the pressure of Hertz.
+fn patch_share(k: f64) -> f64 {
+    let (rings, spokes) = (400, 720);
+    let mut sum = 0.0;
+    for i in 0..rings {
+        let r = (f64::from(i) + 0.5) / f64::from(rings);
+        for j in 0..spokes {
+            let (sin, cos) = (2.0 * PI * (f64::from(j) + 0.5) / f64::from(spokes)).sin_cos();
+            let [x, y] = [k - r * sin, r * cos];
+            sum += 1.5 * (1.0 - r * r).sqrt() * r * x / x.hypot(y);
+        }
+    }
+    2.0 * sum / f64::from(rings * spokes)
 }

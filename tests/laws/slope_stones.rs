@@ -62,6 +62,8 @@ fn any_table() -> impl Strategy<Value = Ask> {
     prop_oneof![
         2 => (0.0..0.9f64).prop_map(|mu| Ask::on(Friction::coulomb(mu))),
         1 => (0.1..0.6f64).prop_map(|mu| Ask::on(Friction::Coulomb { mu, fixed: 1.5 * mu, patch: 0.0 })),
+        1 => (0.1..0.6f64, 0.001..0.1f64)
+            .prop_map(|(mu, patch)| Ask::on(Friction::Coulomb { mu, fixed: mu, patch })),
         1 => (0.05..2.0f64).prop_map(|c| Ask::on(Friction::Viscous { c })),
         1 => Just(Ask::on(Contact::Rolling)),
     ]

@@ -15,7 +15,7 @@ use crate::methods::flow::{Flow, FlowPlace};
 use crate::motions::body::roll::lossy::REST;
 use crate::motions::dry::creep::{Creeps, derivatives, slopes};
 use crate::motions::walk::numbers::{
-    BodyNumbers, HEAT, Halt, MARGINS, SIN, U2, UH, W1, W2, W3, loses, poses,
+    BodyNumbers, HEAT, Halt, MARGINS, SIN, U2, UH, W1, W2, W3, loses, poses, pull,
 };
 use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;
@@ -53,7 +53,7 @@ impl<L: Own> Slide<L> {
     /// The slip of the creep of a uniform ball on a patch; it is zero while the ball does not roll. None for another body,
     /// and with poses where the slip does not vanish, since it would turn with e_h.
     fn creep_of<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
-        let (creeping, angle) = (self.creeping?, y.angle());
+        let (creeping, angle) = (self.creeping.filter(|_| self.tilt == 0.0)?, y.angle());
         if creeping.k == 0.0 || is_still(y) {
             return Some([0.0; 2]);
         }
@@ -145,11 +145,13 @@ impl<L: Own> Creeps<MARGINS, REACTING> for Slide<L> {
         let Some(patch) = self.sloped.patch() else {
             return if L::IS { slopes(y, sizes, |y| self.rates(y)) } else { SMatrix::zeros() };
         };
+        let [pull_h, pull_2] = pull(self.tilt, y).map(Dual::constant);
         // Differences would not resolve a patch that hardly drills.
         derivatives(y, |[s, c, w1, w2, w3, u_h, u_2]: [Dual<f64>; REACTING]| {
             let (at, pace, _) = self.sloped_on((s, c), [w1, w2, w3], [u_h, u_2], patch);
             let mut all = [s, c, w1, w2, w3, u_h, u_2, pace];
             self.sloped.writes(&{ all }, &mut all, (&at, pace));
+            (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
             core::array::from_fn(|i| all[i])
         })
     }
