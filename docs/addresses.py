@@ -53,6 +53,9 @@ def body_of_revolution(words: dict[str, str]) -> str:
         "kick": kick,
         "contact": table,
         "losses": law,
+        "table": call("sc.Table", words.pop("slope"), phi0=words.pop("phi0", None))
+        if "slope" in words
+        else None,
         "t": until and number(float(until) * (size.seconds(1.0) if size else 1.0)),
         "slow": words.pop("slow", None),
     }

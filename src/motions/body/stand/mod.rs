@@ -33,7 +33,7 @@ use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses, pull,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
-use crate::motions::{Ask, Ending, Kind};
+use crate::motions::{Ending, Kind};
 use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
