@@ -54,7 +54,7 @@ OPTIONS = {
     "losses": Row("losses", "losses", "losses", "losses couple", "losses", "--loss", "losses: law loss"),
     "table": Row(
         "table", "table", "table", "slope turning heading place", "slope turning",
-        "none: the command has level tables", "none: a page has level tables",
+        "none: the command has level tables", "table: slope phi0",
     ),
     "max_nfev": Row(
         "max_nfev", "max_nfev", "max_nfev", "max_nfev", "max_evaluations", "none: Ctrl-C ends a command",
