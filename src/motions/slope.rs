@@ -29,7 +29,7 @@ use core::f64::consts::FRAC_PI_2;
 
 /// A slope: the conversion from the units in which its motions are computed.
 #[derive(Debug, Clone, Copy)]
-struct Slope {
+pub(crate) struct Slope {
     /// Natural units are those in which the part of gravity across the table is 1.
     scale: Scale,
 }
@@ -132,7 +132,7 @@ pub(crate) fn on_slope<S: Moving>(
 
 impl Slope {
     /// The slope of a motion; None on a level table.
-    fn of(ask: &Ask) -> Result<Option<Self>, Error> {
+    pub fn of(ask: &Ask) -> Result<Option<Self>, Error> {
         check_slope(ask)?;
         if ask.is_level() {
             return Ok(None);
@@ -141,7 +141,7 @@ impl Slope {
     }
 
     /// The laws in the units of the slope.
-    fn ask(&self, ask: &Ask) -> Ask {
+    pub fn ask(&self, ask: &Ask) -> Ask {
         let mut losses = Losses::NONE;
         for (law, coefficient) in ask.losses.iter() {
             losses = losses.with(law, self.scale.coefficient(law, coefficient));
@@ -156,14 +156,14 @@ impl Slope {
     }
 
     /// The times since `t0` in the units of the slope.
-    fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
+    pub fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
         let mut since = room(times.len())?;
         since.extend(times.iter().map(|t| self.scale.time(t - t0)));
         Ok(since)
     }
 
     /// The initial conditions in the units of the slope, at time 0.
-    fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
+    pub fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
         let speed = |u: f64| self.scale.speed(u);
         Start {
             state: start.state.at_pace(speed(1.0)),
@@ -175,7 +175,7 @@ impl Slope {
     }
 
     /// The motion from `start` at these times, from one in the units of the slope.
-    fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
+    pub fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
         let Self { scale } = self;
         let Followed { mut motion, mut path } = found;
         let (pace, weight) = (scale.metres_per_second(1.0), scale.newtons(1.0));

@@ -19,11 +19,12 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::ask::rests_on::axis_up;
 use crate::motions::body::BodyWalk;
-use crate::motions::body::followed;
+use crate::motions::body::check_walk;
 use crate::motions::body::spun::knows;
+use crate::motions::slope::Slope;
 use crate::motions::walk::Pause;
 use crate::motions::walk::two_runs::{Followed, rougher};
-use crate::motions::{Ending, Kind, Phase};
+use crate::motions::{Ask, Ending, Kind, Phase, Start};
 use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
 use fearless_simd::Level;
@@ -78,80 +79,81 @@ fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), 
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
     let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3], State)>();
-    let one = size_of::<BodyWalk<'_, 10>>() + PHASES + times.saturating_mul(at_a_time);
+    let one = size_of::<BodyWalk<'_, 14>>() + size_of::<Asked>() + PHASES + times.saturating_mul(at_a_time);
     one.saturating_mul(2 * count)
 }
 
-impl<'a> MotionBlock<'a> {
-    /// Computes the motions of the block one at a time, each on its slope.
-    pub(super) fn roll_on_slopes(
-        &self,
-        count: usize,
-        out: &mut MotionOutput<'_>,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<(), Error> {
-        let (starts, job) = (self.starts, self.job);
-        for k in 0..count {
-            let i = self.first + k;
-            let ask = job.ask_of(starts.coefficients(i), starts.losses(i)).with_slope(starts.slope(i)[0]);
-            let found = starts.body(i).and_then(|body| {
-                let start = starts.start(i, &body, &ask.table);
-                Ok((body, followed(&body, &start, job.times, (&ask, job.errors), &mut *go_on)?))
-            });
-            if !go_on() {
-                return Ok(());
-            }
-            self.put_result(out, k, found)?;
-        }
-        Ok(())
+/// A motion of a block, seen from the circle on which it starts; on a slope in the units of that slope, with what converts it
+/// back: the slope, the start as it was given, and the times in these units.
+struct Asked {
+    body: Body,
+    seen: Body,
+    start: Start,
+    ask: Ask,
+    tilted: Option<(Slope, Start, Vec<f64>)>,
+}
+
+impl MotionBlock<'_> {
+    /// Motion `k` of the block, as it is walked.
+    fn asked(&self, k: usize) -> Result<Asked, Error> {
+        let (starts, job, i) = (self.starts, self.job, self.first + k);
+        let body = starts.body(i)?;
+        let ask = job.ask_of(starts.coefficients(i), starts.losses(i)).with_slope(starts.slope(i)[0]);
+        let (seen, start) = starts.start(i, &body, &ask.table).seen_on(&body);
+        let Some(slope) = Slope::of(&ask)? else { return Ok(Asked { body, seen, start, ask, tilted: None }) };
+        check_walk(&seen, &start, &ask)?;
+        let since = slope.times(job.times, start.time)?;
+        let (own, ask) = (slope.start(&start), slope.ask(&ask));
+        Ok(Asked { body, seen, start: own, ask, tilted: Some((slope, start, since)) })
     }
 
+    /// Computes these motions of the block, all of them on level tables or all on slopes.
     pub(super) fn flow<const N: usize>(
         &self,
         level: Option<Level>,
-        count: usize,
+        left: &[usize],
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<(), Error> {
         let times = self.job.times;
         let wide = in_lanes!(level, _ => true, else false);
-        let left = self.roll_throughout(level, count, out, go_on);
         let tols = [self.job.tol, rougher(self.job.tol)];
         let tols = if self.job.errors { &tols[..] } else { &tols[..1] };
         spare_for(size_of_block(left.len(), times.len()))?;
+        let mut motions = room(left.len())?;
+        motions.extend(left.iter().map(|k| self.asked(*k)));
         let walks = room(tols.len() * left.len())?;
         let mut all = Walks::<N> { walks, queues: Vec::new(), rolls: Vec::new(), lanes: wide };
         let mut walked = room(left.len())?;
-        for k in left {
-            let (starts, i) = (self.starts, self.first + k);
-            let body = starts.body(i);
-            let ask = self.job.ask_of(starts.coefficients(i), starts.losses(i));
-            if let Ok(body) = body
-                && knows(&body, &ask)
+        for (&k, motion) in left.iter().zip(&motions) {
+            if let Ok(Asked { body, seen, start, ask, .. }) = motion
+                && knows(body, ask)
             {
                 if !go_on() {
                     return Ok(());
                 }
-                let (seen, start) = starts.start(i, &body, &ask.table).seen_on(&body);
-                let walk = BodyWalk::<N>::of_body(&seen, &ask, self.job.tol, times, &start);
+                let walk = BodyWalk::<N>::of_body(seen, ask, self.job.tol, times, start);
                 let found = walk.and_then(|walk| Box::new(walk).run(go_on)).map(|mut found| {
                     found.complete_known_errors(self.job.tol);
                     if !self.job.errors {
                         found.motion.error = f64::NAN;
                     }
-                    (body, found)
+                    (*body, found)
                 });
                 self.put_result(out, k, found)?;
                 continue;
             }
-            walked.push(k);
-            let in_lanes = wide && !starts.has_row(i) && can_roll_in_lanes(&ask.table);
+            walked.push((k, motion));
             for &tol in tols {
-                let walk = body.and_then(|body| {
-                    let (seen, start) = starts.start(i, &body, &ask.table).seen_on(&body);
-                    BodyWalk::of_body(&seen, &ask, tol, times, &start)
+                let walk = motion.as_ref().map_err(|e| *e).and_then(|motion| {
+                    let Asked { seen, start, ask, tilted, .. } = motion;
+                    let times = tilted.as_ref().map_or(times, |(.., since)| since);
+                    let in_lanes =
+                        wide && !self.starts.has_row(self.first + k) && can_roll_in_lanes(&ask.table);
+                    let walk = BodyWalk::of_body(seen, ask, tol, times, start)?;
+                    Ok(walk.leaving_rolling_to_caller(in_lanes))
                 });
-                all.walks.push(walk.map(|walk| walk.leaving_rolling_to_caller(in_lanes)));
+                all.walks.push(walk);
             }
         }
         for i in 0..all.walks.len() {
@@ -182,7 +184,7 @@ impl<'a> MotionBlock<'a> {
             }
         }
         let mut walks = all.walks.into_iter();
-        for i in walked {
+        for (k, motion) in walked {
             let Some(fine) = walks.next() else { return Ok(()) };
             let rough = if self.job.errors { walks.next() } else { None };
             // The error estimate needs both runs; if the second run fails, a single motion has no result
@@ -192,9 +194,16 @@ impl<'a> MotionBlock<'a> {
                     Some(rough) => found.judge(&rough.and_then(BodyWalk::done)?, self.job.tol)?,
                     None => found.motion.error = f64::NAN,
                 }
-                Ok((self.starts.body(self.first + i)?, found))
+                let Asked { body, tilted, .. } = motion.as_ref().map_err(|e| *e)?;
+                Ok((
+                    *body,
+                    match tilted {
+                        Some((slope, start, _)) => slope.motion(found, start, times),
+                        None => found,
+                    },
+                ))
             });
-            self.put_result(out, i, both)?;
+            self.put_result(out, k, both)?;
         }
         Ok(())
     }
@@ -221,12 +230,22 @@ impl<'a> MotionBlock<'a> {
         &self,
         like: T,
         queue: usize,
-        all: &mut Walks<'a, N>,
+        all: &mut Walks<'_, N>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
         match all.queues[queue].0 {
-            FlowKind::Slips { dry } => lanes(like, queue, Slips::new(like, dry), all, go_on),
-            FlowKind::Lossy(kind) => lanes(like, queue, LossyLanes::new(like, kind), all, go_on),
+            FlowKind::Slips { dry, tilted: false } => {
+                lanes::<_, _, 8, _, N>(like, queue, Slips::new(like, dry), all, go_on)
+            }
+            FlowKind::Slips { dry, tilted: true } => {
+                lanes::<_, _, 11, _, N>(like, queue, Slips::new(like, dry), all, go_on)
+            }
+            FlowKind::Lossy(kind) if kind.tilted => {
+                lanes::<_, _, 9, _, N>(like, queue, LossyLanes::new(like, kind), all, go_on)
+            }
+            FlowKind::Lossy(kind) => {
+                lanes::<_, _, 6, _, N>(like, queue, LossyLanes::new(like, kind), all, go_on)
+            }
         }
     }
 }

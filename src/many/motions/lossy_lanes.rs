@@ -10,13 +10,14 @@ use crate::methods::rk8;
 use crate::motions::body::roll::lossy::{LOSSY_NUMBERS, LossyUnheld};
 use crate::numbers::side_by_side::SideBySide;
 
-const _: () = assert!(4 + LOSSY_NUMBERS <= NUMBERS);
+const _: () = assert!(4 + LOSSY_NUMBERS < NUMBERS);
 
 /// The properties that all lanes of a set share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LossyKind {
     pub contact: Contact,
     pub round: bool,
+    pub tilted: bool,
     pub present: [bool; COUNT],
 }
 
@@ -32,11 +33,12 @@ impl<T: SideBySide> LossyLanes<T> {
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
-        Self { kind, free: LossyUnheld::of(rates, [zero; LOSSY_NUMBERS], kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, [zero; LOSSY_NUMBERS], kind.present, zero) }
     }
 }
 
-impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
+/// On a tilted table K is 9, else 6.
+impl<T: SideBySide, const K: usize> Flows<T, K, 7> for LossyLanes<T> {
     type Seen = Acted<T>;
 
     #[inline(always)]
@@ -46,36 +48,36 @@ impl<T: SideBySide> Flows<T, 6, 7> for LossyLanes<T> {
         let mut falls = [ell; LOSSY_NUMBERS];
         falls.copy_from_slice(&rest[..LOSSY_NUMBERS]);
         let rates = Rates::of(kind.contact, &Shape::of([ell, i1, i3, fillet]), kind.round);
-        Self { kind, free: LossyUnheld::of(rates, falls, kind.present) }
+        Self { kind, free: LossyUnheld::of(rates, falls, kind.present, numbers[NUMBERS - 1]) }
     }
 
     #[inline(always)]
-    fn rates(&self, y: &[T; 6], rate: &mut [T; 6]) -> Acted<T> {
+    fn rates(&self, y: &[T; K], rate: &mut [T; K]) -> Acted<T> {
         self.free.rates(y, rate)
     }
 
     #[inline(always)]
-    fn margins(&self, y: &[T; 6], seen: &Acted<T>) -> [T; 7] {
+    fn margins(&self, y: &[T; K], seen: &Acted<T>) -> [T; 7] {
         self.free.margins(y, seen)
     }
 
     #[inline(always)]
-    fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
+    fn error(&self, tol: T, y: &[T; K], made: &rk8::Step<T, K>) -> T {
         self.free.error(tol, y, made)
     }
 
     #[inline(always)]
-    fn fastest(&self, y: &[T; 6]) -> T {
+    fn fastest(&self, y: &[T; K]) -> T {
         self.free.fastest(y)
     }
 
     #[inline(always)]
-    fn calm(&self, y: &[T; 6]) -> T {
+    fn calm(&self, y: &[T; K]) -> T {
         self.free.calm(y)
     }
 
     #[inline(always)]
-    fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
+    fn longest(&self, y: &[T; K], rate: &[T; K]) -> T {
         self.free.longest(y, rate)
     }
 }

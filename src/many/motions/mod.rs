@@ -192,10 +192,8 @@ pub(crate) fn roll_among(
     let (count, times) = (starts.len(), job.times.len());
     assert!(starts.fit(), "columns of different lengths");
     assert!(out.fits(count, times), "an array does not fit");
-    let flows = job.ask.table.rubs()
-        || starts.losses.is_some()
-        || job.ask.restitution.is_some()
-        || starts.slopes.is_some();
+    let level_flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
+    let flows = level_flows || starts.slopes.is_some();
     job.check(flows, starts.coefficients.is_some())?;
     let size = if flows {
         let workers = threads.min(count.div_ceil(FLOWS_PER_BLOCK));
@@ -216,12 +214,23 @@ pub(crate) fn roll_among(
         |RowBlock { first, count, out }, still| {
             let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
             let loses = starts.losses.is_some() || starts.has_patch();
-            let done = match (flows, loses) {
-                _ if starts.slopes.is_some() => work.roll_on_slopes(count, &mut out, still),
-                (true, true) => work.flow::<10>(level, count, &mut out, still),
-                (true, false) => work.flow::<9>(level, count, &mut out, still),
-                _ => conserved(&work, level, (count, &mut out), still),
+            let (flat, tilted): (Vec<_>, Vec<_>) =
+                (0..count).partition(|k| starts.slope(first + k)[0] == 0.0);
+            let done = if level_flows {
+                let left = work.roll_throughout(level, flat, &mut out, still);
+                if loses {
+                    work.flow::<10>(level, &left, &mut out, still)
+                } else {
+                    work.flow::<9>(level, &left, &mut out, still)
+                }
+            } else {
+                conserved(&work, level, (flat, &mut out), still)
             };
+            let done = done.and_then(|()| match (tilted.is_empty(), loses) {
+                (true, _) => Ok(()),
+                (false, true) => work.flow::<14>(level, &tilted, &mut out, still),
+                (false, false) => work.flow::<13>(level, &tilted, &mut out, still),
+            });
             if let Err(e) = done {
                 // The first error is reported, and later errors are dropped.
                 let _ = failed.set(e);
@@ -231,15 +240,15 @@ pub(crate) fn roll_among(
     failed.into_inner().map_or(Ok(all), Err)
 }
 
-/// Computes a block of motions by first integrals: in lanes, and one at a time where the lanes have no
+/// Computes motions of a block by first integrals: in lanes, and one at a time where the lanes have no
 /// result.
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,
-    (count, out): (usize, &mut MotionOutput<'_>),
+    (rows, out): (Vec<usize>, &mut MotionOutput<'_>),
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<(), Error> {
-    let (alone, in_lanes): (Vec<_>, _) = (0..count).partition(|i| work.starts.has_row(work.first + i));
+    let (alone, in_lanes): (Vec<_>, _) = rows.into_iter().partition(|i| work.starts.has_row(work.first + i));
     for i in work.run(level, in_lanes, out, go_on).into_iter().chain(alone) {
         if !go_on() {
             return Ok(());

@@ -41,20 +41,22 @@ pub(super) fn can_roll_in_lanes(table: &Table) -> bool {
 }
 
 impl MotionBlock<'_> {
-    /// Computes the motions of a block that roll from the start to the end; returns the other motions.
+    /// Computes those of these motions of a block that roll from the start to the end; returns the others.
     pub(super) fn roll_throughout(
         &self,
         level: Option<Level>,
-        count: usize,
+        rows: Vec<usize>,
         out: &mut MotionOutput<'_>,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Vec<usize> {
         let job = self.job.of_rolling();
         let work = MotionBlock { job: &job, ..*self };
         if level.is_none() || job.ask.stop_at_rolling || job.ask.beyond {
-            return (0..count).collect();
+            return rows;
         }
-        let (rolling, mut others): (Vec<usize>, Vec<usize>) = (0..count).partition(|i| work.may_roll(*i));
+        let (rolling, mut others): (Vec<usize>, Vec<usize>) =
+            rows.into_iter().partition(|i| work.may_roll(*i));
+        let count = out.status.len();
         let mut ends = [(); 4].map(|()| vec![f64::NAN; if out.last.is_none() { count } else { 0 }]);
         let mut out = out.reborrowed();
         out.last = out.last.or(Some(ends.each_mut().map(Vec::as_mut_slice)));

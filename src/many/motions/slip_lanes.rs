@@ -1,8 +1,10 @@
 //! Slips in SIMD lanes: the equations of motion, and the margins that must stay positive in a lane.
 //!
 //! ```text
+//! y         s, c, w1, w2, w3, u_h, u_2; on a tilted table cos phi, sin phi and x; t
 //! margins   s,  sin(theta_end - theta),  N0,  1 - eps,  |u| - over
 //! ```
+//! On a tilted table the pull tan(beta) (cos phi, -sin phi) adds to the rates of the slip.
 
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
@@ -12,6 +14,7 @@ use crate::methods::rk8;
 use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::from_side;
 use crate::motions::body::slide::{Slide, longest};
+use crate::motions::walk::numbers::{BodyNumbers, contact_velocity, heading_rates};
 use crate::numbers::side_by_side::SideBySide;
 
 /// Bodies in lanes that slip.
@@ -20,6 +23,8 @@ pub(super) struct Slips<T> {
     law: Slipping<T>,
     side: [T; 3],
     over: T,
+    /// The tangent of the slope.
+    tilt: T,
 }
 
 impl<T: SideBySide> Slips<T> {
@@ -27,11 +32,12 @@ impl<T: SideBySide> Slips<T> {
     pub fn new(zero: T, dry: bool) -> Self {
         let one = zero.splat(1.0);
         let shape = Shape::of([zero, one, one, zero]);
-        Self { law: Slipping::of(&shape, zero, dry), side: [zero; 3], over: zero }
+        Self { law: Slipping::of(&shape, zero, dry), side: [zero; 3], over: zero, tilt: zero }
     }
 }
 
-impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
+/// On a tilted table K is 11, else 8.
+impl<T: SideBySide, const K: usize> Flows<T, K, 5> for Slips<T> {
     type Seen = SlipResponse<T>;
     const LOOPS: bool = true;
 
@@ -39,17 +45,30 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {
         let [ell, i1, i3, fillet, strength, over, sine, cosine, there, ..] = *numbers;
         let shape = Shape::of([ell, i1, i3, fillet]);
-        Self { law: Slipping::of(&shape, strength, like.law.dry), side: [sine, cosine, there], over }
+        let law = Slipping::of(&shape, strength, like.law.dry);
+        Self { law, side: [sine, cosine, there], over, tilt: numbers[NUMBERS - 1] }
     }
 
     #[inline(always)]
-    fn rates(&self, y: &[T; 8], rate: &mut [T; 8]) -> SlipResponse<T> {
+    fn rates(&self, y: &[T; K], rate: &mut [T; K]) -> SlipResponse<T> {
         // What the compiler knows to be absent it does not compile.
-        self.law.with_losses(None::<Couples<T>>).with_patch(None).rates(y, rate)
+        let law = self.law.with_losses(None::<Couples<T>>).with_patch(None);
+        if K == 8 {
+            return law.rates(y, rate);
+        }
+        let (angle, w, u) = (y.angle(), y.w(), y.slip());
+        let (mut at, pace) = law.at(angle, w, u);
+        let ([cos, sin], precession) = ([y[7], y[8]], w[0] / angle.0);
+        at.u = [at.u[0] + self.tilt * cos, at.u[1] - self.tilt * sin];
+        law.writes(y, rate, (&at, pace));
+        let runs = contact_velocity(&law.shape.rim, angle, w[1], w[2] - angle.1 * precession, u);
+        let [cos, sin, x] = heading_rates([cos, sin], precession, runs);
+        rate[7..].copy_from_slice(&[pace * cos, pace * sin, pace * x, pace]);
+        at
     }
 
     #[inline(always)]
-    fn margins(&self, y: &[T; 8], seen: &SlipResponse<T>) -> [T; 5] {
+    fn margins(&self, y: &[T; K], seen: &SlipResponse<T>) -> [T; 5] {
         let (mut speed, mut room) = (y[0].splat(1.0), seen.room);
         if self.law.dry {
             // Under dry friction `seen.room` has a factor |u|, the speed of the slip.
@@ -60,22 +79,22 @@ impl<T: SideBySide> Flows<T, 8, 5> for Slips<T> {
     }
 
     #[inline(always)]
-    fn error(&self, tol: T, y: &[T; 8], made: &rk8::Step<T, 8>) -> T {
-        <Slide>::error(tol, y, made, self.law.dry)
+    fn error(&self, tol: T, y: &[T; K], made: &rk8::Step<T, K>) -> T {
+        <Slide>::error(tol, y, made, self.law.dry, K - 1)
     }
 
     #[inline(always)]
-    fn fastest(&self, y: &[T; 8]) -> T {
+    fn fastest(&self, y: &[T; K]) -> T {
         <Slide>::fastest(y)
     }
 
     #[inline(always)]
-    fn calm(&self, y: &[T; 8]) -> T {
+    fn calm(&self, y: &[T; K]) -> T {
         longest(y, &self.law.shape)
     }
 
     #[inline(always)]
-    fn longest(&self, y: &[T; 8], rate: &[T; 8]) -> T {
-        longest(y, &self.law.shape) / rate[7].min(y[0].splat(1.0))
+    fn longest(&self, y: &[T; K], rate: &[T; K]) -> T {
+        longest(y, &self.law.shape) / rate[K - 1].min(y[0].splat(1.0))
     }
 }

@@ -11,7 +11,7 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, steps_to_stuck_test};
 use crate::motions::body::BodyWalk;
 use crate::motions::body::roll::lossy::LOSSY_NUMBERS;
-use crate::motions::walk::numbers::TIME;
+use crate::motions::walk::numbers::{PHI, TIME, X, pull};
 use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
@@ -38,9 +38,18 @@ pub(super) struct FlowTask<const N: usize> {
 pub(super) enum FlowKind {
     /// Slips; `dry` means that the friction is dry and keeps a direction where the slip vanishes, unlike viscous
     /// friction or ice.
-    Slips { dry: bool },
-    /// Motions without slip that lose energy by the same laws.
+    Slips { dry: bool, tilted: bool },
+    /// Motions without slip that lose energy by the same laws, or whose table is tilted.
     Lossy(LossyKind),
+}
+
+impl FlowKind {
+    /// Whether the tables are tilted.
+    fn is_tilted(self) -> bool {
+        match self {
+            Self::Slips { tilted, .. } | Self::Lossy(LossyKind { tilted, .. }) => tilted,
+        }
+    }
 }
 
 /// The flows of one kind that wait for lanes.
@@ -63,13 +72,16 @@ fn kind_and_lane_numbers<const N: usize>(
 ) -> Option<(FlowKind, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
-    // A hop that rolls and loses nothing is short; the lanes know one circle of radius 1 or two equal rims.
+    let tilted = walk.ask.slope != 0.0;
+    // A hop that rolls and loses nothing on a level table is short; the lanes know one circle of radius 1 or two equal rims.
     let apart = walk.of.lying.is_some() || walk.of.standing.is_some();
-    if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() {
+    if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() && !tilted {
         return None;
     }
+    numbers[NUMBERS - 1] = walk.of.slide.tilt;
     if let Some(lossy) = walk.lossy() {
-        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
+        let (contact, round) = (walk.contact(), !body.is_sharp());
+        let law = LossyKind { contact, round, tilted, present: lossy.present() };
         numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());
         return lossy.is_free().then_some((FlowKind::Lossy(law), numbers));
     }
@@ -78,7 +90,31 @@ fn kind_and_lane_numbers<const N: usize>(
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over_in_lanes(y), sine, cosine, there]);
     (slide.law.losses.is_none() && slide.law.patch().is_none())
-        .then_some((FlowKind::Slips { dry: slide.law.dry }, numbers))
+        .then_some((FlowKind::Slips { dry: slide.law.dry, tilted }, numbers))
+}
+
+/// The numbers of a walk in a lane, whose last one is the time. On a tilted table those before it are the sine and cosine of
+/// phi, without the sign of a rounding straight up or down, and x.
+fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N], tilted: bool) -> [f64; K] {
+    let mut all = core::array::from_fn(|i| y[i]);
+    if tilted {
+        let [cos, sin] = pull(1.0, y);
+        all[K - 4..K - 1].copy_from_slice(&[-sin, cos, y[X]]);
+    }
+    all[K - 1] = y[TIME];
+    all
+}
+
+/// The numbers of a walk that began with `from` and has reached these numbers in a lane.
+fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K], tilted: bool) -> [f64; N] {
+    let mut all = *from;
+    let own = if tilted { K - 4 } else { K - 1 };
+    all[..own].copy_from_slice(&y[..own]);
+    all[TIME] = y[K - 1];
+    if tilted {
+        (all[PHI], all[X]) = (y[K - 4].atan2(y[K - 3]), y[K - 2]);
+    }
+    all
 }
 
 impl<const N: usize> Walks<'_, N> {
@@ -134,13 +170,11 @@ impl<const N: usize> Walks<'_, N> {
         &mut self,
         task: &FlowTask<N>,
         status: LaneStatus,
-        (numbers, step): ([f64; TIME + 1], f64),
+        (y, step): ([f64; N], f64),
         spent: Spent,
         go_on: &mut dyn FnMut() -> bool,
     ) {
         let Ok(walk) = &mut self.walks[task.walk] else { return };
-        let mut y = [0.0; N];
-        y[..=TIME].copy_from_slice(&numbers);
         let y = walk.followed(&task.y, y);
         walk.has_spent_elsewhere(spent, task.patience);
         let found =
@@ -157,23 +191,20 @@ struct Queued<'a, 'b, const N: usize> {
     go_on: &'a mut dyn FnMut() -> bool,
 }
 
-/// The last of the K numbers of a lane is the time, which has the index `TIME` in a walk.
 impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_, '_, N> {
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
         let next = self.all.queues[self.queue].1.pop_front()?;
         let FlowTask { step, numbers, tol, until, patience, made, .. } = next;
-        let y = core::array::from_fn(|i| next.y[if i + 1 == K { TIME } else { i }]);
+        let y = lane_numbers(&next.y, self.all.queues[self.queue].0.is_tilted());
         self.tasks[k] = Some(next);
         Some(Entry { y, step, numbers, tol, until, patience, made })
     }
 
     fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {
         let Some(ended) = self.tasks[k].take() else { return };
-        let mut numbers = [0.0; TIME + 1];
-        numbers[..K - 1].copy_from_slice(&y[..K - 1]);
-        numbers[TIME] = y[K - 1];
+        let y = walk_numbers(&ended.y, &y, self.all.queues[self.queue].0.is_tilted());
         let spent = Spent { evaluations: spent.evaluations - ended.made, ..spent };
-        self.all.handle(&ended, status, (numbers, step), spent, self.go_on);
+        self.all.handle(&ended, status, (y, step), spent, self.go_on);
     }
 
     fn go_on(&mut self) -> bool {

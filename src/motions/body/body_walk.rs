@@ -24,7 +24,7 @@ use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::methods::flow::Flow;
-use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, poses};
+use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, loses, poses};
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
@@ -155,19 +155,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.ask.table.contact()
     }
 
-    /// All numbers of a flow of which a lane has computed only the first ones. The missing energy has become heat, or
-    /// is lost to the losses.
-    pub fn followed(&self, from: &[f64; N], y: [f64; N]) -> [f64; N] {
-        let mut all = y;
-        all[8..].copy_from_slice(&from[8..]);
+    /// All numbers of a flow of which a lane has not computed the energies. What is missing since `from` has become heat,
+    /// or is lost to the losses.
+    pub fn followed(&self, from: &[f64; N], mut y: [f64; N]) -> [f64; N] {
         match self.lossy() {
-            Some(flow) => {
-                let energy = |y: &[f64; N]| self.contact().energy(&self.of.body, &state(&flow.shown(y)));
-                all[N - 1] += energy(from) - energy(&y);
+            Some(flow) if loses(N) => {
+                let (rolls, slide) = (self.contact() == Contact::Rolling, &self.of.slide);
+                let energy = |y: &[f64; N]| {
+                    let level = self.contact().energy(&self.of.body, &state(&flow.shown(y)));
+                    if rolls { level - slide.falls(y) } else { level }
+                };
+                y[N - 1] += energy(from) - energy(&y);
             }
-            None => all[HEAT] += self.of.slide.energy(from) - self.of.slide.energy(&y),
+            Some(_) => {}
+            None => y[HEAT] += self.of.slide.energy(from) - self.of.slide.energy(&y),
         }
-        all
+        y
     }
 
     /// The losses, the couple of the user beside them, and the pull of a slope; None if there is none of these.

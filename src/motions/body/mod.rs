@@ -157,7 +157,7 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
 }
 
 /// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
-pub(super) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
+pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     match start.aloft {
         Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
         None if on_face(body, &start.state) => exact::check_on_face(body, &start.state)?,

@@ -6,6 +6,7 @@
 //! ```
 
 use crate::laws::body::Rim;
+use crate::numbers::Real;
 use core::f64::consts::PI;
 
 /// The reason for which a flow halts.
@@ -75,6 +76,12 @@ pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
 }
 
+/// The rates of cos phi, sin phi and x of such a point, which lanes compute instead.
+#[inline(always)]
+pub(crate) fn heading_rates<T: Real>([cos, sin]: [T; 2], precession: T, [out, on]: [T; 2]) -> [T; 3] {
+    [-(precession * sin), precession * cos, out * cos - on * sin]
+}
+
 /// The sine of a heading straight up or down a slope: no number is exactly pi, and a lean uphill is unstable in phi.
 const UP_OR_DOWN: f64 = 2.0 * f64::EPSILON;
 
@@ -100,13 +107,13 @@ pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N]) -> [f64; 2] {
 
 /// The velocity of the contact point over the table, along e_h and e2.
 #[inline(always)]
-pub(crate) fn contact_velocity(
-    rim: &Rim<f64>,
-    angle: (f64, f64),
-    w2: f64,
-    spin: f64,
-    [u_h, u_2]: [f64; 2],
-) -> [f64; 2] {
+pub(crate) fn contact_velocity<T: Real>(
+    rim: &Rim<T>,
+    angle: (T, T),
+    w2: T,
+    spin: T,
+    [u_h, u_2]: [T; 2],
+) -> [T; 2] {
     [u_h + rim.rho * w2, u_2 + rim.radius(angle) * spin]
 }
 

@@ -25,17 +25,23 @@ const SLIP_ENDS: [Halt; MARGINS] =
 impl<L: Own> Slide<L> {
     /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
     #[inline(always)]
-    pub fn error<T: Real, const N: usize>(tol: T, y: &[T; N], made: &rk8::Step<T, N>, dry: bool) -> T {
-        Self::error_beside(tol, y, made, dry, y[UH].mac(y[UH], y[U2] * y[U2]).sqrt())
+    pub fn error<T: Real, const N: usize>(
+        tol: T,
+        y: &[T; N],
+        made: &rk8::Step<T, N>,
+        dry: bool,
+        time: usize,
+    ) -> T {
+        Self::error_beside(tol, y, made, (dry, time), y[UH].mac(y[UH], y[U2] * y[U2]).sqrt())
     }
 
-    /// The error of a step, where that of a dry slip is relative to the speed `slip`.
+    /// The error of a step, where that of a dry slip is relative to the speed `slip`; `time` is the index of the time.
     #[inline(always)]
     fn error_beside<T: Real, const N: usize>(
         tol: T,
         y: &[T; N],
         made: &rk8::Step<T, N>,
-        dry: bool,
+        (dry, time): (bool, usize),
         slip: T,
     ) -> T {
         let one = tol.splat(1.0);
@@ -47,11 +53,11 @@ impl<L: Own> Slide<L> {
         let per_sine = per_tol / y[SIN].abs().max(one.splat(1e-6)).min(one);
         let per = |i: usize| match i {
             0 => per_sine,
-            1 | 7 => per_tol,
             5 | 6 => per_slip,
+            i if i == 1 || i == time => per_tol,
             _ => per_speed,
         };
-        made.error(per, N as f64) * made.strictness(tol, TIME, TIME)
+        made.error(per, N as f64) * made.strictness(tol, TIME, time)
     }
 
     /// The largest speed, at least 1.
@@ -283,7 +289,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let slip =
             if self.law.patch().is_some() { self.rubs(y) } else { y[UH].mac(y[UH], y[U2] * y[U2]).sqrt() };
-        Self::error_beside(self.tol, y, made, self.law.dry, slip)
+        Self::error_beside(self.tol, y, made, (self.law.dry, TIME), slip)
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {

@@ -145,12 +145,15 @@ impl<L: Own> Slide<L> {
     /// The energy of the body with these numbers.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
-        let energy = self.law.energy(&state, y.slip());
+        self.law.energy(&state, y.slip()) - self.falls(y)
+    }
+
+    /// The energy that a tilted table has given to a centre which falls along x; 0 on a level one.
+    pub fn falls<const N: usize>(&self, y: &[f64; N]) -> f64 {
         if self.tilt == 0.0 || !poses(N) {
-            return energy;
+            return 0.0;
         }
-        // The centre falls along x.
-        energy - self.tilt * (y[X] - self.law.shape.rim.lever(y.angle()) * y[PHI].cos())
+        self.tilt * (y[X] - self.law.shape.rim.lever(y.angle()) * y[PHI].cos())
     }
 
     /// The response of the body, as one compiled copy of the law for callers that need it only

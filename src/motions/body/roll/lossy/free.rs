@@ -2,7 +2,7 @@
 //! numbers and for lanes.
 //!
 //! ```text
-//! y = (s, c, p, w2, w3, t)
+//! y = (s, c, p, w2, w3, t), on a tilted table (s, c, p, w2, w3, cos phi, sin phi, x, t)
 //! dt = v/(v + delta/J) dsigma with v^2 = w_h^2 + w2^2 under rolling resistance, else dt = dsigma
 //! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, |psi'|, |w_z|, v
 //! ```
@@ -12,15 +12,15 @@
 
 use super::{LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::{Shape, landing_angle};
-use crate::laws::contact::grip;
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
+use crate::laws::contact::{Contact, grip};
 use crate::laws::loss::{COUNT, Couples, Law, Ways, going};
 use crate::laws::state::drilling_of;
 use crate::methods::rk8;
 use crate::motions::body::face::lands_at;
 use crate::motions::body::own::Own;
 use crate::motions::dry::settled::{CLOSE, SLOWER};
-use crate::motions::walk::numbers::TIME;
+use crate::motions::walk::numbers::{contact_velocity, heading_rates};
 use crate::numbers::{Dual, Real, here};
 
 /// A body that loses energy while no motion is held, with its contact and its losses.
@@ -31,6 +31,8 @@ pub(crate) struct LossyUnheld<T> {
     pub side: [T; 3],
     /// Coefficient of friction; infinite where no slip can begin.
     pub mu: T,
+    /// The tangent of the slope.
+    pub tilt: T,
 }
 
 /// The sine of theta_end - theta, which vanishes where the other rim lands; 1 without a theta_end below pi.
@@ -38,6 +40,12 @@ pub(crate) struct LossyUnheld<T> {
 pub(crate) fn from_side<T: Real>([sine, cosine, there]: [T; 3], (s, c): (T, T)) -> T {
     let one = s.splat(1.0);
     one.splat(0.5).select_lt(there, sine * c - cosine * s, one)
+}
+
+/// s, c, p, w2 and w3. In lanes an iterator would call a function.
+#[inline(always)]
+fn first_five<T: Copy, const K: usize>(y: &[T; K]) -> [T; 5] {
+    [y[0], y[1], y[2], y[3], y[4]]
 }
 
 /// The joint speed of the rolling and the rocking, sqrt(w_h^2 + w2^2).
@@ -70,7 +78,7 @@ pub(crate) fn error<T: Real, const N: usize>(
     (s, w): (T, [T; 3]),
     (free, paced): (bool, Option<T>),
     made: &rk8::Step<T, N>,
-    turns: core::ops::Range<usize>,
+    (turns, time): (core::ops::Range<usize>, usize),
 ) -> T {
     let one = tol.splat(1.0);
     let fastest = fastest_of(w);
@@ -87,7 +95,7 @@ pub(crate) fn error<T: Real, const N: usize>(
         i if turns.contains(&i) => per_speed,
         _ => per_tol,
     };
-    made.error(per, N as f64) * made.strictness(tol, 5, if N == 6 { 5 } else { TIME })
+    made.error(per, N as f64) * made.strictness(tol, 5, time)
 }
 
 /// The time in which the fastest of rotation, theta' and nutation turns by three radians; at most 3.
@@ -101,12 +109,26 @@ pub(crate) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w
 impl<T: Real> LossyUnheld<T> {
     /// Writes the rates of the numbers to `all`. Returns the response of the body.
     #[inline(always)]
-    pub fn rates(&self, y: &[T; 6], all: &mut [T; 6]) -> Acted<T> {
-        let [s, c, p, w2, w3, _] = *y;
+    pub fn rates<const K: usize>(&self, y: &[T; K], all: &mut [T; K]) -> Acted<T> {
+        let [s, c, p, w2, w3] = first_five(y);
         let (precession, w) = turning([s, c, p, w2, w3]);
-        let acted = self.law.at((s, c), precession, w, Held::Nothing);
+        let zero = s.splat(0.0);
+        let heading = if K > 6 { [y[5], y[6]] } else { [zero; 2] };
+        let pull = (K > 6).then_some([self.tilt * heading[0], -(self.tilt * heading[1])]);
+        let acted = self.law.under(pull, (s, c), precession, w, Held::Nothing);
         let [d1, d2, d3] = acted.w;
-        *all = [-(c * w2), s * w2, s * d1 - c * w2 * w[0], d2, d3, s.splat(1.0)];
+        all[..5].copy_from_slice(&[-(c * w2), s * w2, s * d1 - c * w2 * w[0], d2, d3]);
+        if K > 6 {
+            let reduced = self.law.rates.reduced();
+            let runs = match reduced.contact {
+                Contact::Rolling => {
+                    contact_velocity(&reduced.shape.rim, (s, c), w2, w3 - c * precession, [zero; 2])
+                }
+                Contact::Smooth => [zero; 2],
+            };
+            all[5..8].copy_from_slice(&heading_rates(heading, precession, runs));
+        }
+        all[K - 1] = s.splat(1.0);
         if self.law.losses.has(Law::RollingResistance) {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
             all.iter_mut().for_each(|x| *x = *x * pace);
@@ -119,8 +141,8 @@ impl<T: Real> LossyUnheld<T> {
     /// friction; the margins of the motions that dry losses resist, and of the joint speed that rolling resistance
     /// brings to rest.
     #[inline(always)]
-    pub fn margins(&self, y: &[T; 6], acted: &Acted<T>) -> [T; 7] {
-        let [s, c, p, w2, w3, _] = *y;
+    pub fn margins<const K: usize>(&self, y: &[T; K], acted: &Acted<T>) -> [T; 7] {
+        let [s, c, p, w2, w3] = first_five(y);
         let one = s.splat(1.0);
         let (precession, w) = turning([s, c, p, w2, w3]);
         let losses = &self.law.losses;
@@ -151,39 +173,39 @@ impl<T: Real> LossyUnheld<T> {
 
     /// The error of a step, in units of the allowed error.
     #[inline(always)]
-    pub fn error(&self, tol: T, y: &[T; 6], made: &rk8::Step<T, 6>) -> T {
-        let [s, c, p, w2, w3, _] = *y;
-        let (precession, w) = turning([s, c, p, w2, w3]);
+    pub fn error<const K: usize>(&self, tol: T, y: &[T; K], made: &rk8::Step<T, K>) -> T {
+        let [s, c, ..] = first_five(y);
+        let (precession, w) = turning(first_five(y));
         let paced = self.law.losses.has(Law::RollingResistance);
         let paced = paced.then(
             #[inline(always)]
             || pace_of((s, c), precession, w),
         );
-        error(tol, (s.abs(), w), (true, paced), made, 0..0)
+        error(tol, (s.abs(), w), (true, paced), made, (5..K - 1, K - 1))
     }
 
     /// The speed to which the error of a step is relative.
     #[inline(always)]
-    pub fn fastest(&self, y: &[T; 6]) -> T {
-        fastest_of(turning([y[0], y[1], y[2], y[3], y[4]]).1)
+    pub fn fastest<const K: usize>(&self, y: &[T; K]) -> T {
+        fastest_of(turning(first_five(y)).1)
     }
 
     /// The longest time step that rotation and nutation allow.
     #[inline(always)]
-    pub fn calm(&self, y: &[T; 6]) -> T {
-        let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
+    pub fn calm<const K: usize>(&self, y: &[T; K]) -> T {
+        let (precession, w) = turning(first_five(y));
         three_radians(&self.law.rates.reduced().shape, precession, w)
     }
 
     /// The longest step of the integrator, in its variable sigma.
     #[inline(always)]
-    pub fn longest(&self, y: &[T; 6], rate: &[T; 6]) -> T {
+    pub fn longest<const K: usize>(&self, y: &[T; K], rate: &[T; K]) -> T {
         let mut most = self.calm(y);
         if self.law.losses.is_soft() {
-            let (precession, w) = turning([y[0], y[1], y[2], y[3], y[4]]);
+            let (precession, w) = turning(first_five(y));
             most = most.min(self.law.damped((y[0], y[1]), w[2] - y[1] * precession));
         }
-        most = most / rate[5].min(y[0].splat(1.0));
+        most = most / rate[K - 1].min(y[0].splat(1.0));
         if !self.law.losses.has_roots() {
             return most;
         }
@@ -235,12 +257,13 @@ impl<T: Real> LossyUnheld<T> {
         rates: crate::laws::contact::reduced::Rates<T>,
         numbers: [T; LOSSY_NUMBERS],
         present: [bool; COUNT],
+        tilt: T,
     ) -> Self {
         let [sine, cosine, there, mu, rest @ ..] = numbers;
         let mut coefficients = [mu; COUNT];
         coefficients.copy_from_slice(&rest[..COUNT]);
         let ways = Ways { contour: rest[COUNT], drilling: rest[COUNT + 1], ..Ways::moving(rest[COUNT]) };
         let losses = Couples::among(coefficients, present, Some(ways));
-        Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu }
+        Self { law: Lossy { rates, losses }, side: [sine, cosine, there], mu, tilt }
     }
 }

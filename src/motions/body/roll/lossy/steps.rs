@@ -264,7 +264,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let s = if self.ball && !self.moves { 1.0 } else { y[SIN].abs() };
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         let paced = self.paced.then(|| pace_of(y.angle(), precession, w));
-        error(self.tol, (s, w), (self.moves, paced), made, if poses(N) { 9..13 } else { 0..0 })
+        error(self.tol, (s, w), (self.moves, paced), made, (if poses(N) { 9..13 } else { 0..0 }, TIME))
     }
 
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64 {
