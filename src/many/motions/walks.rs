@@ -93,13 +93,13 @@ fn kind_and_lane_numbers<const N: usize>(
         .then_some((FlowKind::Slips { dry: slide.law.dry, tilted }, numbers))
 }
 
-/// The numbers of a walk in a lane, whose last one is the time. On a tilted table those before it are the sine and cosine of
+/// The numbers of a walk in a lane, whose last one is the time. On a tilted table those before it are the cosine and sine of
 /// phi, without the sign of a rounding straight up or down, and x.
 fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N], tilted: bool) -> [f64; K] {
     let mut all = core::array::from_fn(|i| y[i]);
     if tilted {
-        let [cos, sin] = pull(1.0, y);
-        all[K - 4..K - 1].copy_from_slice(&[-sin, cos, y[X]]);
+        let [cos, against] = pull(1.0, y);
+        all[K - 4..K - 1].copy_from_slice(&[cos, -against, y[X]]);
     }
     all[K - 1] = y[TIME];
     all
@@ -112,7 +112,7 @@ fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K], t
     all[..own].copy_from_slice(&y[..own]);
     all[TIME] = y[K - 1];
     if tilted {
-        (all[PHI], all[X]) = (y[K - 4].atan2(y[K - 3]), y[K - 2]);
+        (all[PHI], all[X]) = (y[K - 3].atan2(y[K - 4]), y[K - 2]);
     }
     all
 }
