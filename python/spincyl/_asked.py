@@ -234,14 +234,10 @@ def on_table(asked: Asked, table: "Table") -> Asked:
         number(name, x)
     if table.slope == 0 and table.turning == 0:
         return asked._replace(table=table)
-    for name, value in (("step", asked.step), ("method", asked.method), ("beyond", asked.beyond or None)):
+    for name, value in (("step", asked.step), ("method", asked.method)):
         if value is not None:
             raise ValueError(
                 f"{name} = {value!r} cannot be combined with a table that is tilted or turns:"
                 " its motions take steps within tol="
             )
-    if asked.contact == "rolling" and asked.mu != math.inf:
-        raise ValueError(
-            f"mu = {asked.mu!r} cannot be combined with such a table: give contact=sc.Coulomb({asked.mu!r})"
-        )
     return asked._replace(table=table, want=asked.want | {"pose"})

@@ -32,6 +32,8 @@ pub struct StoneRow {
     pub coefficients: Option<[f64; 3]>,
     /// Its own losses, if any; None for those of `ask`.
     pub losses: Option<Losses>,
+    /// The slope of its table, and phi at the start; None for a level table.
+    pub slope: Option<[f64; 2]>,
 }
 
 /// The result of one motion of many.
@@ -110,7 +112,7 @@ pub(crate) fn many_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, how.0)?;
-    within("slope", how.0.slope, (0.0, 0.0), "0 for many stones")?;
+    within("slope", how.0.slope, (0.0, 0.0), "0: the slopes of many stones are in their rows")?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let done = match laws {
@@ -159,14 +161,17 @@ fn one(
     let Ok(stone) = Ellipsoid::of_numbers(row.stone) else { return invalid };
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
-    let start = Start { slip: row.slip, ..Start::from(state) };
-    let mut ask = *ask;
+    let [slope, heading] = row.slope.unwrap_or_default();
+    let start = Start { slip: row.slip, heading, ..Start::from(state) };
+    let mut ask = ask.with_slope(slope);
+    // A walk on a slope has units of its own, in which it sees reversals, too.
+    let pace = slope.cos().sqrt();
     ask.losses = row.losses.unwrap_or(ask.losses);
     if let Some(own) = row.coefficients {
         ask.table = ask.table.with_coefficients(own);
     }
     let recorded = RefCell::new(Recorded {
-        turns: turns.then(|| Reversals::of(state.spin(), state.fastest())),
+        turns: turns.then(|| Reversals::of(state.spin() / pace, state.fastest() / pace)),
         ..Recorded::default()
     });
     custom.check_friction(ask.table.mu())?;
@@ -187,7 +192,7 @@ fn one(
     let end = found.motion.event.map_or(times[times.len() - 1], |e| e.time);
     let turns = recorded.into_inner().turns.map(|turns| turns.times);
     let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
-    let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t);
+    let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t / pace);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
     let Followed { motion: Motion { error, .. }, path: Path { heat, lost, known_until, .. } } = found;
     let known = known_until.min(end);

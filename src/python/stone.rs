@@ -222,6 +222,7 @@ pub fn stones<'py>(
     let slip: [&[f64]; 2] = columns.all(["slip_x", "slip_y"])?;
     let friction = columns.some(["coefficient", "static", "patch"])?;
     let lost = columns.some(core::array::from_fn::<_, COUNT, _>(|i| Law::ALL[i].parameter()))?;
+    let slopes = columns.some(["slope", "phi0"])?;
     let mut status = code_column(out, "status")?;
     let status = status.as_slice_mut()?;
     let count = status.len();
@@ -232,6 +233,7 @@ pub fn stones<'py>(
         slip: slip.map(|column| at(column, i)),
         coefficients: friction.map(|pair| pair.map(|column| at(column, i))),
         losses: lost.map(|all| Losses { coefficients: all.map(|column| at(column, i)) }),
+        slope: slopes.map(|all| all.map(|column| at(column, i))),
     };
     let (times, ask) = (times.as_slice()?, asked.ask()?);
     let mut watch = Watch::new(progress);

@@ -189,7 +189,7 @@ def roll(
         motion (`Answer.LANES`) `error` is known all the same.
     table : Table, optional
         Table with a slope, as in `spincyl.roll`; its `slope` and `phi0` may be arrays that broadcast with the
-        other arrays. Motions on a slope are computed one at a time.
+        other arrays. Motions on a slope are integrated, in lanes as those with friction.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.
@@ -269,8 +269,6 @@ def roll(
             raise ValueError(
                 "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
             )
-        if table is not None:
-            raise ValueError(f"table = {table!r}: only for bodies of revolution")
         stones = _stones.question(
             bodies,
             states,
@@ -281,6 +279,7 @@ def roll(
             mu=mu,
             losses=losses,
             max_nfev=max_nfev,
+            table=checked_table(table),
         )
         labels = LABELS | _stones.LABELS
         found = swept(_stones.fill, stones, labels, threads=threads, progress=progress, length="a")
@@ -304,11 +303,9 @@ def roll(
     asked = asked._replace(
         tol=number("tol", tol), max_nfev=checked_max_nfev(max_nfev), errors=flag("errors", errors)
     )
-    if table is not None:
-        if instance_of("table", table, Table).turning != 0:
-            raise ValueError(f"table = {table!r}: a table that turns is only for roll")
-        if asked.step is not None or asked.beyond or asked.mu != np.inf or asked.times[-1] < 0:
-            raise ValueError("step, mu, beyond, t < 0: cannot be combined with table=")
+    if checked_table(table) is not None:
+        if asked.step is not None or asked.beyond or asked.times[-1] < 0:
+            raise ValueError("step, beyond, t < 0: cannot be combined with table=")
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not has_friction(contact) and (restitution is None or states.height is None):
@@ -406,6 +403,13 @@ def _times(t: Reals) -> tuple[Floats, bool]:
         order = "all >= 0 and ascending, or all <= 0 and descending"
         raise ValueError(f"t: expected times that are {order}, and at most 1e15 in absolute value")
     return at, True
+
+
+def checked_table(table: Table | None) -> Table | None:
+    """Return a table on which many motions can be computed, or an error that names it."""
+    if table is not None and instance_of("table", table, Table).turning != 0:
+        raise ValueError(f"table = {table!r}: a table that turns is only for roll")
+    return table
 
 
 def _wanted_of_motions(

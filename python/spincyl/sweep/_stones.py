@@ -26,8 +26,9 @@ from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
 from spincyl._lossy import losses_of_stone, warn_of_long_arm
 from spincyl._measured import natural_time
+from spincyl._table import Table
 from spincyl.sweep._common import in_memory
-from spincyl.sweep._inputs import kept_contact, kept_stones
+from spincyl.sweep._inputs import kept_contact, kept_stones, kept_table
 from spincyl.sweep._labels import given_up
 from spincyl.sweep._swept import Question
 
@@ -48,6 +49,7 @@ def question(
     mu: float,
     losses: Loss | None,
     max_nfev: int | None,
+    table: Table | None,
 ) -> Question:
     """The arguments of `spincyl.sweep.roll` for stones, checked; an error names the argument."""
     states, scale, seconds = instance_of("states", states, EllipsoidState), stones.scale, t
@@ -75,9 +77,11 @@ def question(
     if losses is not None:
         warn_of_long_arm(losses_of_stone(losses, stones), contact)
         fields |= zip(LAWS, losses._coefficients, strict=True)
+    if table is not None:
+        fields |= {"slope": table.slope, "phi0": table.phi0}
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
     asked = asked._replace(max_nfev=checked_max_nfev(max_nfev))
-    told = kept_stones(stones, states) | kept_contact(contact)
+    told = kept_stones(stones, states) | kept_contact(contact) | kept_table(table)
     in_memory("contact", contact, fields)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)
 

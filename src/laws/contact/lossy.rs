@@ -133,9 +133,9 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         let (lever, slope, one) = (shape.rim.lever(angle), shape.rim.slope(angle), s.splat(1.0));
         let [mut d1, mut d2, mut d3] = self.rates.at(s, c, w);
         let seen = self.losses.seen(&shape.rim, angle, precession, w);
-        let tilts = pull.is_some() || self.losses.tilts();
+        let tilts = self.losses.tilts();
         let mut per_inertia = one;
-        if tilts {
+        if tilts || pull.is_some() {
             per_inertia = one
                 / reduced.inertia(
                     #[inline(always)]

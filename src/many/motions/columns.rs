@@ -19,7 +19,7 @@ pub struct MotionStarts<'a> {
     pub bodies: [&'a [f64]; 5],
     /// Columns of theta, w1, w2 and w3.
     pub states: [&'a [f64]; 4],
-    /// The slope of the table and phi at the start; `None` on a level table. Motions on a slope are computed alone.
+    /// The slope of the table and phi at the start; `None` on a level table.
     pub slopes: Option<[&'a [f64]; 2]>,
     /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
@@ -150,6 +150,12 @@ impl<'a> MotionStarts<'a> {
     /// The slope of motion `i`, and phi at its start.
     pub(super) fn slope(&self, i: usize) -> [f64; 2] {
         self.slopes.map_or([0.0; 2], |all| all.map(|x| at(x, i)))
+    }
+
+    /// Whether the table of motion `i` is level, and phi at its start is in range.
+    pub(super) fn is_level(&self, i: usize) -> bool {
+        let [slope, phi0] = self.slope(i);
+        slope == 0.0 && Start::from(self.state(i)).with_heading(phi0).check_place().is_ok()
     }
 
     pub(super) fn state(&self, i: usize) -> State {

@@ -1,11 +1,13 @@
-//! Many motions with friction or losses at once: phases of slipping and of rolling, up to the last time or to the end.
+//! Many motions with friction or losses, or on slopes, at once: phases of slipping and of rolling, up to the last time or
+//! to the end.
 //!
 //! ```text
 //! slip, rolling with losses   eight at a time, each with its own steps (Dormand and Prince, eighth order),
 //!                             twice: with tol and with 1e4 tol, or once if no errors are wanted
 //! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
 //! ```
-//! A slip with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
+//! On a slope the lanes have cos phi, sin phi and x among their numbers, and each motion the units of its own slope. A slip
+//! with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
 //! a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
 //! SIMD width. [`motion::path`](crate::motions::body) has the law and the estimate of the error.
 

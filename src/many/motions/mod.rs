@@ -4,7 +4,7 @@
 //! near     one series about the start, of 8 to 72 terms, as the width of the swing requires
 //! marched  panels of 32 or 56 terms, up to the end of the motion or to both its turning points
 //! alone    `motion::roll`, one motion at a time
-//! flows    motions with friction or losses, each with its own steps (`flows`), and their phases of rolling (`rolls`)
+//! flows    motions with friction or losses, or on slopes, each with its own steps (`flows`), and phases of rolling (`rolls`)
 //! ```
 //! Motions without friction and losses are solved by first integrals, eight at a time, where the estimated error stays
 //! below the tolerance. A swing without an end takes one series; all other motions take a march (`ends`), which goes no
@@ -214,8 +214,7 @@ pub(crate) fn roll_among(
         |RowBlock { first, count, out }, still| {
             let (work, mut out) = (MotionBlock { starts, job, first, since: None }, out.out);
             let loses = starts.losses.is_some() || starts.has_patch();
-            let (flat, tilted): (Vec<_>, Vec<_>) =
-                (0..count).partition(|k| starts.slope(first + k)[0] == 0.0);
+            let (flat, tilted): (Vec<_>, Vec<_>) = (0..count).partition(|k| starts.is_level(first + k));
             let done = if level_flows {
                 let left = work.roll_throughout(level, flat, &mut out, still);
                 if loses {

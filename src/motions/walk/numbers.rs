@@ -69,10 +69,14 @@ pub(crate) const Y: usize = 12;
 /// The number in place of w1 where a flow uses another variable: p = w1 s, or w_z of a contact that is held.
 pub(crate) const P: usize = 2;
 
-/// The rates of phi, psi and the place (x, y) of a contact point that moves over the table along e_h and e2.
+/// The rates of phi, psi and the place (x, y) of a contact point that moves over the table along e_h and e2, from the sine and
+/// cosine of phi.
 #[inline(always)]
-pub(crate) fn pose_rates(phi: f64, [precession, spin]: [f64; 2], [out, on]: [f64; 2]) -> [f64; 4] {
-    let (sin, cos) = phi.sin_cos();
+pub(crate) fn pose_rates(
+    (sin, cos): (f64, f64),
+    [precession, spin]: [f64; 2],
+    [out, on]: [f64; 2],
+) -> [f64; 4] {
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
 }
 
@@ -91,17 +95,18 @@ pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
     if !poses(N) || tilt == 0.0 {
         return [0.0; 2];
     }
-    let (sin, cos) = y[PHI].sin_cos();
+    pull_along(tilt, y[PHI].sin_cos())
+}
+
+/// The pull of such a table from the sine and cosine of phi.
+#[inline(always)]
+pub(crate) fn pull_along(tilt: f64, (sin, cos): (f64, f64)) -> [f64; 2] {
     [tilt * cos, if sin.abs() <= UP_OR_DOWN { 0.0 } else { -(tilt * sin) }]
 }
 
-/// The velocity of a table that turns at this rate under the contact point, along e_h and e2.
+/// The velocity of a table that turns at this rate under the contact point, along e_h and e2, from the sine and cosine of phi.
 #[inline(always)]
-pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N]) -> [f64; 2] {
-    if !poses(N) || turning == 0.0 {
-        return [0.0; 2];
-    }
-    let (sin, cos) = y[PHI].sin_cos();
+pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N], (sin, cos): (f64, f64)) -> [f64; 2] {
     [turning * (y[X] * sin - y[Y] * cos), turning * (y[X] * cos + y[Y] * sin)]
 }
 

@@ -400,7 +400,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
             let ((s, c), [here, _]) = (self.law.border.angle, self.law.border.circles);
             let (turns, spin) = (w1 / s, spin_of((s, c), w1, w3));
             let over = [u_h, u_2 + here.radius * spin];
-            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [turns, spin], over));
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI].sin_cos(), [turns, spin], over));
         }
         if loses(N) {
             let angle = self.law.border.angle;

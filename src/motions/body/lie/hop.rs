@@ -148,7 +148,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if poses(N) {
             let spin = spin_of(angle, w[0], w[2]);
             let over = contact_velocity(&self.of.slide.law.shape.rim, angle, w[1], spin, slip);
-            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [w[0] / angle.0, spin], over));
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI].sin_cos(), [w[0] / angle.0, spin], over));
         }
         all
     }

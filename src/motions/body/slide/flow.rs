@@ -14,7 +14,7 @@ use crate::motions::dry::held::margins_of_ways;
 use crate::motions::dry::settled::EFFORT;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, Halt, MARGINS, PHI, SIN, TIME, U2, UH, W1, W2, W3, driven, loses, pose_rates, poses,
-    pull,
+    pull_along,
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
@@ -203,13 +203,13 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
             all[N - 1] = all[TIME] * power;
         }
         if poses(N) {
-            let pace = all[TIME];
-            let runs = self.runs(y, spin);
+            let (pace, heading) = (all[TIME], y[PHI].sin_cos());
+            let runs = self.runs(y, spin, heading);
             if self.tilt != 0.0 || self.turning != 0.0 {
-                let [pull_h, pull_2] = driven(self.turning, pull(self.tilt, y), runs);
+                let [pull_h, pull_2] = driven(self.turning, pull_along(self.tilt, heading), runs);
                 (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
             }
-            let pose = pose_rates(y[PHI], [precession, spin], runs);
+            let pose = pose_rates(heading, [precession, spin], runs);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }
     }

@@ -112,14 +112,14 @@ impl<L: Own> Slide<L> {
             return tilted;
         }
         let ((s, c), [w1, _, w3]) = (y.angle(), y.w());
-        driven(self.turning, tilted, self.runs(y, w3 - c * w1 / s))
+        driven(self.turning, tilted, self.runs(y, w3 - c * w1 / s, y[PHI].sin_cos()))
     }
 
     /// The velocity of the contact point, over the table and with it, along e_h and e2.
     #[inline(always)]
-    fn runs<const N: usize>(&self, y: &[f64; N], spin: f64) -> [f64; 2] {
+    fn runs<const N: usize>(&self, y: &[f64; N], spin: f64, heading: (f64, f64)) -> [f64; 2] {
         let over = contact_velocity(&self.law.shape.rim, y.angle(), y[W2], spin, y.slip());
-        if self.turning == 0.0 { over } else { sum(over, carried(self.turning, y)) }
+        if self.turning == 0.0 { over } else { sum(over, carried(self.turning, y, heading)) }
     }
 
     /// The law without those of the user.

@@ -370,7 +370,7 @@ impl Flow<MARGINS> for StandingFlow {
         }
         all[TIME] = pace;
         if poses(N) {
-            let pose = pose_rates(y[PHI], [0.0, spin], velocity);
+            let pose = pose_rates(y[PHI].sin_cos(), [0.0, spin], velocity);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|rate| rate * pace));
         }
     }

@@ -29,7 +29,7 @@ use crate::motions::body::own::Own;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
 use crate::motions::walk::numbers::{
-    COS, Halt, P, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses, pull,
+    COS, Halt, P, PHI, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses, pull_along,
 };
 use crate::numbers::{Dual, Real};
 use free::pace_of;
@@ -142,11 +142,15 @@ impl<G: Own> LossyFlow<G> {
 
     /// The pull on the centre along e_h and e2, for this w2 and psi'.
     fn pull_at<const N: usize>(&self, y: &[f64; N], angle: (f64, f64), w2: f64, spin: f64) -> [f64; 2] {
-        let tilted = pull(self.tilt, y);
+        if !poses(N) {
+            return [0.0; 2];
+        }
+        let heading = y[PHI].sin_cos();
+        let tilted = pull_along(self.tilt, heading);
         if self.om == 0.0 {
             return tilted;
         }
-        let (with, rim) = (carried(self.om, y), &self.law.rates.reduced().shape.rim);
+        let (with, rim) = (carried(self.om, y, heading), &self.law.rates.reduced().shape.rim);
         driven(self.om, tilted, contact_velocity(rim, angle, w2, spin, with))
     }
 
@@ -156,12 +160,18 @@ impl<G: Own> LossyFlow<G> {
         if !(poses(N) && self.is_pulled()) {
             return None;
         }
+        Some(self.pull_along(y, y[PHI].sin_cos()))
+    }
+
+    /// The pull of the table at these numbers, from the sine and cosine of phi.
+    #[inline(always)]
+    fn pull_along<const N: usize>(&self, y: &[f64; N], heading: (f64, f64)) -> [f64; 2] {
         if self.om == 0.0 {
-            return Some(pull(self.tilt, y));
+            return pull_along(self.tilt, heading);
         }
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         let spin = if self.moves { w[2] - y[COS] * precession } else { 0.0 };
-        Some(self.pull_at(y, (y[SIN], y[COS]), y[W2], spin))
+        self.pull_at(y, (y[SIN], y[COS]), y[W2], spin)
     }
 
     /// The same flow with the pull of the slope at these numbers.

@@ -182,7 +182,8 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
-        let tilted = self.tilted(y);
+        let heading = if poses(N) { y[PHI].sin_cos() } else { (0.0, 1.0) };
+        let tilted = (poses(N) && self.is_pulled()).then(|| self.pull_along(y, heading));
         let (precession, w, acted) = if self.settled {
             let (precession, w, acted, _) = self.settled((s, c), y[P], w2, tilted);
             (precession, w, acted)
@@ -208,9 +209,9 @@ impl<G: Own> LossyFlow<G> {
                 Contact::Smooth => [0.0; 2],
             };
             if self.om != 0.0 {
-                over = sum(over, carried(self.om, y));
+                over = sum(over, carried(self.om, y, heading));
             }
-            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI], [precession, spin], over));
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(heading, [precession, spin], over));
         }
         if self.paced {
             let pace = self.law.pace((s, c), pace_of((s, c), precession, w));
