@@ -75,7 +75,6 @@ STONE = sc.Ellipsoid((1.0, 0.7, 0.5), np.diag((0.2, 0.3, 0.4)))
     ("table", "how", "word"),
     [
         (sc.Table(0.1, turning=0.3), {}, "turning = 0.3: expected 0 for a stone"),
-        (TABLE, {"beyond": True}, "beyond = True"),
     ],
 )
 def test_what_is_not_computed_for_a_stone_on_a_slope_is_refused_by_name(table, how, word):
@@ -214,7 +213,7 @@ def test_random_bodies_in_a_sweep_move_down_a_slope_as_each_alone(scene):
             for name in ("theta", "w1", "w2", "w3"):
                 apart = abs(float(found[name][i]) - float(np.ravel(getattr(last, name))[0]))
                 assert not apart > claim, (scene, body, i, name, apart, claim)
-            if taken is not None:
+            if taken is not None and m.event is None:
                 apart = abs(float(taken[i]) - float(np.ravel(m.dissipated)[-1]))
                 assert not apart > 10 * claim, (scene, body, i, apart, claim)
 
@@ -413,13 +412,13 @@ def test_a_ball_that_comes_to_rest_is_held_and_one_that_rolls_on_is_not():
 
 
 def test_a_sweep_of_stones_over_slopes_has_the_motions_that_roll_has():
-    stone = sc.Ellipsoid.rattleback((1.0, 0.35, 0.25), twist=0.1)
-    start = sc.EllipsoidState((0.02, 0.02, 1.0), (0.0, 0.0, -1.0))
-    slopes, phi0 = np.array([0.0, 0.002, -0.001, 0.05]), np.array([1.0, 0.4, -2.0, 0.4])
-    want = ("final", "end", "spin", "reversals", "first_reversal")
+    stone = sc.Ellipsoid.rattleback((1.0, 0.35, 0.25), twist=0.3)
+    start = stone.spinning(-1.0, pitch=0.02, roll=0.02)
+    slopes, phi0 = np.array([0.0, 0.002, -0.001, 0.1]), np.array([1.0, 0.4, -2.0, 0.4])
+    want = ("final", "end", "first_reversal")
     for how in ({"contact": "rolling"}, {"contact": sc.Coulomb(0.5)}):
         table = sc.Table(slopes, phi0=phi0)
-        found = sc.sweep.roll(stone, start, 12.0, table=table, want=want, **how)
+        found = sc.sweep.roll(stone, start, 12.0, table=table, want=want, tol=1e-13, **how)
         for i, slope in enumerate(slopes):
             m = sc.roll(stone, start, 12.0, table=sc.Table(slope, phi0=phi0[i]), **how)
             last = m.event.state if m.event else m.states
@@ -427,24 +426,23 @@ def test_a_sweep_of_stones_over_slopes_has_the_motions_that_roll_has():
             assert not apart > 1e-12 + 10 * m.error and found["status"].values[i] == m.status, (how, slope)
             # The spin changes its sign where the reversal is said to be.
             turned = float(found["first_reversal"][i])
-            if not np.isnan(turned):
-                near = turned * np.array([0.999, 1.001])
-                spin = sc.roll(stone, start, near, table=sc.Table(slope, phi0=phi0[i]), **how).states.spin
-                assert spin[0] * spin[1] < 0, (how, slope)
-        assert np.isfinite(found["first_reversal"].values[:3]).all(), how
+            near = turned * np.array([0.0, 0.999, 1.001])
+            spin = sc.roll(stone, start, near, table=sc.Table(slope, phi0=phi0[i]), **how).states.spin
+            assert spin[1] * spin[2] < 0 < -spin[0], (how, slope)
         again = sc.sweep.roll(**sc.sweep.inputs(found), want=want)
         assert all(np.array_equal(again[name], found[name], equal_nan=True) for name in again.data_vars)
 
 
 @pytest.mark.parametrize("table", [TABLE, sc.Table(turning=0.5, place=(1.5, 0.0))])
 def test_rolling_up_to_a_limit_ends_where_coulomb_friction_lets_it_slip(table):
-    state = sc.State(1.0, 0.4, 0.1, 1.2)
-    limit = 0.9 * sc.roll(DISK, state, np.linspace(0, 3, 301), table=table, want="force").friction_coefficient.max()
-    ends = sc.roll(DISK, state, 3.0, table=table, mu=limit)
-    slips = sc.roll(DISK, state, 3.0, table=table, contact=sc.Coulomb(limit))
+    state, until = sc.State(1.0, 0.4, 0.1, 1.2), 0.3
+    needs = sc.roll(DISK, state, np.linspace(0, until, 301), table=table, want="force").friction_coefficient
+    limit = 0.5 * (needs[0] + needs.max())
+    ends = sc.roll(DISK, state, until, table=table, mu=limit)
+    slips = sc.roll(DISK, state, until, table=table, contact=sc.Coulomb(limit))
     assert ends.status == sc.Ending.SLIP and slips.phases[1].kind == "slipping"
     assert abs(ends.event.time - slips.phases[1].time) <= 1e-10 + ends.error + slips.error
-    beyond = sc.roll(DISK, state, 3.0, table=table, mu=limit, beyond=True)
-    rolls = sc.roll(DISK, state, 3.0, table=table)
+    beyond = sc.roll(DISK, state, until, table=table, mu=limit, beyond=True)
+    rolls = sc.roll(DISK, state, until, table=table)
     assert beyond.event.time == ends.event.time
     assert abs(beyond.theta - rolls.theta) <= 1e-11 + beyond.error + rolls.error
