@@ -179,7 +179,10 @@ SCENES = {
     "rolls": {},
     "film": {"contact": sc.Viscous(0.3)},
     "patch": {"contact": sc.Coulomb(0.4, patch=0.1)},
-    "losses": {"contact": sc.Coulomb(0.6), "losses": sc.loss.RollingResistance(0.01) + sc.loss.AirLinear(0.01)},
+    "losses": {
+        "contact": sc.Coulomb(0.6),
+        "losses": sc.loss.RollingResistance(0.01) + sc.loss.AirLinear(0.01),
+    },
     "hops": {"contact": sc.Coulomb(0.3), "restitution": 0.4},
 }
 
@@ -194,7 +197,7 @@ def test_random_bodies_in_a_sweep_move_down_a_slope_as_each_alone(scene):
         theta = rng.uniform(0.3, 1.5, count)
         if scene != "rolls":
             # A third of them slides on its face.
-            theta[:: 3] = 0.0
+            theta[::3] = 0.0
         w1, w2, w3 = (rng.uniform(-x, x, count) * (theta > 0.0) for x in (1.0, 0.5, 3.0))
         slip = tuple(rng.uniform(-1, 1, count) * (scene != "rolls") for _ in range(2))
         slope, phi0 = rng.uniform(-0.5, 0.5, count), rng.uniform(-3, 3, count)
@@ -203,7 +206,9 @@ def test_random_bodies_in_a_sweep_move_down_a_slope_as_each_alone(scene):
         start, table = sc.State(*rows[:4], slip=tuple(rows[4:6])), sc.Table(rows[6], phi0=rows[7])
         found = sc.sweep.roll(body, start, until, table=table, want=("final", "end"), **how)
         taken = ("dissipated",) if "contact" in how else ()
-        taken = sc.sweep.roll(body, start, until, table=table, want=taken, **how)["dissipated"] if taken else None
+        taken = (
+            sc.sweep.roll(body, start, until, table=table, want=taken, **how)["dissipated"] if taken else None
+        )
         for i in range(count):
             own = sc.State(theta[i], w1[i], w2[i], w3[i], slip=(slip[0][i], slip[1][i]))
             m = sc.roll(body, own, until, table=sc.Table(slope[i], phi0=phi0[i]), **how)

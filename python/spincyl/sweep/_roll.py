@@ -303,9 +303,9 @@ def roll(
     asked = asked._replace(
         tol=number("tol", tol), max_nfev=checked_max_nfev(max_nfev), errors=flag("errors", errors)
     )
-    if checked_table(table) is not None:
-        if asked.step is not None or asked.beyond or asked.times[-1] < 0:
-            raise ValueError("step, beyond, t < 0: cannot be combined with table=")
+    odd = asked.step is not None or asked.beyond or asked.times[-1] < 0
+    if checked_table(table) is not None and odd:
+        raise ValueError("step, beyond, t < 0: cannot be combined with table=")
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not has_friction(contact) and (restitution is None or states.height is None):
