@@ -162,7 +162,9 @@ pub fn shares(
     let tips = tip_slope(body, theta, posture, phi)?.tan();
     // Rolling resistance acts on the one point of the ring over which a body on its face tips.
     let wider = match posture {
-        Posture::Standing => 1.0 + losses.coefficient(Law::RollingResistance) / face_or(body, theta, posture)?[0],
+        Posture::Standing => {
+            1.0 + losses.coefficient(Law::RollingResistance) / face_or(body, theta, posture)?[0]
+        }
         _ => 1.0,
     };
     Ok([of(t, slips.tan()), rolls, of(t, tips * wider)])

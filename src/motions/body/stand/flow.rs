@@ -53,7 +53,8 @@ const RESTS: usize = 0;
 const SPIN_ENDS: usize = 1;
 const TOPPLES: usize = 2;
 const STRAIGHTENS: usize = 3;
-const ENDS: [Halt; MARGINS] = [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Turned, Halt::Time, Halt::Time];
+const ENDS: [Halt; MARGINS] =
+    [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Turned, Halt::Time, Halt::Time];
 
 /// How the velocities change.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -391,7 +391,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // A slow slip ends before the body has risen, which comes down again.
         let stops = slip <= falls * risen;
         let lasts = if stops { slip / falls } else { risen };
-        self.claims(lasts * lasts * if film > 0.0 { lasts } else { 1.0 });
+        // What turns does so at constant rates here, as the slip does without a film.
+        let third = if film > 0.0 && self.of.planar { lasts } else { 1.0 };
+        let turned = lasts * (turns.abs() + nu.abs());
+        let size = if stops { slip } else { slip.max(1.0) };
+        self.claims((lasts * lasts + size * turned * turned) * third);
         let begin = self.at;
         let [forth, aside] = flow.velocity(&begin);
         self.rises_as(lasts, |t| {
@@ -449,9 +453,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.of.state.theta = if up > 0.0 { ALMOST_FLAT } else { PI };
         let [u, v] = self.at.slip();
+        // Dry losses act against a rise from rest as soon as it begins.
+        let rising = if rises > 0.0 { rises } else { ALMOST_FLAT };
         let mut sticks = matches!(self.ask.table, Table::Rolling { .. });
         if self.ask.table.rubs() && self.of.slide.law.dry && u.hypot(v) <= self.of.slide.over() {
             self.stop_slip();
+            self.of.state.w2 = -up * rising;
             match Phases::rests(self) {
                 Standstill::Sticks => sticks = true,
                 Standstill::Slips { alpha, growth } => {
@@ -468,7 +475,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // w1 = nu sin theta, with the nu with which w1 follows.
         let follows = |nu: f64| {
             let (mut y, theta) = (begin, self.of.state.theta);
-            y[W1] = nu * theta.sin();
+            (y[W1], y[W2]) = (nu * theta.sin(), -up * rising);
             let rates = self.rates_on_rim((theta.sin(), up), theta, &y, sticks);
             (rates[W1] - nu * rises, rates)
         };
