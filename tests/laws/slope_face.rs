@@ -374,3 +374,48 @@ fn a_tall_disc_whose_slide_becomes_as_fast_as_its_spin_ends_in_a_time_in_proport
     });
     assert!(near > 0.0 && near < 1e-3 && (far / near - 2.0).abs() < 0.02, "{far} {near}");
 }
+
+/// The energy of a sharp body on one rim of its face, on a slope, with the heat.
+fn energy_on_rim(body: &Body, slope: f64, m: &Motion, i: usize) -> f64 {
+    let (y, path, pose) = (m.states[i], m.path.as_ref().unwrap(), m.poses.as_ref().unwrap()[i]);
+    let ([u_h, u_2], (s, c)) = (path.slip[i], y.theta.sin_cos());
+    let (z, a) = (body.ell(), 1.0);
+    let (out, up) = (a * c - z * s, a * s + z * c);
+    let v = [u_h + up * y.w2, u_2 - z * y.w1 + a * y.w3, out * y.w2];
+    let turns = body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3;
+    let x = pose.contact_point.x + pose.phi.radians().cos() * out;
+    0.5 * (v.iter().map(|v| v * v).sum::<f64>() + turns) + slope.cos() * up - slope.sin() * x
+        + path.dissipated[i]
+}
+
+#[test]
+fn a_body_that_topples_as_it_slides_and_spins_on_a_slope_keeps_its_energy_and_heat() {
+    let mut next = wander(77);
+    let mut toppled = 0;
+    for case in 0..24 {
+        let mut within = |low: f64, high: f64| low + (high - low) * next();
+        let (body, mu, beta) = (Body::solid(within(1.5, 3.0)).unwrap(), within(0.7, 0.8), within(-0.6, 0.6));
+        let (v, w) = ([within(-3.0, 3.0), within(-3.0, 3.0)], within(-1.0, 1.0));
+        // Air takes from the spin as well.
+        let losses = if case % 3 == 0 { Losses::of(Law::AirLinear, 0.05) } else { Losses::NONE };
+        let ask = rough(mu, beta).with_losses(losses);
+        let start = slides(&body, v, w);
+        let Ok(m) = roll_with(&body, start, &[0.0, 1e-3, 0.02], &ask.with_pose(true), || true) else {
+            continue;
+        };
+        let m = m.unwrap();
+        if m.states.len() < 3 || m.states[1].theta == 0.0 {
+            continue;
+        }
+        toppled += 1;
+        let path = m.path.as_ref().unwrap();
+        let work = |i: usize| path.work_lost.get(i).copied().unwrap_or(0.0);
+        let begin = energy_on_rim(&body, beta, &m, 0);
+        for i in 1..3 {
+            let off = energy_on_rim(&body, beta, &m, i) + work(i) - begin;
+            assert!(off.abs() < 1e-11 + 4.0 * m.error, "{case} {i}: {off} {} {v:?} {w} {beta}", m.error);
+        }
+        assert!(m.error < 1e-9, "{}", m.error);
+    }
+    assert!(toppled > 10, "{toppled}");
+}
