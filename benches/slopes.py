@@ -3,11 +3,14 @@
     python benches/slopes.py                   500 starts, each with three restitutions
     python benches/slopes.py --count 3334      10,000 motions, the figures of docs/hard-cases.md
     python benches/slopes.py --only 17 0.5     one of them, with its phases
+    python benches/slopes.py --odd 7           500 odd starts near a face, by this seed, to t = 10
 
 Cylinders, tubes, coins, rounded bodies, balls and tippe tops on a rim, slipping or not, at rest, on their side, on their
 face, or let fall, on slopes of 0 to 60 degrees in all directions; Coulomb friction from 0.05 to 1, half of them with rolling resistance
 and air. Without a restitution every motion that the model ends is followed; with 0 and 0.5 those that reach the last
-time or rest. Prints those whose energy, with all that has been taken, differs from that at the start by more than 1e-12
+time or rest. The odd starts are on a face, beside it or a little above: velocities of 0, 1e-300 and so on, slopes and
+heights at which friction and weight just hold a body, all laws of contact; they tell of motions that crawl or are not a
+number. Prints those whose energy, with all that has been taken, differs from that at the start by more than 1e-12
 and ten times the estimated error, and all that are not followed, by their reason.
 """
 
@@ -69,19 +72,73 @@ def drawn(number, seed=0):
     return kind, body, state, how
 
 
+ODD_TIMES = np.linspace(0.0, 10.0, 6)
+ODD_SPEEDS = [0, 1e-300, 1e-160, 1e-30, 1e-16, 1e-13, 1e-8, 0.1, 0.5, 1, -1e-300, -1e-12, -0.3]
+ODD_SLOPES = [1e-300, 1e-16, 1e-8, 0.1, 0.3, 0.7, 1.2, -0.4, 1.57]
+ODD_SLOPES += [np.arctan(0.3), np.nextafter(np.arctan(0.3), 1), np.arctan(0.5)]
+ODD_BODIES = {
+    "coin": sc.Body.solid(0.1),
+    "pillar": sc.Body.solid(2.0),
+    "tall pillar": sc.Body.solid(6.0),
+    "tube": sc.Body.tube(0.5, 0.8),
+    "rounded": sc.Body.solid(1.0, fillet=0.1),
+    "cone": sc.Body.frustum(0.7, 1.0, 2.0),
+}
+
+
+def odd(number, seed):
+    """A motion at thresholds that are exactly met; None for a state that no body can have."""
+    rng = np.random.default_rng([seed, number])
+
+    def one(*of):
+        return of[rng.integers(len(of))]
+
+    def speed():
+        return float(one(*ODD_SPEEDS))
+
+    kind = one(*ODD_BODIES)
+    body, mu = ODD_BODIES[kind], one(0.3, 0.5, 0.0, 1e-8, 1.0)
+    rubs = [sc.Coulomb(mu), sc.Coulomb(mu, static=1.2 * mu), sc.Coulomb(mu, face="disc")]
+    laws = sc.loss.AirLinear(0.02), sc.loss.RollingResistance(0.03), sc.loss.AirQuadratic(0.1)
+    how = {
+        "contact": one(*rubs, sc.Viscous(0.3), "rolling", "smooth"),
+        "losses": one(None, None, *laws),
+        "restitution": one(None, 0.0, 0.5),
+        "table": sc.Table(float(one(*ODD_SLOPES)), phi0=one(0.0, np.pi, 0.7, 1e-300, -np.pi / 2)),
+    }
+    theta, start = one(0.0, 0.0, np.pi, 1e-300, 1e-13, 1e-11, 1e-6), rng.integers(4)
+    try:
+        if start == 0:
+            state = sc.spun(body, speed(), (speed(), speed()))
+        elif start == 3 and how["restitution"] is not None:
+            height = one(0.0, 1e-300, 1e-10, 0.2)
+            state = sc.State(theta, 0.0, 0.0, speed(), height=height, lift=speed())
+        else:
+            turns = speed() if start == 2 else 0.0
+            state = sc.State(theta, turns, speed(), speed(), slip=(speed(), speed()))
+    except ValueError:
+        return None
+    return kind, body, state, how
+
+
 def followed(number, restitution):
     """The motion, its time, and by how much its energy is off beyond its claim; None for a refusal."""
     kind, body, state, how = drawn(number)
     if restitution is None and state.height is not None:
         return kind, None, 0.0, 0.0
-    since = time.process_time()
+    return kind, *rolled(body, state, TIMES, {**how, "restitution": restitution})
+
+
+def rolled(body, state, times, how):
+    """The same of a start, without its kind."""
+    restitution, since = how["restitution"], time.process_time()
     try:
-        m = sc.roll(body, state, TIMES, restitution=restitution, **how)
+        m = sc.roll(body, state, times, **how)
     except ValueError as e:
-        return kind, str(e).split(":")[0], time.process_time() - since, 0.0
+        return str(e).split(":")[0], time.process_time() - since, 0.0
     lasts = time.process_time() - since
     if m.t.size == 0:
-        return kind, m, lasts, 0.0
+        return m, lasts, 0.0
     lost = m.energy + m.dissipated
     for name in ("work_lost", "lost_in_impacts"):
         lost = lost + (getattr(m, name) if name == "work_lost" and m.losses is not None else 0.0)
@@ -89,15 +146,42 @@ def followed(number, restitution):
         lost = lost + m.lost_in_impacts
     fastest = max(1.0, float(np.abs(m.w).max()))
     claim = 1e-12 * fastest**2 + 10 * fastest * (m.error + m.pose_error)
-    return kind, m, lasts, float(np.abs(lost - lost[0]).max()) - claim
+    return m, lasts, float(np.abs(lost - lost[0]).max()) - claim
+
+
+def follows_odd(count, seed):
+    """Follows odd starts, and prints those that take long, are not a number or are off."""
+    ends = Counter()
+    for number in range(count):
+        found = odd(number, seed)
+        if found is None:
+            continue
+        kind, body, state, how = found
+        m, lasts, beyond = rolled(body, state, ODD_TIMES, how)
+        if isinstance(m, str):
+            ends[f"refused: {m.split(' =')[0]}"] += 1
+            continue
+        ends[m.status.name if m._limit is None else f"{m.status.name}, {m._limit[0]}"] += 1
+        for told, bad in (
+            (f"{lasts:.2f} s", lasts > 0.5),
+            (f"off by {beyond:.1g}", not beyond <= 0),
+            ("not a number", np.isnan(m.theta).any() or np.isnan(m.w).any()),
+        ):
+            if bad:
+                print(f"{number}, {kind}: {told}, {m.status.name}", state, how, sep="\n    ", flush=True)
+    print(dict(ends))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--only", nargs=2, metavar=("NUMBER", "RESTITUTION"))
+    parser.add_argument("--odd", type=int, metavar="SEED")
     asked = parser.parse_args()
     warnings.simplefilter("ignore")
+    if asked.odd is not None:
+        follows_odd(asked.count, asked.odd)
+        return
     if asked.only:
         number, e = int(asked.only[0]), None if asked.only[1] == "None" else float(asked.only[1])
         print(*drawn(number), sep="\n")

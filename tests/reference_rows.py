@@ -15,6 +15,18 @@ def sampled(case):
     return [row for row in case.rows if row.kind in ("sample", "end")]
 
 
+def named(cases, name):
+    """The motion of this name, and the first of its rows of each kind."""
+    (case,) = (case for case in cases if case.name == name)
+    return case, {row.kind: row for row in reversed(case.rows)}
+
+
+def stood(case):
+    """Radius of the face on which a body stands, height of the centre over it, and the moments."""
+    ell, i1, i3, rho = map(mpf, case.body)
+    return 1 - rho, ell + rho, i1, i3
+
+
 def whole(poses, rows):
     """The poses with the turns of the reference, which adds half a turn at each change of the rim, there and back. A face
     that topples is told from another point, in whichever direction."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import pytest
 from mpmath import mp, mpf
-from reference_rows import table
+from reference_rows import named, stood, table
 
 TIGHT = mpf("1e-22")
 
@@ -18,15 +18,7 @@ each_motion = pytest.mark.parametrize("case", MOTIONS, ids=[case.name for case i
 
 
 def of(name):
-    """A motion, and the first of its rows of each kind."""
-    (case,) = (case for case in MOTIONS if case.name == name)
-    return case, {row.kind: row for row in reversed(case.rows)}
-
-
-def body(case):
-    """Radius of the face, height of the centre over it, and the moments."""
-    ell, i1, i3, rho = map(mpf, case.body)
-    return 1 - rho, ell + rho, i1, i3
+    return named(MOTIONS, name)
 
 
 def start(case):
@@ -38,7 +30,7 @@ def start(case):
 
 
 def energy(case, row, rise=0):
-    a, z, i1, i3 = body(case)
+    a, z, i1, i3 = stood(case)
     s, c = mp.sin(row.theta), mp.cos(row.theta)
     out, up = a * c - z * s, a * s + z * c
     v_h, v_2 = row.u_h + up * row.w2, row.u_2 - z * row.w1 + a * row.w3
@@ -49,7 +41,7 @@ def energy(case, row, rise=0):
 
 def velocity(case, row):
     """Of the centre, on the face, in the laboratory."""
-    a = body(case)[0]
+    a = stood(case)[0]
     return (row.u_h + 1j * (row.u_2 + a * row.w3)) * mp.expj(row.phi)
 
 
@@ -93,7 +85,7 @@ def test_energy_heat_and_what_losses_take_are_constant_together(case):
 
 @each_motion
 def test_the_centre_of_the_pressure_is_in_the_face_and_friction_is_at_most_that_of_a_slide(case):
-    a, z, *_ = body(case)
+    a, z, *_ = stood(case)
     with mp.workdps(40):
         for row in case.rows:
             if not mp.isnan(row.f_h):
@@ -137,7 +129,7 @@ def test_what_does_not_turn_stops_after_its_velocity_over_mu():
 
 def test_a_disc_that_only_spins_is_stopped_by_two_thirds_of_the_couple_of_a_ring():
     case, rows = of("disc only spins, with drilling")
-    a, _, _, i3 = body(case)
+    a, _, _, i3 = stood(case)
     with mp.workdps(40):
         couple, w = 2 * mpf(case.mu) * a / 3 + mpf(case.losses["drilling"]), mpf(case.start[3])
         rest = rows["rests"]
@@ -148,7 +140,7 @@ def test_a_disc_that_only_spins_is_stopped_by_two_thirds_of_the_couple_of_a_ring
 def test_a_pillar_rocks_by_the_factor_of_housner():
     for name in ("pillar rocks to rest", "pillar kicked falls back"):
         case, rows = of(name)
-        a, z, i1, _ = body(case)
+        a, z, i1, _ = stood(case)
         with mp.workdps(40):
             inertia = i1 + z**2 + a**2
             ratio = (inertia - 2 * a**2) / inertia
@@ -179,7 +171,7 @@ def test_a_pillar_rocks_by_the_factor_of_housner():
 def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_edge():
     case, rows = of("pillar kicked goes over")
     back, _ = of("pillar kicked falls back")
-    a, z, i1, _ = body(case)
+    a, z, i1, _ = stood(case)
     with mp.workdps(40):
         need = mp.hypot(a, z) - z
         lifts = [(i1 + z**2 + a**2) * mpf(x.start[2]) ** 2 / 2 for x in (back, case)]
@@ -190,7 +182,7 @@ def test_a_kick_takes_a_pillar_over_where_its_energy_lifts_the_centre_over_the_e
 
 def test_a_body_that_topples_leaves_over_the_point_whose_slip_points_outward():
     case, rows = of("topples as it slides")
-    a, z, _i1, _ = body(case)
+    a, z, _i1, _ = stood(case)
     begin, v = rows["topples"], mpf(3)
     with mp.workdps(40):
         assert mpf(case.mu) * z > a
@@ -217,7 +209,7 @@ def test_bounces_of_a_flat_face_are_over_after_a_geometric_series():
 
 def test_viscous_friction_of_a_face_is_that_of_a_complex_velocity():
     case, rows = of("viscous")
-    end, c, (_, z, *_) = rows["end"], mpf(case.mu), body(case)
+    end, c, (_, z, *_) = rows["end"], mpf(case.mu), stood(case)
     with mp.workdps(40):
         force = (end.f_h + 1j * end.f_2) * mp.expj(end.phi)
         assert abs(force + c * velocity(case, end) / (1 - 1j * c * z * end.w3)) < TIGHT

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference_rows import off, sampled, table, whole
+from reference_rows import named, off, sampled, stood, table, whole
 from test_slope_reference import POSE, STATE, TIGHT, Placed
 
 import spincyl as sc
@@ -23,15 +23,7 @@ MET = mpf("1e-17")
 
 
 def of(name):
-    """A motion, and the first of its rows of each kind."""
-    (case,) = (case for case in MOTIONS if case.name == name)
-    return case, {row.kind: row for row in reversed(case.rows)}
-
-
-def body(case):
-    """Radius of the face, height of the centre over it, and the moments."""
-    ell, i1, i3, rho = map(mpf, case.body)
-    return 1 - rho, ell + rho, i1, i3
+    return named(MOTIONS, name)
 
 
 def start(case):
@@ -83,7 +75,7 @@ def test_energy_heat_and_what_losses_take_are_constant_together(case):
 
 @each_motion
 def test_the_centre_of_the_pressure_is_in_the_face_and_friction_is_at_most_that_of_a_slide(case):
-    a, z, *_ = body(case)
+    a, z, *_ = stood(case)
     with mp.workdps(40):
         level = gravity(case)[1]
         for row in case.rows:
@@ -107,7 +99,7 @@ def test_friction_turns_a_body_that_spins_counterclockwise_to_its_right(case):
 def test_a_coin_spun_in_place_drifts_downhill_and_to_one_side_until_it_rests():
     for name in ("coin spun in place", "disc spun in place"):
         case, rows = of(name)
-        _, z, _, i3 = body(case)
+        _, z, _, i3 = stood(case)
         rest = rows["rests"]
         with mp.workdps(40):
             out = mp.mpc(rest.x, rest.y)
@@ -135,7 +127,7 @@ def test_what_does_not_spin_slides_as_a_block():
 def test_viscous_friction_of_a_face_is_that_of_a_complex_velocity_and_carries_the_weight_in_the_end():
     case, rows = of("viscous")
     with mp.workdps(40):
-        (downhill, level), c, (_, z, *_) = gravity(case), mpf(case.mu), body(case)
+        (downhill, level), c, (_, z, *_) = gravity(case), mpf(case.mu), stood(case)
         for row in case.rows:
             force = (row.f_h + 1j * row.f_2) * mp.expj(row.phi)
             assert abs(force + c * level * velocity(case, row) / (1 - 1j * c * z * row.w3)) < TIGHT
@@ -147,7 +139,7 @@ def test_viscous_friction_of_a_face_is_that_of_a_complex_velocity_and_carries_th
 def test_a_film_lets_a_body_go_when_its_drag_is_as_far_ahead_as_the_rim():
     case, rows = of("viscous, topples")
     with mp.workdps(40):
-        (downhill, level), c, (a, z, *_) = gravity(case), mpf(case.mu), body(case)
+        (downhill, level), c, (a, z, *_) = gravity(case), mpf(case.mu), stood(case)
         begin, first = rows["topples"], mpf(case.start[4])
         last = downhill / (c * level)
         # v tends to its last value as exp(-c level t), and z c v = a where it topples
@@ -179,7 +171,7 @@ def test_what_is_let_go_where_friction_cannot_hold_it_slides_straight_down():
 
 def test_what_tips_from_rest_turns_about_the_lowest_point_as_its_energy_says():
     case, rows = of("tips over from rest")
-    a, z, i1, _ = body(case)
+    a, z, i1, _ = stood(case)
     with mp.workdps(40):
         downhill, level = gravity(case)
         begin = rows["tips"]
@@ -196,7 +188,7 @@ def test_what_tips_from_rest_turns_about_the_lowest_point_as_its_energy_says():
 def test_what_topples_as_it_slides_leans_first_as_on_a_level_table_and_turns_with_the_slip():
     for name in ("topples as it slides down", "topples as it slides across with spin"):
         case, rows = of(name)
-        a, z, i1, i3 = body(case)
+        a, z, i1, i3 = stood(case)
         begin = rows["topples"]
         first = next(row for row in case.rows if row.kind == "sample")
         with mp.workdps(40):

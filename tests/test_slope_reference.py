@@ -17,7 +17,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from reference_rows import off, sampled, whole
+from reference_rows import named, off, sampled, whole
 from test_lying_reference import phases_of, posed
 from test_stone_reference import contact as stone_contact
 from test_stone_reference import off as stone_off
@@ -76,9 +76,7 @@ each_motion = of_kind("rim", "lying", known=in_library)
 
 
 def of(name):
-    """A motion, and its first row of each kind."""
-    (case,) = (case for case in MOTIONS if case.name == name)
-    return case, {row.kind: row for row in reversed(case.rows)}
+    return named(MOTIONS, name)
 
 
 def start_of(case):

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! t = tan(slope),   G = t (cos phi, -sin phi) along e_h and e2,   k = I3;   A, Z, L and g as in `body::rim`
-//! stands on its face     slips at t = mu,   tips at t = a/Z
+//! stands on its face     slips at t = mu,   tips at t = a/Z, with rolling resistance at (a + delta)/Z
 //! rolls straight down    slips at t = mu (k + A^2)/k
 //! lies on two circles    N, F_2 of each as in `contact::lying`, c = sqrt((mu N)^2 - F_2^2):   slips at c + c' = |G_h|
 //!                        tips at Z |G_h| = |g| of the lower circle;   begins to roll at Z |G_2| = its dry couple
@@ -159,5 +159,13 @@ pub fn shares(
         }
         _ => 0.0,
     };
-    Ok([of(t, slips.tan()), rolls, of(t, tip_slope(body, theta, posture, phi)?.tan())])
+    let tips = tip_slope(body, theta, posture, phi)?.tan();
+    // Rolling resistance acts on the one point of the ring over which a body on its face tips.
+    let wider = match posture {
+        Posture::Standing => {
+            1.0 + losses.coefficient(Law::RollingResistance) / face_or(body, theta, posture)?[0]
+        }
+        _ => 1.0,
+    };
+    Ok([of(t, slips.tan()), rolls, of(t, tips * wider)])
 }

@@ -224,3 +224,18 @@ fn what_has_no_such_posture_is_refused_by_name() {
     assert_eq!(tip_slope(&disk, SIDE, Posture::Rolling, ACROSS).unwrap(), FRAC_PI_2);
     assert_eq!(slip_slope(&Body::solid(1.0).unwrap(), SIDE, 0.0, Posture::Lying, 0.3).unwrap(), 0.0);
 }
+
+#[test]
+fn a_body_on_its_face_tips_over_where_its_share_says_with_rolling_resistance_as_well() {
+    let body = Body::solid(2.0).unwrap();
+    for arm in [0.0, 0.1] {
+        let losses = Losses::of(Law::RollingResistance, arm);
+        let limit = 0.5 * (1.0 + arm);
+        for (share, holds) in [(1.0 - 1e-9, true), (1.0 + 1e-9, false)] {
+            let slope = (share * limit).atan();
+            let [_, _, tips] = shares(&body, 0.0, 0.9, &losses, Posture::Standing, [slope, 0.0]).unwrap();
+            assert!((tips / share - 1.0).abs() < 1e-14, "{arm} {tips}");
+            assert_eq!(stays(&body, 0.0, 0.9, losses.clone(), slope, 0.0), holds, "{arm} {share}");
+        }
+    }
+}

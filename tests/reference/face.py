@@ -38,7 +38,7 @@ from gmpy2 import mpfr
 from lying_forms import LAWS
 from mpmath import mp
 from series import precise
-from tables import compared, decimal, followed, renew_json
+from tables import moved, renew_json
 
 HERE = pathlib.Path(__file__).parent
 DIGITS = 50
@@ -282,26 +282,8 @@ def scenes():
 
 
 def made(scene):
-    one, other = followed(scene, (Vectors, Closed), record)
-    agreement = max(compared(one, other, angles=(NAMES.index("phi"), NAMES.index("psi"))))
-    return {
-        "name": scene.name,
-        "law": scene.law,
-        "face": scene.face,
-        "body": scene.body,
-        "mu": scene.mu,
-        "static": scene.static,
-        "losses": [scene.losses.get(name, 0.0) for name in LAWS],
-        "restitution": scene.restitution,
-        "start": scene.start,
-        "height": scene.height,
-        "lift": scene.lift,
-        "agreement": float(f"{float(agreement):.1e}"),
-        "rows": [
-            [kind, *("nan" if gmpy2.is_nan(x) else decimal(x, 1e-27) for x in row)]
-            for kind, row in other.rows
-        ],
-    }
+    keys = "name law face body mu static losses restitution start height lift"
+    return moved(scene, (Vectors, Closed), record, NAMES, keys, LAWS)
 
 
 def main():

@@ -35,7 +35,7 @@ from mpmath import mp
 from series import precise
 from slope_face_closed import Closed
 from slope_face_vectors import Vectors
-from tables import compared, decimal, followed, renew_json
+from tables import moved, renew_json
 
 HERE = pathlib.Path(__file__).parent
 DIGITS = 50
@@ -242,17 +242,8 @@ def scenes():
 
 
 def made(scene):
-    one, other = followed(scene, (Vectors, Closed), record)
-    agreement = max(compared(one, other, angles=(NAMES.index("phi"), NAMES.index("psi"))))
-    keys = "name law face slope phi place body mu start digits".split()
-    return {name: getattr(scene, name) for name in keys} | {
-        "losses": [scene.losses.get(name, 0.0) for name in LAWS],
-        "agreement": float(f"{float(agreement):.1e}"),
-        "rows": [
-            [kind, *("nan" if gmpy2.is_nan(x) else decimal(x, 1e-27) for x in row)]
-            for kind, row in other.rows
-        ],
-    }
+    keys = "name law face slope phi place body mu start digits losses"
+    return moved(scene, (Vectors, Closed), record, NAMES, keys, LAWS)
 
 
 def main():

@@ -46,6 +46,18 @@ def followed(scene, formulations, follow):
     return found
 
 
+def moved(scene, formulations, follow, names, keys, laws):
+    """An entry of a table: these attributes of a scene, its losses by `laws`, and its rows, from both formulations."""
+    one, other = followed(scene, formulations, follow)
+    agreement = max(compared(one, other, angles=(names.index("phi"), names.index("psi"))))
+    rows = [
+        [kind, *("nan" if gmpy2.is_nan(x) else decimal(x, 1e-27) for x in row)] for kind, row in other.rows
+    ]
+    entry = {key: getattr(scene, key) for key in keys.split()}
+    entry["losses"] = [scene.losses.get(name, 0.0) for name in laws]
+    return entry | {"agreement": float(f"{float(agreement):.1e}"), "rows": rows}
+
+
 def compared(one, other, angles=()):
     """How far the rows of one record are from those of the other, over 1 or the number if that is more.
 

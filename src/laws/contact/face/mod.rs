@@ -51,6 +51,8 @@ pub(crate) struct FaceFriction {
     form: Face,
     lam: f64,
     fold: f64,
+    /// The part of a disc that presses where slide and spin are nearly as fast as each other, for lam > 1.
+    near: Option<PressedPart>,
 }
 
 impl FaceForce {
@@ -94,15 +96,24 @@ const FOLD_STEP: f64 = 1e-7;
 const TURN: f64 = 1e-12;
 const NARROWER: f64 = 0.5;
 const NARROWEST: f64 = 1e-9;
+/// The ratio of speeds, less 1, of the part near the point to which a disc shrinks, and the ratios between such parts.
+const NEAR_POINT: f64 = 1e-3;
+const NEARER: f64 = 0.1;
+/// A slide with lam = 1 presses a point beyond this ratio.
+const A_POINT_BEYOND: f64 = 1.2;
 /// A part of this width is a point.
 const POINT: f64 = 1e-24;
 
 impl FaceFriction {
     /// The friction of a face whose centre of mass is lam a/mu above it.
     pub fn new(form: Face, lam: f64) -> Self {
-        let mut friction = Self { form, lam, fold: f64::INFINITY };
+        let mut friction = Self { form, lam, fold: f64::INFINITY, near: None };
         if lam > 1.0 {
             friction.fold = friction.highest_ratio();
+            if friction.fold == 1.0 && form == Face::Disc {
+                let whole = PressedPart::towards(1.0, [1.0, 0.7]);
+                friction.near = friction.first_part(whole, 1.0 - NEAR_POINT, 1.0).map(|(part, _)| part);
+            }
         }
         friction
     }
@@ -132,12 +143,20 @@ impl FaceFriction {
         if v >= self.fold * s {
             return None;
         }
-        let first = || self.solved(PressedPart::towards(1.0, centre), v, s).or_else(|| self.narrowed(v, s));
+        if lam == 1.0 && v > A_POINT_BEYOND * s {
+            return Some(FaceForce::at_a_point(s / v, lam));
+        }
+        if let Some(found) = self.near_point(v, s) {
+            return Some(found);
+        }
+        let whole = PressedPart::towards(1.0, centre);
+        let first = || self.first_part(whole, v, s).map(|(part, found)| FaceForce::of(&part, &found));
         let found = match last.filter(|x| slope * x[0].hypot(x[1]) > 1.0) {
             None => first(),
             Some(x) => {
                 let apart = |of: &FaceForce| (of.centre[0] - x[0]).hypot(of.centre[1] - x[1]);
-                let near = self.solved(PressedPart::towards(self.width_of(x[0].hypot(x[1])), x), v, s);
+                let near = PressedPart::towards(self.width_of(x[0].hypot(x[1])), x);
+                let near = self.solved(near, v, s).map(|(part, found)| FaceForce::of(&part, &found));
                 match near {
                     Some(near) if lam < UNIQUE_BELOW || apart(&near) < SAME_BRANCH => Some(near),
                     _ => near.into_iter().chain(first()).min_by(|a, b| apart(a).total_cmp(&apart(b))),
@@ -146,6 +165,30 @@ impl FaceFriction {
         };
         // A slide with lam = 1 presses a point, where the slip is outward.
         found.or_else(|| (lam <= 1.0 && s <= v).then(|| FaceForce::at_a_point(s / v, lam)))
+    }
+
+    /// The part that presses, from the whole face, or else from ever narrower parts.
+    fn first_part(&self, whole: PressedPart, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
+        self.solved(whole, v, s).or_else(|| self.narrowed(v, s))
+    }
+
+    /// The force where the part that presses shrinks to a point: its width is in proportion to the ratio of speeds less 1,
+    /// and its direction tends to the side with the root of that.
+    fn near_point(&self, v: f64, s: f64) -> Option<FaceForce> {
+        let (mut part, short) = (self.near?, (s - v) / s);
+        let mut at = NEAR_POINT;
+        while at > short && short > 0.0 {
+            let share = (short / at).max(NEARER);
+            at = if share > NEARER { short } else { at * share };
+            let off = part.off * share.sqrt();
+            let from = PressedPart { width: part.width * share, angle: part.angle + part.off - off, off };
+            let (next, found) = self.solved(from, s * (1.0 - at), s)?;
+            if at == short {
+                return Some(FaceForce::of(&next, &found));
+            }
+            part = next;
+        }
+        None
     }
 
     /// The width of the part whose centre of pressure is this far from the axis, nearly.
@@ -159,16 +202,16 @@ impl FaceFriction {
     }
 
     /// The part that presses, by Newton's method from another one.
-    fn solved(&self, mut arc: PressedPart, v: f64, s: f64) -> Option<FaceForce> {
+    fn solved(&self, mut arc: PressedPart, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         let mut close = false;
         for _ in 0..STEPS_TO_PART {
             let here = self.pressed(&arc, v, s);
             let det = here.determinant();
             if close {
-                return (det < 0.0).then(|| FaceForce::of(&arc, &here));
+                return (det < 0.0).then_some((arc, here));
             }
             if arc.width < POINT {
-                return Some(FaceForce::of(&arc, &here));
+                return Some((arc, here));
             }
             let [r, q] = here.residual;
             let width = (here.by_angle[0] * q - here.by_angle[1] * r) / det;
@@ -186,7 +229,7 @@ impl FaceFriction {
     }
 
     /// The same, from the first of ever narrower parts whose lam is not smaller. It is negative beyond infinity.
-    fn narrowed(&self, v: f64, s: f64) -> Option<FaceForce> {
+    fn narrowed(&self, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         let mut wide = self.on_curve(PressedPart::towards(1.0, [1.0, 0.7]), v, s);
         let mut step = 0.2;
         while wide.part.width > NARROWEST && step > TURN * wide.part.width {
@@ -360,7 +403,7 @@ mod tests {
     }
 
     fn friction_of(form: Face, lam: f64) -> FaceFriction {
-        FaceFriction { form, lam, fold: f64::INFINITY }
+        FaceFriction { form, lam, fold: f64::INFINITY, near: None }
     }
 
     /// G and gg in the frame of X for given parts, and |X|.

@@ -295,9 +295,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         };
         // The drilling belongs to the slips, but not what the rolling gains until then.
         let [drilling, rolling] = flow.law.turning(w[0], w[1]);
-        let [turns, rolls] = flow.law.turning(begun.lain.w[0], begun.lain.w[1]);
-        let rolls = rolls * moment.min(NUDGED);
-        [self.at[W1], self.at[W3]] = flow.law.turned_by([drilling + moment * turns, rolling + rolls]);
+        let [turns, _] = flow.law.turning(begun.lain.w[0], begun.lain.w[1]);
+        [self.at[W1], self.at[W3]] = flow.law.turned_by([drilling + moment * turns, rolling]);
         self.sets_state();
         self.claims(NUDGED.max(fastest * moment * moment));
         let stance = match begun.moves {

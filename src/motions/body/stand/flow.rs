@@ -40,6 +40,11 @@ const SHARE: usize = W3;
 const SLID_OUT: f64 = 1e-14;
 /// At the fold itself there is no centre of the pressure any more.
 const SHORT_OF_FOLD: f64 = 1.0 - 1e-9;
+/// Where slide and spin are as fast as each other at the fold, the pressed part shrinks to a point, and friction tends to its
+/// last value with the root of what is left: the flow ends before it, and what is left follows from that root.
+const SHORT_OF_POINT: f64 = 1.0 - 1e-5;
+/// A spin and a velocity across the slope below this share of the speed are rounding errors.
+const STRAIGHTENED: f64 = 1e-15;
 /// The longest step in tau.
 const LONGEST: f64 = 4.0;
 
@@ -47,7 +52,9 @@ const LONGEST: f64 = 4.0;
 const RESTS: usize = 0;
 const SPIN_ENDS: usize = 1;
 const TOPPLES: usize = 2;
-const ENDS: [Halt; MARGINS] = [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Time, Halt::Time, Halt::Time];
+const STRAIGHTENS: usize = 3;
+const ENDS: [Halt; MARGINS] =
+    [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Turned, Halt::Time, Halt::Time];
 
 /// How the velocities change.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,7 +126,7 @@ impl StandingFlow {
         let [v_h, v_2] = flow.velocity(y);
         let (v, s) = (v_h.hypot(v_2), flow.radius * y[W3].abs());
         let slope = pull[0].hypot(pull[1]);
-        let turns = slope > 0.0 && (s > 0.0 || v_h * pull[1] != v_2 * pull[0]);
+        let turns = slope > 0.0 && (s > 0.0 || flow.is_across([v_h, v_2]));
         flow.course = match friction {
             Friction::Coulomb { mu, .. } if *mu > 0.0 && turns => Braking::Pulled,
             Friction::Coulomb { mu, .. } if *mu > 0.0 && v > 0.0 && s > 0.0 => Braking::Rubs,
@@ -148,7 +155,67 @@ impl StandingFlow {
     /// Whether a body without spin slides along a straight line.
     pub fn is_straight<const N: usize>(&self, y: &[f64; N]) -> bool {
         let [v_h, v_2] = self.velocity(y);
-        y[W3] == 0.0 && v_h * self.pull[1] == v_2 * self.pull[0]
+        y[W3] == 0.0 && !self.is_across([v_h, v_2])
+    }
+
+    /// Whether this velocity is not along the slope.
+    fn is_across(&self, [v_h, v_2]: [f64; 2]) -> bool {
+        let across = v_h * self.pull[1] - v_2 * self.pull[0];
+        across.abs() > 2.0 * STRAIGHTENED * v_h.hypot(v_2) * self.pull[0].hypot(self.pull[1])
+    }
+
+    /// Spin and velocity across the slope as shares of the speed, of a slide downhill in tau.
+    fn aside<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
+        let slope = self.pull[0].hypot(self.pull[1]);
+        let [x, z] = self.pull.map(|of| of / slope);
+        (y[UH] * x + y[U2] * z > 0.0).then(|| [y[SHARE], y[UH] * z - y[U2] * x])
+    }
+
+    /// The numbers of a slide down a slope without a spin and a velocity across that are rounding errors.
+    pub fn straightened<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
+        let (v, slope) = (v_h.hypot(v_2), self.pull[0].hypot(self.pull[1]));
+        let downhill = v_h * self.pull[0] + v_2 * self.pull[1] > 0.0;
+        if downhill && self.radius * y[W3].abs() <= 2.0 * STRAIGHTENED * v && !self.is_across([v_h, v_2]) {
+            [all[UH], all[U2]] = self.pull.map(|of| v * of / slope);
+            all[W3] = 0.0;
+        }
+        all
+    }
+
+    /// The ratio of slide to spin at which the flow ends.
+    fn topples_at(&self) -> f64 {
+        self.face.fold() * if self.ends_at_point() { SHORT_OF_POINT } else { 1.0 }
+    }
+
+    fn ends_at_point(&self) -> bool {
+        self.dry && self.face.fold() == 1.0
+    }
+
+    /// The numbers where slide and spin have become as fast as each other, from those just before.
+    pub fn at_point<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+        if !self.ends_at_point() {
+            return *y;
+        }
+        let soft = Self { course: Braking::Soft, ..*self };
+        let (begin, mut rates) = (soft.enter(y), [0.0; N]);
+        soft.write_rates(&begin, &mut rates);
+        let (v, w) = (begin[UH].hypot(begin[U2]), begin[W3]);
+        // At the point friction acts across v alone, with the centre of the pressure in the ring.
+        let aside = -self.radius / self.height * (self.up * w).signum();
+        let force = [-aside * begin[U2] / v, aside * begin[UH] / v];
+        let turns = -self.up * self.lost(self.up * w) / self.shape.i3;
+        let last = [(UH, force[0] + self.pull[0]), (U2, force[1] + self.pull[1]), (W3, turns)];
+        for (i, last) in last.into_iter().chain([(HEAT, 0.0)]) {
+            rates[i] = (last + 2.0 * rates[i]) / 3.0;
+        }
+        let faster = (begin[UH] * rates[UH] + begin[U2] * rates[U2]) / v;
+        let nears = faster - self.radius * w.signum() * rates[W3];
+        let left = self.radius * w.abs() - v;
+        if !(left > 0.0 && nears > 0.0) {
+            return *y;
+        }
+        soft.shown(&core::array::from_fn(|i| begin[i] + left / nears * rates[i]))
     }
 
     /// Whether friction or losses change the velocities.
@@ -201,7 +268,8 @@ impl StandingFlow {
         if !(v + s).is_finite() {
             return [f64::NAN; 3];
         }
-        let most = SHORT_OF_FOLD * self.face.fold() * s.abs();
+        let short = if self.ends_at_point() { 0.5 * (1.0 + SHORT_OF_POINT) } else { SHORT_OF_FOLD };
+        let most = short * self.face.fold() * s.abs();
         let at = self.face.at(if v.abs() > most { most } else { v.abs() }, s.abs(), None);
         at.map_or([f64::NAN; 3], |at| {
             [at.along * v.signum(), at.across * v.signum() * s.signum(), at.couple * s.signum()]
@@ -248,7 +316,7 @@ impl StandingFlow {
             return self.stands_under([f_h, f_2]) <= 0.0;
         }
         let (v, s) = (v_h.hypot(v_2), self.radius * w.abs());
-        self.strength > 0.0 && (v > self.face.fold() * s || self.face.at(v, s, None).is_none())
+        self.strength > 0.0 && (v > self.topples_at() * s || self.face.at(v, s, None).is_none())
     }
 
     /// The time in which what is left of slide and spin comes to rest.
@@ -389,7 +457,7 @@ impl Flow<MARGINS> for StandingFlow {
                 }
                 if all[TOPPLES].value != 1.0 {
                     let (sin, cos) = y[SHARE].sin_cos();
-                    all[TOPPLES].slope = (self.face.fold() * cos + sin) * rate[SHARE];
+                    all[TOPPLES].slope = (self.topples_at() * cos + sin) * rate[SHARE];
                 }
             }
             Braking::Pulled => {
@@ -401,7 +469,14 @@ impl Flow<MARGINS> for StandingFlow {
                 if all[TOPPLES].value != 1.0 {
                     let v = v_h.hypot(v_2);
                     let faster = if v > 0.0 { (v_h * rate[UH] + v_2 * rate[U2]) / v } else { 0.0 };
-                    all[TOPPLES].slope = self.face.fold() * s.signum() * rate[SHARE] - faster;
+                    all[TOPPLES].slope = self.topples_at() * s.signum() * rate[SHARE] - faster;
+                }
+                all[STRAIGHTENS].value = self.margin(y, STRAIGHTENS);
+                if let Some([s, across]) = self.aside(y) {
+                    let (size, slope) = (s.hypot(across), self.pull[0].hypot(self.pull[1]));
+                    let back = (rate[UH] * self.pull[1] - rate[U2] * self.pull[0]) / slope;
+                    all[STRAIGHTENS].slope =
+                        if size > 0.0 { (s * rate[SHARE] + across * back) / size } else { 0.0 };
                 }
             }
             Braking::Straight if all[RESTS].value != 1.0 => {
@@ -434,11 +509,14 @@ impl Flow<MARGINS> for StandingFlow {
             (Braking::Rubs, 1) if self.losses != [0.0; 3] => y[SHARE],
             (Braking::Rubs, 2) if self.face.fold() < f64::INFINITY => {
                 let (sin, cos) = y[SHARE].sin_cos();
-                self.face.fold() * sin - cos
+                self.topples_at() * sin - cos
             }
             (Braking::Pulled, 1) if dry && self.way != 0.0 => self.way * y[SHARE],
             (Braking::Pulled, 2) if self.face.fold() < f64::INFINITY => {
-                self.face.fold() * y[SHARE].abs() - y[UH].hypot(y[U2])
+                self.topples_at() * y[SHARE].abs() - y[UH].hypot(y[U2])
+            }
+            (Braking::Pulled, STRAIGHTENS) => {
+                self.aside(y).map_or(1.0, |[s, across]| s.hypot(across) - STRAIGHTENED)
             }
             (Braking::Straight, 0) if self.way == 0.0 && self.speeds_up() => 1.0,
             (Braking::Straight, 0) if self.way == 0.0 => self.towards[0] * y[UH] + self.towards[1] * y[U2],

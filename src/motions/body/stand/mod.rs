@@ -34,6 +34,7 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};
+use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
@@ -45,8 +46,21 @@ const UNMOVED: f64 = 1e-13;
 const RISEN: f64 = 4e-12;
 /// A rim that rises more slowly, beside a spin, comes to nothing; so does one that falls, beside what is lost.
 const HARDLY_RISES: f64 = 1e-6;
+/// A film lets a body topple from lam = 1 on: an onset is located to this accuracy.
+const ONSET: f64 = 1e-10;
+/// Friction and a ring that both just hold, to this accuracy, let a slow slide go on for ever.
+const JUST_HOLDS: f64 = 1e-9;
 /// A face that comes down in less time than this does so with constant rates.
 const SOON_DOWN: f64 = 1e-5;
+
+/// What becomes of a body at rest on its face.
+enum FromRest {
+    Stays,
+    Slides,
+    Tips,
+    /// Its pressure cannot leave the ring, and rolling resistance, or friction, does not let it rise.
+    Jams,
+}
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Whether the body is on its face.
@@ -163,7 +177,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let friction = self.friction_of_face();
         let spins = self.of.slide.law.shape.rim.radius(self.at.angle()) * self.at[W3];
         let moves = self.at[UH].hypot(self.at[U2] + spins) + spins.abs();
-        if moves <= UNMOVED || friction.is_none() {
+        if moves <= UNMOVED || friction.is_none() || moves <= HARDLY_RISES && self.creeps() {
             self.claims(moves);
             // A face cannot roll.
             if moves > HARDLY_RISES {
@@ -171,12 +185,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             self.rests_on_face();
             match self.tips() {
-                None => return Next::Ends(Ending::Stops),
-                Some(true) => return self.tips_over(),
-                Some(false) => {}
+                FromRest::Stays => return Next::Ends(Ending::Stops),
+                FromRest::Tips => return self.tips_over(),
+                FromRest::Jams => return Next::Ends(Ending::Painleve),
+                FromRest::Slides => {}
             }
         }
         let Some(friction) = friction else { return Next::Ends(Ending::Face) };
+        self.at = self.standing(&friction).straightened(&self.at);
         let flow = self.standing(&friction);
         if flow.topples(&self.at) {
             return self.topples(&flow, &friction);
@@ -185,19 +201,38 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::OnItsFace)
     }
 
-    /// Whether a body at rest on its face tips over, or slides; None if it is held.
-    fn tips(&self) -> Option<bool> {
-        let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
-        let [a, z] = [rim.radius(self.at.angle()), rim.height(self.at.angle())];
+    /// What becomes of a body at rest on its face. Its pressure cannot leave the ring, at rest and in a slide. A body that tips
+    /// over the lowest point of its ring turns about it where this needs no more than static friction, else it slips there.
+    fn tips(&self) -> FromRest {
+        let (slope, shape) = (self.of.tilt.abs(), self.of.slide.law.shape);
+        let [a, z] = [shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle())];
         let [rubs, holds] = match self.ask.table {
-            _ if slope == 0.0 => return None,
+            _ if slope == 0.0 => return FromRest::Stays,
             Table::Rolling { mu } => [mu; 2],
             Table::Rubs(Friction::Coulomb { mu, fixed, .. }) => [mu, fixed],
             Table::Rubs(Friction::Viscous { .. }) | Table::Smooth => [0.0; 2],
         };
-        // Its pressure cannot leave the ring, at rest and in a slide.
-        let [rests, slides] = [slope <= holds, slope > holds && rubs * z <= a];
-        if rests && slope * z <= a + self.resists_tipping() { None } else { Some(!slides) }
+        let arm = a + self.resists_tipping();
+        if slope <= holds {
+            return if slope * z <= arm { FromRest::Stays } else { FromRest::Tips };
+        }
+        if rubs * z <= a {
+            return FromRest::Slides;
+        }
+        let turns = (slope * z - arm) / (shape.i1 + z * z + a * arm);
+        let sticks = turns > 0.0 && slope - z * turns <= holds * (1.0 + a * turns);
+        // Friction may press a point that slips ever harder into the table.
+        let slips = rubs * z > arm && (rubs * z - arm) * a < shape.i1;
+        if sticks || slips { FromRest::Tips } else { FromRest::Jams }
+    }
+
+    /// Whether friction and the ring both just hold the body on a slope: a spin then lets it creep, ever faster by the third
+    /// root of the time, and neither ends.
+    fn creeps(&self) -> bool {
+        let Table::Rubs(Friction::Coulomb { mu, fixed, .. }) = self.ask.table else { return false };
+        let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
+        let needs = mu * rim.height(self.at.angle()) - rim.radius(self.at.angle());
+        mu > 0.0 && slope <= fixed && (slope - mu).abs() <= JUST_HOLDS * mu && needs.abs() <= JUST_HOLDS
     }
 
     /// The arm of rolling resistance, which acts on the one point of the ring over which a body tips.
@@ -302,6 +337,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn topples(&mut self, flow: &StandingFlow, friction: &Friction) -> Next {
         let (shape, up) = (self.of.slide.law.shape, self.up());
         let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
+        let (begin, end) = (self.at, flow.at_point(&self.at));
+        let lasts = end[TIME] - begin[TIME];
+        while let Some(t) = self.until().filter(|t| *t < end[TIME]) {
+            let share = (t - begin[TIME]) / lasts;
+            self.writes_standing(flow, &core::array::from_fn(|i| begin[i] + share * (end[i] - begin[i])));
+        }
+        self.at = end;
         let ([v_h, v_2], w) = (flow.velocity(&self.at), up * self.at[W3]);
         let v = v_h.hypot(v_2);
         let square = (v - a * w.abs()) * (v + a * w.abs());
@@ -314,10 +356,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Friction::Coulomb { mu, .. } => (*mu, 0.0),
             Friction::Viscous { c } => (c * slip, *c),
         };
+        let lam = mu * z / a;
         // In a film that a slope makes drag more and more, the body topples from lam = 1 on.
-        let lam = if thick > 0.0 { (mu * z / a).max(1.0) } else { mu * z / a };
+        let lam = if thick > 0.0 && (lam - 1.0).abs() <= ONSET { 1.0 } else { lam };
         // Rolling resistance may keep the body from rising.
-        if (lam - 1.0) * a < self.resists_tipping() || mu * a * z >= shape.i1 + a * a {
+        let rises = (lam - 1.0) * a >= self.resists_tipping() && mu * a * z < shape.i1 + a * a;
+        if !rises {
             return Next::Ends(Ending::Painleve);
         }
         let normal = 1.0 / (1.0 - (lam - 1.0) * a * a / shape.i1);
@@ -340,11 +384,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let faster = if film > 0.0 { -(z * film * falls / shape.i1) } else { 0.0 };
         let bends = film * (falls - a * faster * slip) - if film > 0.0 { z * faster } else { 0.0 };
         // A face that just rests has no direction in which it turns.
-        let lasts = (2.0 * RISEN / grows).sqrt().min((6.0 * RISEN / faster).cbrt());
-        if !lasts.is_finite() {
+        let risen = 1.0 / larger_or_nan((0.5 * grows / RISEN).sqrt(), (faster / (6.0 * RISEN)).cbrt());
+        if !risen.is_finite() {
             return Next::Ends(Ending::Painleve);
         }
-        self.claims(lasts * lasts * if film > 0.0 { lasts } else { 1.0 });
+        // A slow slip ends before the body has risen, which comes down again.
+        let stops = slip <= falls * risen;
+        let lasts = if stops { slip / falls } else { risen };
+        // What turns does so at constant rates here, as the slip does without a film.
+        let third = if film > 0.0 && self.of.planar { lasts } else { 1.0 };
+        let turned = lasts * (turns.abs() + nu.abs());
+        let size = if stops { slip } else { slip.max(1.0) };
+        self.claims((lasts * lasts + size * turned * turned) * third);
         let begin = self.at;
         let [forth, aside] = flow.velocity(&begin);
         self.rises_as(lasts, |t| {
@@ -367,7 +418,23 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             y
         });
-        Next::Slips
+        if !stops {
+            return Next::Slips;
+        }
+        (self.at[UH], self.at[U2]) = (0.0, 0.0);
+        if v <= HARDLY_RISES {
+            self.claims(v);
+            self.comes_to_nothing();
+        }
+        self.settles_on_face()
+    }
+
+    /// Takes what is left of a slow motion near a face.
+    fn comes_to_nothing(&mut self) {
+        let before = self.of.slide.energy(&self.at);
+        self.lies_on_face();
+        self.rests_on_face();
+        self.at[HEAT] += before - self.of.slide.energy(&self.at);
     }
 
     /// The phase of a body that a kick, or a slope, lets rise on the point from which its state is told.
@@ -386,9 +453,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.of.state.theta = if up > 0.0 { ALMOST_FLAT } else { PI };
         let [u, v] = self.at.slip();
+        // Dry losses act against a rise from rest as soon as it begins.
+        let rising = if rises > 0.0 { rises } else { ALMOST_FLAT };
         let mut sticks = matches!(self.ask.table, Table::Rolling { .. });
         if self.ask.table.rubs() && self.of.slide.law.dry && u.hypot(v) <= self.of.slide.over() {
             self.stop_slip();
+            self.of.state.w2 = -up * rising;
             match Phases::rests(self) {
                 Standstill::Sticks => sticks = true,
                 Standstill::Slips { alpha, growth } => {
@@ -405,7 +475,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         // w1 = nu sin theta, with the nu with which w1 follows.
         let follows = |nu: f64| {
             let (mut y, theta) = (begin, self.of.state.theta);
-            y[W1] = nu * theta.sin();
+            (y[W1], y[W2]) = (nu * theta.sin(), -up * rising);
             let rates = self.rates_on_rim((theta.sin(), up), theta, &y, sticks);
             (rates[W1] - nu * rises, rates)
         };
