@@ -4,6 +4,7 @@
     python benches/slopes.py --count 3334      10,000 motions, the figures of docs/hard-cases.md
     python benches/slopes.py --only 17 0.5     one of them, with its phases
     python benches/slopes.py --odd 7           500 odd starts near a face, by this seed, to t = 10
+    python benches/slopes.py --speed           a slope beside a level table, and sweeps beside motions one by one
 
 Cylinders, tubes, coins, rounded bodies, balls and tippe tops on a rim, slipping or not, at rest, on their side, on their
 face, or let fall, on slopes of 0 to 60 degrees in all directions; Coulomb friction from 0.05 to 1, half of them with rolling resistance
@@ -18,6 +19,7 @@ import argparse
 import time
 import warnings
 from collections import Counter
+from functools import partial
 
 import numpy as np
 
@@ -172,13 +174,59 @@ def follows_odd(count, seed):
     print(dict(ends))
 
 
+def fastest(repeats, call, *of, **how):
+    """The least time of the processor that a call takes, in us."""
+    times = []
+    for _ in range(repeats):
+        since = time.process_time()
+        call(*of, **how)
+        times.append(time.process_time() - since)
+    return 1e6 * min(times)
+
+
+SWEPT = {
+    "rolls": {},
+    "slips": {"contact": sc.Coulomb(0.05)},
+    "slips, then rolls": {"contact": sc.Coulomb(0.3)},
+    "on a film": {"contact": sc.Viscous(0.3)},
+    "hops": {"contact": sc.Coulomb(0.3), "restitution": 0.4},
+    "with rolling resistance": {"contact": sc.Coulomb(0.6), "losses": sc.loss.RollingResistance(0.01)},
+}
+
+
+def tells_speed(count):
+    """Prints what a slope costs beside a level table, and each motion of a sweep beside one alone."""
+    body, state, slope = sc.Body.solid(0.1), sc.State(1.2, 0.5, 0.0, 1.5), sc.Table(0.1, phi0=0.4)
+    for want in ((), ("pose",)):
+        level, tilted = (
+            fastest(40, sc.roll, body, state, 20.0, tol=1e-12, table=on, want=want) for on in (None, slope)
+        )
+        print(f"rolls, want={want}: level {level:.0f} us, slope {tilted:.0f} us, {tilted / level:.2f}")
+    rng = np.random.default_rng(1)
+    low, high = [0.3, -1, -0.5, -3, -1, -1, 0.02, -3], [1.5, 1, 0.5, 3, 1, 1, 0.5, 3]
+    starts = rng.uniform(low, high, (count, 8))
+    for name, how in SWEPT.items():
+        given, alone = {"tol": 1e-12} | how, []
+        rows = np.where((name == "rolls") & np.isin(range(8), (4, 5)), 0.0, starts)
+        for x in [*rows[: count // 4], rows.T]:
+            start, table = sc.State(*x[:4], slip=tuple(x[4:6])), sc.Table(x[6], phi0=x[7])
+            roll = sc.roll if x.ndim == 1 else partial(sc.sweep.roll, threads=1)
+            alone.append(fastest(2, roll, body, start, 10.0, table=table, **given))
+        each, mean = alone.pop() / count, np.mean(alone)
+        print(f"{name}: alone {mean:.0f} us, in a sweep {each:.0f} us, {mean / each:.1f} times as fast")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--only", nargs=2, metavar=("NUMBER", "RESTITUTION"))
     parser.add_argument("--odd", type=int, metavar="SEED")
+    parser.add_argument("--speed", action="store_true")
     asked = parser.parse_args()
     warnings.simplefilter("ignore")
+    if asked.speed:
+        tells_speed(asked.count)
+        return
     if asked.odd is not None:
         follows_odd(asked.count, asked.odd)
         return
