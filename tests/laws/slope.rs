@@ -356,7 +356,7 @@ fn balance(body: &Body, om: f64, m: &Motion, i: usize) -> f64 {
 
 #[test]
 fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_the_heat() {
-    let (mut next, mut slips) = (wander(11), 0);
+    let (mut next, mut slips, mut patches) = (wander(11), 0, 0);
     for _ in 0..150 {
         let (body, start, ask) = drawn(&mut next);
         let om = within(&mut next, -1.0, 1.0);
@@ -365,6 +365,7 @@ fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_the
         let times = [0.0, 0.5, 1.0, 2.0, 4.0];
         let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
         slips += usize::from(m.path.as_ref().unwrap().dissipated.last().is_some_and(|heat| *heat > 0.0));
+        patches += usize::from(matches!(ask.table, Table::Rubs(Friction::Coulomb { patch, .. }) if patch > 0.0));
         for i in 1..m.states.len() {
             let off = (balance(&body, om, &m, i) - balance(&body, om, &m, 0)).abs();
             let size = m.states[i].w1.abs().max(m.states[i].w3.abs()).max(3.0).powi(2);
@@ -372,13 +373,53 @@ fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_the
             assert!(off < claim, "{off:e} {claim:e} at {}: {body:?} {start:?} {ask:?}", m.times[i]);
         }
     }
-    assert!(slips > 30, "{slips}");
+    assert!(slips > 30 && patches > 8, "{slips} {patches}");
+}
+
+/// The spin about the vertical.
+fn drilling(y: &State) -> f64 {
+    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
+}
+
+#[test]
+fn a_ball_on_a_patch_takes_the_spin_of_a_turntable_as_a_table_at_rest_takes_that_of_a_ball() {
+    let (om, times) = (0.8, [0.0, 1.0, 2.5, 4.0, 40.0]);
+    let ask = Ask::on(Friction::Coulomb { mu: 0.3, fixed: 0.4, patch: 0.2 });
+    let still = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
+    let taken = rolled(&ball(), still.into(), &times, &ask.with_turning(om));
+    let slows = rolled(&ball(), State { w1: -om, ..still }.into(), &times, &ask);
+    for i in 0..times.len() {
+        let [a, b] = [&taken, &slows].map(|m| m.states.get(i).map(drilling));
+        // The ball on the table at rest has come to rest in the end, and that on the turntable turns on with it.
+        let off = a.unwrap() - om - b.unwrap_or(0.0);
+        assert!(off.abs() < 1e-11, "{off:e} at {}", times[i]);
+        let heat = |m: &Motion| m.path.as_ref().unwrap().dissipated.get(i).copied();
+        let off = heat(&taken).unwrap() - heat(&slows).unwrap_or(0.2 * om * om);
+        assert!(off.abs() < 1e-11, "{off:e} at {}", times[i]);
+        let at = centre(&ball(), &taken, i);
+        assert!(at[0].hypot(at[1]) < 1e-11, "{at:?}");
+    }
+    assert!(drilling(&taken.states[1]) < 0.5 * om && (drilling(&taken.states[4]) - om).abs() < 1e-13);
+}
+
+#[test]
+fn a_ball_that_turns_with_the_turntable_rolls_round_on_a_patch_as_on_a_point() {
+    let (om, beta, times) = (0.8, 0.05, [0.0, 2.0, 7.0, 30.0]);
+    let start = Start::from(State { theta: FRAC_PI_2, w1: om, w2: 0.3, w3: 0.4 }).with_place([1.0, -0.5]);
+    let point = Friction::coulomb(0.9);
+    let patch = Friction::Coulomb { mu: 0.9, fixed: 0.9, patch: 0.02 };
+    let [a, b] = [point, patch]
+        .map(|law| rolled(&ball(), start, &times, &Ask::on(law).with_slope(beta).with_turning(om)));
+    for i in 0..times.len() {
+        let [p, q] = [&a, &b].map(|m| centre(&ball(), m, i));
+        assert!((0..3).all(|k| (p[k] - q[k]).abs() < 1e-10), "{p:?} {q:?}");
+        assert!((drilling(&b.states[i]) - om).abs() < 1e-12);
+    }
 }
 
 #[test]
 fn what_is_not_computed_on_a_slope_is_refused_by_name() {
     let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.5, w2: 0.0, w3: 1.5 });
-    let patch = Friction::Coulomb { mu: 0.3, fixed: 0.3, patch: 0.01 };
     for ask in [
         Ask::default().with_slope(FRAC_PI_2),
         Ask::default().with_slope(f64::NAN),
@@ -393,7 +434,6 @@ fn what_is_not_computed_on_a_slope_is_refused_by_name() {
         Ask::default().with_turning(f64::NAN),
         Ask::default().with_turning(0.5).with_restitution(0.5),
         Ask::default().with_turning(0.5).with_losses(Losses::of(Law::AirLinear, 0.01)),
-        Ask::on(patch).with_turning(0.5),
         Ask::on(Contact::Smooth).with_turning(0.5),
     ] {
         let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
@@ -451,10 +491,7 @@ fn a_ball_that_drills_on_a_patch_creeps_down_as_far_from_rolling_as_the_slope_as
     let m = rolled(&ball(), start, &[3.0, 5.0, 8.0], &Ask::on(friction).with_slope(beta));
     for i in 0..3 {
         let u = m.path.as_ref().unwrap().slip[i];
-        let drills = {
-            let y = m.states[i];
-            y.theta.sin() * y.w1 + y.theta.cos() * y.w3
-        };
+        let drills = drilling(&m.states[i]);
         let share = patch_share(u[0].hypot(u[1]) / (radius * drills.abs()));
         let needed = 0.4 / 1.4 * beta.tan() / mu;
         assert!((share / needed - 1.0).abs() < 0.01, "{share} {needed}");
