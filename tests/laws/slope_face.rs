@@ -437,16 +437,17 @@ fn the_side_from_which_a_body_on_its_face_is_told_changes_nothing_that_it_does()
             let start = Start::from(State { w3: w, ..LEVEL }).with_slip(slip).with_heading(heading);
             let m = moved(&body, start, &times, &ask);
             for i in 0..times.len() {
-                let [a, _, u, v] = centre(&body, &known, i);
+                let [_, _, u, v] = centre(&body, &known, i);
                 let [_, _, v_h, v_2] = centre(&body, &m, i);
                 let turned = [v_h * cos - v_2 * sin, v_2 * cos + v_h * sin];
-                assert!((known.states[i].w3 - m.states[i].w3).abs() < 1e-12 && a.is_finite());
+                let most = 1e-12 + 4.0 * (known.error + m.error);
+                assert!((known.states[i].w3 - m.states[i].w3).abs() < most);
                 let face = known.states[i].theta == 0.0;
-                assert!(!face || (turned[0] - u).abs() + (turned[1] - v).abs() < 1e-12, "{mu} {heading}");
+                assert!(!face || (turned[0] - u).abs() + (turned[1] - v).abs() < most, "{mu} {heading}");
                 // Told from the same point, once it has toppled.
                 let off = (known.states[i].theta - m.states[i].theta).abs()
                     + (known.states[i].w1 - m.states[i].w1).abs();
-                assert!(off < 1e-10 + 4.0 * m.error, "{mu} {heading} {off}");
+                assert!(off < 10.0 * most, "{mu} {heading} {off}");
             }
         }
     }

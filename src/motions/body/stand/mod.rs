@@ -390,6 +390,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         // A slow slip ends before the body has risen, which comes down again.
         let stops = slip <= falls * risen;
+        if stops && v <= HARDLY_RISES {
+            self.claims(v);
+            self.comes_to_nothing();
+            return self.stands_on_face();
+        }
         let lasts = if stops { slip / falls } else { risen };
         // What turns does so at constant rates here, as the slip does without a film.
         let third = if film > 0.0 && self.of.planar { lasts } else { 1.0 };
@@ -422,10 +427,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return Next::Slips;
         }
         (self.at[UH], self.at[U2]) = (0.0, 0.0);
-        if v <= HARDLY_RISES {
-            self.claims(v);
-            self.comes_to_nothing();
-        }
         self.settles_on_face()
     }
 
