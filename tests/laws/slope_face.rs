@@ -188,7 +188,7 @@ fn energy_and_heat_stay_together_and_uphill_is_downhill_turned_round_and_the_mir
             let most = 1e-12 * (1.0 + m.path.as_ref().unwrap().dissipated[i]) + 10.0 * m.error;
             assert!(m.states[i].theta > 0.0 || off.abs() < most, "{case} {i}: {off} {:?}", m.error);
         }
-        let turned = ask.clone().with_slope(-beta);
+        let turned = ask.with_slope(-beta);
         let back = moved(&body, slides(&body, v.map(|x| -x), w), &times, &turned);
         let over = moved(&body, slides(&body, [v[0], -v[1]], -w), &times, &ask);
         for i in 0..m.states.len() {

@@ -235,7 +235,7 @@ fn a_body_on_its_face_tips_over_where_its_share_says_with_rolling_resistance_as_
             let slope = (share * limit).atan();
             let [_, _, tips] = shares(&body, 0.0, 0.9, &losses, Posture::Standing, [slope, 0.0]).unwrap();
             assert!((tips / share - 1.0).abs() < 1e-14, "{arm} {tips}");
-            assert_eq!(stays(&body, 0.0, 0.9, losses.clone(), slope, 0.0), holds, "{arm} {share}");
+            assert_eq!(stays(&body, 0.0, 0.9, losses, slope, 0.0), holds, "{arm} {share}");
         }
     }
 }
