@@ -365,7 +365,8 @@ fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_the
         let times = [0.0, 0.5, 1.0, 2.0, 4.0];
         let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
         slips += usize::from(m.path.as_ref().unwrap().dissipated.last().is_some_and(|heat| *heat > 0.0));
-        patches += usize::from(matches!(ask.table, Table::Rubs(Friction::Coulomb { patch, .. }) if patch > 0.0));
+        patches +=
+            usize::from(matches!(ask.table, Table::Rubs(Friction::Coulomb { patch, .. }) if patch > 0.0));
         for i in 1..m.states.len() {
             let off = (balance(&body, om, &m, i) - balance(&body, om, &m, 0)).abs();
             let size = m.states[i].w1.abs().max(m.states[i].w3.abs()).max(3.0).powi(2);

@@ -79,6 +79,13 @@ def kept_contact(contact: AnyContact) -> dict[str, Reals]:
     return {"contact_mu": contact.mu, **own, "contact_patch": contact.patch}
 
 
+def checked_table(table: Table | None) -> Table | None:
+    """Return a table on which many motions can be computed, or an error that names it."""
+    if table is not None and instance_of("table", table, Table).turning != 0:
+        raise ValueError(f"table = {table!r}: a table that turns is only for roll")
+    return table
+
+
 def kept_table(table: Table | None) -> dict[str, Reals]:
     """The slope and the heading of a table, by the names of their coordinates."""
     return {} if table is None else {"table_slope": table.slope, "table_phi0": table.phi0}

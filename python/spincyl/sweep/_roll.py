@@ -45,7 +45,7 @@ from spincyl._roll import is_stone
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl._table import Table
 from spincyl.sweep._common import in_memory
-from spincyl.sweep._inputs import kept_bodies, kept_contact, kept_table
+from spincyl.sweep._inputs import checked_table, kept_bodies, kept_contact, kept_table
 from spincyl.sweep._labels import flags, given_up, refused, uncertain
 from spincyl.sweep._swept import Question, swept
 
@@ -403,13 +403,6 @@ def _times(t: Reals) -> tuple[Floats, bool]:
         order = "all >= 0 and ascending, or all <= 0 and descending"
         raise ValueError(f"t: expected times that are {order}, and at most 1e15 in absolute value")
     return at, True
-
-
-def checked_table(table: Table | None) -> Table | None:
-    """Return a table on which many motions can be computed, or an error that names it."""
-    if table is not None and instance_of("table", table, Table).turning != 0:
-        raise ValueError(f"table = {table!r}: a table that turns is only for roll")
-    return table
 
 
 def _wanted_of_motions(
