@@ -389,14 +389,14 @@ fn a_ball_on_a_patch_takes_the_spin_of_a_turntable_as_a_table_at_rest_takes_that
     let still = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
     let taken = rolled(&ball(), still.into(), &times, &ask.with_turning(om));
     let slows = rolled(&ball(), State { w1: -om, ..still }.into(), &times, &ask);
-    for i in 0..times.len() {
+    for (i, t) in times.iter().enumerate() {
         let [a, b] = [&taken, &slows].map(|m| m.states.get(i).map(drilling));
         // The ball on the table at rest has come to rest in the end, and that on the turntable turns on with it.
         let off = a.unwrap() - om - b.unwrap_or(0.0);
-        assert!(off.abs() < 1e-11, "{off:e} at {}", times[i]);
+        assert!(off.abs() < 1e-11, "{off:e} at {}", t);
         let heat = |m: &Motion| m.path.as_ref().unwrap().dissipated.get(i).copied();
         let off = heat(&taken).unwrap() - heat(&slows).unwrap_or(0.2 * om * om);
-        assert!(off.abs() < 1e-11, "{off:e} at {}", times[i]);
+        assert!(off.abs() < 1e-11, "{off:e} at {}", t);
         let at = centre(&ball(), &taken, i);
         assert!(at[0].hypot(at[1]) < 1e-11, "{at:?}");
     }
