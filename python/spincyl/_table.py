@@ -25,7 +25,7 @@ class Table(Hinting):
     turning : float
         Rate at which the table turns about its normal through x = y = 0, counterclockwise as seen from
         above, in sqrt(g/R); for `roll` only. Slips are over the table; all else is told as seen from the
-        room. Without losses and `restitution=`. A patch of contact drills over the table, too.
+        room. Without losses, `restitution=` and a patch of contact.
     phi0 : float
         Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
         it may be an array. A stone, and its slip, are turned about z by this angle from where they are
@@ -42,7 +42,7 @@ class Table(Hinting):
     -----
     The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
     (docs/slopes.md). Bodies of revolution roll, slip, fly, bounce and slide on their face there, under every
-    law of friction, and lose energy by all laws but dry friction along the contour and drilling
+    law of friction at a point, and lose energy by all laws but dry friction along the contour and drilling
     friction together. Stones roll and slip there, with the same losses; their table does not turn.
 
     Examples

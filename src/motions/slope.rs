@@ -44,8 +44,8 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     within("turning", ask.turning, (-1e6, 1e6), "at most 1e6 sqrt(g/R)")?;
     if ask.turning != 0.0 {
         let alone = ask.losses.is_none() && ask.restitution.is_none() && ask.table != Table::Smooth;
-        if !alone {
-            let expected = "0 with losses, with a restitution, or on a smooth table";
+        if !alone || ask.table.friction().patch() > 0.0 {
+            let expected = "0 with losses, with a restitution, with a patch of contact, or on a smooth table";
             return Err(Error::OutOfRange { name: "turning", value: ask.turning, expected });
         }
     }

@@ -215,8 +215,8 @@ impl<G: Own> BodyPhases<G> {
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
-        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
-        let slide = slide.on_table([ask.slope.tan(), ask.turning]);
+        let mut slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        (slide.tilt, slide.turning) = (ask.slope.tan(), ask.turning);
         let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
         let known_ends = !G::IS && !body.is_ball() && ask.is_level();
         Self {
@@ -263,8 +263,8 @@ impl<G: Own> BodyPhases<G> {
                 self.tail = self.tail.map(|_| LastTurns::default());
                 self.nods = self.nods.take().map(|_| Box::default());
             }
-            let slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
-            self.slide = slide.on_table([self.tilt, self.turning]);
+            self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
+            (self.slide.tilt, self.slide.turning) = (self.tilt, self.turning);
             self.body = body;
         }
     }

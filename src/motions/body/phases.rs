@@ -75,9 +75,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let (s, c) = state(&self.at).theta.sin_cos();
         let [w1, w2, w3] = self.at.w();
-        // A patch at rest turns with the table.
-        let drilling = drilling_of((s, c), w1, w3) - self.of.turning;
-        let (rolling, mut left) = (rolling_of((s, c), w1, w3), 0f64);
+        let (drilling, rolling) = (drilling_of((s, c), w1, w3), rolling_of((s, c), w1, w3));
+        let mut left = 0f64;
         if stops.drilling {
             (self.at[W1], self.at[W3]) = (w1 - s * drilling, w3 - c * drilling);
             left = drilling.abs();

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::laws::body::border_at;
 use crate::laws::contact::Table;
 use crate::laws::loss::Holds;
-use crate::laws::state::drilling_of;
+use crate::laws::state::State;
 use crate::methods::flow::{Flow, Spent, Steps};
 use crate::motions::Ending;
 use crate::motions::body::body_walk::{BodyWalk, LossyPhase};
@@ -26,7 +26,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (losses, friction) = (self.ask.losses, self.friction());
         if friction.patch() > 0.0 {
             // The patch hardly drills.
-            self.claims(LOST_DRILLING * self.drilling().abs());
+            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
             self.stops_exactly(Holds { drilling: true, ..Holds::default() });
         }
         let (on, y) = ((&self.of.body, self.contact()), self.of.state);
@@ -162,7 +162,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
                 (self.at[UH], self.at[U2]) = (slip[0], slip[1]);
-                self.claims(LOST_DRILLING * self.drilling().abs());
+                self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
                 self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
             }
@@ -177,10 +177,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.continues_with(next);
         Ok(None)
     }
+}
 
-    /// The drilling over the table.
-    fn drilling(&self) -> f64 {
-        let y = &self.of.state;
-        drilling_of(y.theta.sin_cos(), y.w1, y.w3) - self.of.turning
-    }
+fn drilling(y: &State) -> f64 {
+    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
 }

@@ -64,8 +64,7 @@ impl<L: Own> Slide<L> {
         if !self.law.dry {
             return (slip.map(|u| mu * u), 0.0);
         }
-        let drilling = drilling_of((s, c), w[0], w[2]) - self.turning;
-        let size = slip[0].hypot(slip[1]);
+        let (drilling, size) = (drilling_of((s, c), w[0], w[2]), slip[0].hypot(slip[1]));
         match self.law.patch() {
             Some(patch) if size > 0.0 || drilling != 0.0 => {
                 let [share, twist, _] = rubs(size, drilling, patch);

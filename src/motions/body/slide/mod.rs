@@ -105,15 +105,6 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// The same slip on a table of this slope, given by its tangent, that turns at this rate.
-    #[must_use]
-    pub fn on_table(mut self, [tilt, turning]: [f64; 2]) -> Self {
-        (self.tilt, self.turning) = (tilt, turning);
-        (self.law, self.bare) = (self.law.on_turning(turning), self.bare.on_turning(turning));
-        self.sloped = self.sloped.on_turning(Dual::constant(turning));
-        self
-    }
-
     /// The pull on the centre along e_h and e2, of a slope and of a table that turns.
     pub fn pull<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let tilted = pull(self.tilt, y);

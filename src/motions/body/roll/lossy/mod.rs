@@ -217,7 +217,7 @@ impl<G: Own> LossyFlow<G> {
         // What a slip has held is at rest up to rounding.
         let still = rounded(angle.0, w);
         let along = spin.abs() <= still && self.has(Law::DryContour);
-        let about = (drilling - self.om).abs() <= still && self.can_hold_drilling();
+        let about = drilling.abs() <= still && self.can_hold_drilling();
         if (y.w1 == 0.0 && y.w3 == 0.0 || along && about) && !self.is_pulled_aside() {
             self.rocks_only(angle, y.w2);
         } else {
@@ -312,7 +312,7 @@ impl<G: Own> LossyFlow<G> {
         let slow = |x: f64| x.abs() < little;
         Holds {
             contour: slow(y.spin()) && self.has(Law::DryContour),
-            drilling: slow(drilling_of(angle, y.w1, y.w3) - self.om) && self.can_hold_drilling(),
+            drilling: slow(drilling_of(angle, y.w1, y.w3)) && self.can_hold_drilling(),
             rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
                 && self.has(Law::RollingResistance),
         }
@@ -437,8 +437,8 @@ impl<G: Own> LossyFlow<G> {
         self.pushed_off(&mut y);
         let [s, c, mut w1, mut w3] = [y[SIN], y[COS], y[P], y[W3]];
         if self.starts_still && self.moves {
-            // Here w_z is exactly that of the table, and its rounding error is removed.
-            let off = drilling_of((s, c), w1, w3) - self.om;
+            // Here w_z vanishes exactly, and its rounding error is removed.
+            let off = drilling_of((s, c), w1, w3);
             if c.abs() > 0.5 {
                 w3 -= off / c
             } else {

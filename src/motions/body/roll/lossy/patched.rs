@@ -49,6 +49,6 @@ impl<G: Own> LossyFlow<G> {
     /// The slip of a contact point on a patch that creeps under the contact force of this state.
     pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
         let (patch, Force { normal, along, across }) = (self.patch?, self.force(y));
-        patch.begins_to_creep([across, along], normal, drilling_of(y.theta.sin_cos(), y.w1, y.w3) - self.om)
+        patch.begins_to_creep([across, along], normal, drilling_of(y.theta.sin_cos(), y.w1, y.w3))
     }
 }
