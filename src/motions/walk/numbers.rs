@@ -91,11 +91,17 @@ pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
 /// The velocity of a table that turns at this rate under the contact point, along e_h and e2.
 #[inline(always)]
 pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N]) -> [f64; 2] {
-    if !poses(N) || turning == 0.0 {
+    if poses(N) { carried_at(turning, y[PHI], [y[X], y[Y]]) } else { [0.0; 2] }
+}
+
+/// The same at this phi, under a point at this place.
+#[inline(always)]
+pub(crate) fn carried_at(turning: f64, phi: f64, [x, y]: [f64; 2]) -> [f64; 2] {
+    if turning == 0.0 {
         return [0.0; 2];
     }
-    let (sin, cos) = y[PHI].sin_cos();
-    [turning * (y[X] * sin - y[Y] * cos), turning * (y[X] * cos + y[Y] * sin)]
+    let (sin, cos) = phi.sin_cos();
+    [turning * (x * sin - y * cos), turning * (x * cos + y * sin)]
 }
 
 /// The velocity of the contact point over the table, along e_h and e2.
