@@ -61,6 +61,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (w, power)
     }
 
+    /// Whether a table that turns does work which [`Slide::energy`] does not know, since others than the table turn the
+    /// body about the vertical.
+    pub(super) fn is_driven(&self) -> bool {
+        self.of.turning != 0.0 && (self.of.tilt != 0.0 || Couples::in_air(&self.ask.losses).is_some())
+    }
+
     /// w_z over the table.
     pub(super) fn drills_here(&self) -> f64 {
         let y = &self.of.state;

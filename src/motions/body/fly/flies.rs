@@ -326,9 +326,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Compares the energy, with all that has been taken from it, with that at the start. Their difference, over the
     /// largest speed, is an error of the numbers.
     pub(crate) fn compares_energy(&mut self) {
-        // On a slope a table that turns does work.
-        let driven = self.of.tilt != 0.0 && self.of.turning != 0.0;
-        if self.ask.restitution.is_none() || self.perturbation > 0.0 || driven {
+        if self.ask.restitution.is_none() || self.perturbation > 0.0 || self.is_driven() {
             return;
         }
         let (from, law) = (self.aloft(), &self.of.slide.law);
