@@ -295,13 +295,61 @@ def test_a_table_that_turns_takes_a_ball_round_and_does_work():
     assert abs(m.work_table[-1]) < 1e-10
     slips = sc.roll(ball, start, np.linspace(0, 5, 6), table=table, contact=sc.Coulomb(0.02))
     assert slips.dissipated[-1] > 0 and slips.work_table[-1] != slips.work_table[0]
-    for bad in ({"restitution": 0.5}, {"losses": sc.loss.AirLinear(0.01)}, {"contact": "smooth"}):
-        with pytest.raises(ValueError, match="turning = 0.8: expected 0 with"):
+    patch = sc.Coulomb(0.3, patch=0.02)
+    along, drags = sc.loss.ViscousContour(0.01), sc.loss.Drilling(0.01)
+    for bad in ({"contact": "smooth"}, {"losses": along + drags}, {"losses": along, "contact": patch}):
+        with pytest.raises(ValueError, match="turning = 0.8: expected 0 (on|with)"):
             sc.roll(ball, start, 1.0, table=table, **bad)
+    tilted, both = sc.Table(0.1, turning=rate), drags + sc.loss.RollingResistance(0.01)
+    with pytest.raises(ValueError, match="turning = 0.8: expected 0 with drilling friction"):
+        sc.roll(ball, start, 1.0, table=tilted, losses=both)
     with pytest.raises(ValueError, match="only for roll"):
         sc.sweep.roll(ball, start, 1.0, table=table)
     with pytest.raises(ValueError, match="does not turn"):
         sc.scene(m, scale=sc.Scale(0.01, 0.01)).data
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"contact": sc.Coulomb(0.3, patch=0.05)},
+        {"contact": sc.Coulomb(0.3), "losses": sc.loss.Drilling(0.02)},
+        {"contact": sc.Coulomb(0.3), "restitution": 0.6},
+    ],
+    ids=["patch", "drilling", "impacts"],
+)
+def test_the_work_of_a_table_is_its_rate_times_the_angular_momentum_it_gives(law):
+    body, rate = sc.Body.ball(0.1, 0.38, 0.4), 0.7
+    aloft = {"height": 0.3, "lift": 0.1} if "restitution" in law else {}
+    start = sc.State(1.0, 0.6, 0.2, -0.5, slip=(0.2, -0.3), **aloft)
+    table = sc.Table(turning=rate, place=(1.0, 0.5))
+    m = sc.roll(body, start, np.linspace(0, 6, 61), table=table, want="pose", **law)
+    e3 = np.column_stack(
+        [-np.sin(m.theta) * np.cos(m.phi), -np.sin(m.theta) * np.sin(m.phi), np.cos(m.theta)]
+    )
+    spins = 0.38 * m.w[:, 0] * np.sin(m.theta) + 0.4 * m.w[:, 2] * np.cos(m.theta)
+    x, y = m.centre[:, :2].T
+    slip, (sin, cos) = m.slip, (np.sin(m.phi), np.cos(m.phi))
+    along, across = slip[:, 0] * cos - slip[:, 1] * sin, slip[:, 0] * sin + slip[:, 1] * cos
+    # the velocity of the centre, from that of the lowest point of the ball, which the table carries
+    w = m.w[:, :1] * np.column_stack([e3[:, 2] * cos, e3[:, 2] * sin, np.sin(m.theta)])
+    w += m.w[:, 1:2] * np.column_stack([-sin, cos, 0 * sin]) + m.w[:, 2:] * e3
+    arm = m.centre - np.column_stack([m.contact_point, getattr(m, "height", 0 * x)])
+    swung = np.cross(w, arm)
+    v_x = along - rate * m.contact_point[:, 1] + swung[:, 0]
+    v_y = across + rate * m.contact_point[:, 0] + swung[:, 1]
+    whole = spins + x * v_y - y * v_x
+    assert np.abs(m.work_table - rate * (whole - whole[0])).max() < 1e-10 < np.abs(m.work_table).max()
+
+
+def test_a_marble_is_carried_round_where_rolling_resistance_holds_it():
+    ball, rate, delta = sc.Body.ball(0.0, 0.4, 0.4), 0.5, 0.1
+    how = {"contact": sc.Coulomb(0.3, patch=0.05), "losses": sc.loss.RollingResistance(delta)}
+    for r, held in ((0.3, True), (0.39, True), (0.41, False)):
+        spins = sc.State(1.0, rate * np.sin(1.0), 0.0, rate * np.cos(1.0))
+        m = sc.roll(ball, spins, 1.0, table=sc.Table(turning=rate, place=(r, 0.0)), **how)
+        assert (m.status == sc.Ending.STOPS) == held
+        assert m.held is None
 
 
 def test_the_gravity_of_a_scene_is_turned():

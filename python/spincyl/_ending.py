@@ -176,7 +176,7 @@ _POSTURE_OF = {RestsOn.FACE: 0, RestsOn.OTHER_FACE: 0, RestsOn.SIDE: 2, RestsOn.
 def held(m: "Motion") -> Held | None:
     """How friction holds the body at the end of a motion in natural units; None if it does not."""
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
-    if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own:
+    if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own or m._asked.turning:
         return None
     slope, phi, laws = m._asked.slope, 0.0, None if m.losses is None else m.losses._built_in
     if slope != 0:

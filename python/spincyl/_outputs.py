@@ -153,7 +153,7 @@ class Outputs:
         """,
     )
     drilling = Number(
-        PATCH, "(n,) angular velocity about the vertical, sqrt(g/R) or rad/s. Needs a patch of contact."
+        PATCH, "(n,) angular velocity about the vertical over the table, sqrt(g/R) or rad/s. Needs a patch."
     )
     creep = Number(
         PATCH, "(n,) slip over the product of `drilling` and patch radius; 0 in rolling. Needs a patch."
@@ -196,16 +196,17 @@ class Outputs:
     @property
     def work_table(self: Any) -> Floats:
         """(n,) work of a table that turns since the first time, M g R or J."""
-        heat = self.dissipated if "dissipated" in self._extra else 0.0
-        found: Floats = self.energy - self.energy[0] + heat
-        return found
+        found: Floats = self.energy - self.energy[0]
+        for name in ("dissipated", "work_lost"):
+            found = found + (getattr(self, name) if name in self._extra else 0.0)
+        return found if self.natural._impacts is None else found + self.lost_in_impacts
 
     @cached_property
     def held(self) -> Held | None:
         """How near to its limit dry friction holds the body; None unless a body of revolution `STOPS`.
 
         On a level table the share is 0, but for a body that dry losses hold on its edge off its balance. Laws
-        of your own have none.
+        of your own have none, nor has a table that turns.
         """
         found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found

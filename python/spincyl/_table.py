@@ -24,8 +24,8 @@ class Table(Hinting):
         In a sweep it may be an array.
     turning : float
         Rate at which the table turns about its normal through x = y = 0, counterclockwise as seen from
-        above, in sqrt(g/R); for `roll` only. Slips are over the table; all else is told as seen from the
-        room. Without losses, `restitution=` and a patch of contact.
+        above, in sqrt(g/R); for `roll` only. Slips and the drilling are over the table; all else is told as
+        seen from the room. A face or two rims on this table end the motion.
     phi0 : float
         Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
         it may be an array. A stone, and its slip, are turned about z by this angle from where they are
@@ -43,7 +43,10 @@ class Table(Hinting):
     The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
     (docs/slopes.md). Bodies of revolution roll, slip, fly, bounce and slide on their face there, under every
     law of friction at a point, and lose energy by all laws but dry friction along the contour and drilling
-    friction together. Stones roll and slip there, with the same losses; their table does not turn.
+    friction together. Stones roll and slip there, with the same losses; their table does not turn. On a table
+    that turns, drilling friction and patches of contact go with no law along the contour; on a tilted one
+    drilling friction does not go with rolling resistance, either. It carries a ball on which friction holds
+    all motions over it: then the motion STOPS.
 
     Examples
     --------

@@ -42,12 +42,19 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     let refuses = |what: &'static str| Err(Error::OutOfRange { name: "slope", value: slope, expected: what });
     let dry = [Law::DryContour, Law::Drilling].iter().all(|law| ask.losses.coefficient(*law) != 0.0);
     within("turning", ask.turning, (-1e6, 1e6), "at most 1e6 sqrt(g/R)")?;
-    if ask.turning != 0.0 {
-        let alone = ask.losses.is_none() && ask.restitution.is_none() && ask.table != Table::Smooth;
-        if !alone || ask.table.friction().patch() > 0.0 {
-            let expected = "0 with losses, with a restitution, with a patch of contact, or on a smooth table";
-            return Err(Error::OutOfRange { name: "turning", value: ask.turning, expected });
+    let drills = ask.losses.coefficient(Law::Drilling) != 0.0;
+    let along = ask.losses.iter().any(|(law, _)| law.is_along_contour());
+    let rolls = ask.losses.coefficient(Law::RollingResistance) != 0.0;
+    let expected = match () {
+        () if ask.table == Table::Smooth => "0 on a smooth table",
+        () if along && (drills || ask.table.friction().patch() > 0.0) => {
+            "0 with a law along the contour beside drilling friction or a patch of contact"
         }
+        () if slope != 0.0 && drills && rolls => "0 with drilling friction and rolling resistance on a slope",
+        () => "",
+    };
+    if ask.turning != 0.0 && !expected.is_empty() {
+        return Err(Error::OutOfRange { name: "turning", value: ask.turning, expected });
     }
     match () {
         () if slope == 0.0 => Ok(()),

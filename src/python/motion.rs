@@ -234,7 +234,7 @@ fn motion_columns<S: StateArrays>(
         && friction.patch() > 0.0
         && path.phases.iter().all(|phase| phase.kind != Kind::OnItsFace)
     {
-        let drilling = |i: usize| m.states[i].drilling();
+        let drilling = |i: usize| m.states[i].drilling() - ask.turning;
         let creep = |i: usize| {
             let speed = path.slip[i][0].hypot(path.slip[i][1]);
             if speed > 0.0 { speed / (friction.patch() * drilling(i).abs()) } else { 0.0 }

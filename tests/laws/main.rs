@@ -61,6 +61,7 @@ mod thin_disk;
 mod throw;
 mod topple;
 mod turning_points;
+mod turntable;
 mod twists;
 mod uniform;
 mod units;

@@ -310,73 +310,6 @@ fn a_disk_let_go_slips_at_once_where_rolling_would_need_too_much_friction() {
     }
 }
 
-#[test]
-fn a_ball_on_a_turntable_goes_round_at_two_sevenths_of_its_rate_and_on_a_slope_also_across_it() {
-    let (om, once) = (0.8, 2.0 * PI / (2.0 / 7.0 * 0.8));
-    for beta in [0.0, 0.1f64] {
-        let ask = Ask::default().with_turning(om).with_slope(beta);
-        let start = Start::from(STATE).with_heading(0.7).with_place([1.0, 0.5]);
-        let m = rolled(&ball(), start, &[0.0, once], &ask);
-        let (a, b) = (centre(&ball(), &m, 0), centre(&ball(), &m, 1));
-        let drift = 2.5 * beta.sin() / om * once;
-        assert!((a[0] - b[0]).hypot(a[1] + drift - b[1]) < 1e-10, "{a:?} {b:?} {drift}");
-    }
-}
-
-#[test]
-fn a_disk_on_a_turntable_moves_as_the_model_of_three_dimensions_says() {
-    let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.3, w1: 0.4, w2: 0.1, w3: -1.2 });
-    let start = Start::from(y).with_place([1.5, 0.0]);
-    // Far beyond the side of its rim, which a wide body passes.
-    let m = rolled(&disk, start, &[5.0], &Ask::default().with_turning(0.5).with_beyond(true));
-    let (state, pose) = (m.states[0], m.poses.as_ref().unwrap()[0]);
-    let off = [
-        state.theta - 1.696_025_077_2,
-        pose.phi.radians() + 0.518_645_409_2,
-        pose.contact_point.x - 2.827_889_354_3,
-        pose.contact_point.y + 1.878_502_448_6,
-    ];
-    assert!(off.iter().all(|x| x.abs() < 2e-10), "{off:?}");
-}
-
-/// E - om L_z, which with the heat stays on a level table that turns.
-fn balance(body: &Body, om: f64, m: &Motion, i: usize) -> f64 {
-    let (y, pose, u) = (m.states[i], m.poses.as_ref().unwrap()[i], m.path.as_ref().unwrap().slip[i]);
-    let ((sin, cos), at) = (pose.phi.radians().sin_cos(), place(body, y.theta));
-    let (x, z) = (pose.contact_point.x, pose.contact_point.y);
-    let [v_h, v_2] = slip::centre_velocity(body, &y, u);
-    let [v_h, v_2] = [v_h + om * (x * sin - z * cos), v_2 + om * (x * cos + z * sin)];
-    let [c_h, c_2] = [x * cos + z * sin - at.lever[0], z * cos - x * sin];
-    let spins = body.i1() * y.w1 * at.s + body.i3() * y.w3 * at.c + c_h * v_2 - c_2 * v_h;
-    let turns = body.i1() * (y.w1 * y.w1 + y.w2 * y.w2) + body.i3() * y.w3 * y.w3;
-    let rise = at.lever[0] * y.w2;
-    let moves = v_h * v_h + v_2 * v_2 + rise * rise;
-    0.5 * (turns + moves) + at.height[0] - om * spins + m.path.as_ref().unwrap().dissipated[i]
-}
-
-#[test]
-fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_the_heat() {
-    let (mut next, mut slips, mut patches) = (wander(11), 0, 0);
-    for _ in 0..150 {
-        let (body, start, ask) = drawn(&mut next);
-        let om = within(&mut next, -1.0, 1.0);
-        let ask = ask.with_losses(Losses::NONE).with_slope(0.0).with_turning(om);
-        let start = start.with_place([within(&mut next, -2.0, 2.0), within(&mut next, -2.0, 2.0)]);
-        let times = [0.0, 0.5, 1.0, 2.0, 4.0];
-        let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
-        slips += usize::from(m.path.as_ref().unwrap().dissipated.last().is_some_and(|heat| *heat > 0.0));
-        patches +=
-            usize::from(matches!(ask.table, Table::Rubs(Friction::Coulomb { patch, .. }) if patch > 0.0));
-        for i in 1..m.states.len() {
-            let off = (balance(&body, om, &m, i) - balance(&body, om, &m, 0)).abs();
-            let size = m.states[i].w1.abs().max(m.states[i].w3.abs()).max(3.0).powi(2);
-            let claim = 1e-12 * size + 20.0 * size * (m.error + m.pose_error);
-            assert!(off < claim, "{off:e} {claim:e} at {}: {body:?} {start:?} {ask:?}", m.times[i]);
-        }
-    }
-    assert!(slips > 30 && patches > 8, "{slips} {patches}");
-}
-
 /// The spin about the vertical.
 fn drilling(y: &State) -> f64 {
     y.theta.sin() * y.w1 + y.theta.cos() * y.w3
@@ -430,15 +363,6 @@ fn what_is_not_computed_on_a_slope_is_refused_by_name() {
     ] {
         let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
         assert!(found.is_err_and(|e| e.to_string().starts_with("slope")), "{ask:?}");
-    }
-    for ask in [
-        Ask::default().with_turning(f64::NAN),
-        Ask::default().with_turning(0.5).with_restitution(0.5),
-        Ask::default().with_turning(0.5).with_losses(Losses::of(Law::AirLinear, 0.01)),
-        Ask::on(Contact::Smooth).with_turning(0.5),
-    ] {
-        let found = roll_with(&disk, Start::from(y), &[1.0], &ask, || true);
-        assert!(found.is_err_and(|e| e.to_string().starts_with("turning")), "{ask:?}");
     }
 }
 

@@ -7,7 +7,8 @@ reduced   theta, w1, w2, w3, the slip along the lean and across; phi, psi and th
 Every piece of the patch, of radius eps, rubs with mu times its pressure (Hertz) against its own slip, that of a body
 that slips with u and drills with w.z. With k = |u|/(eps |w.z|) the force is -mu N f(k) u/|u| and the couple about the
 vertical -mu N eps g(k) sgn(w.z). Each formulation computes f and g in its own way: `reduced` by the closed form and, far
-from the patch, by hypergeometric series, `vectors` by sums over the chords of the patch. Kinds of phases:
+from the patch, by hypergeometric series, `vectors` by sums over the chords of the patch. On a table that turns at om about z the slip
+is that over the table, and w.z - om takes the place of w.z. Kinds of phases:
 
     inside    k < 1: the instantaneous centre lies in the patch, and f and g are polynomials
     outside   k > 1: f and g are analytic in the angle whose sine is q = eps w.z/|u|, and so is the motion in tau,
@@ -32,6 +33,7 @@ class Formulation(Torus):
     def __init__(self, scene):
         super().__init__(scene.body)
         self.scene, self.mu, self.patch = scene, mpfr(scene.mu), mpfr(scene.patch)
+        self.om, self.place = mpfr(scene.turning), [mpfr(x) for x in scene.place]
         self.phases, self.probe = {}, None
 
     def phase(self, kind, sign):
@@ -128,23 +130,24 @@ class Reduced(Formulation):
         return total
 
     def start(self):
-        return [mpfr(0), mpfr(0), *map(mpfr, self.scene.start), *[mpfr(0)] * 5]
+        return [mpfr(0), mpfr(0), *map(mpfr, self.scene.start), mpfr(0), mpfr(0), *self.place, mpfr(0)]
 
     def slip_and_drilling(self, y):
         theta, w1, _, w3, u_h, u_2 = y[2:8]
-        return gmpy2.hypot(u_h, u_2), gmpy2.sin(theta) * w1 + gmpy2.cos(theta) * w3
+        return gmpy2.hypot(u_h, u_2), gmpy2.sin(theta) * w1 + gmpy2.cos(theta) * w3 - self.om
 
     def equations(self, kind, sign):
         tape = Tape()
         tape.state(), tape.state()
-        theta, w1, w2, w3, u_h, u_2, phi, _, _, _ = (tape.state() for _ in range(10))
+        theta, w1, w2, w3, u_h, u_2, phi, _, x, y = (tape.state() for _ in range(10))
         s, c = tape.sin_cos(theta)
         ell, i1, i3, rho, a = self.ell, self.i1, self.i3, self.fillet, self.rim
         radius, depth = rho * s + a, rho * c + ell
         g0, g1 = ell * s - a * c, ell * c + a * s
         height = g1 + rho
         drilling = s * w1 + c * w3
-        pull, turn, *_ = friction = self.friction(tape, kind, sign, u_h * u_h + u_2 * u_2, drilling)
+        over = drilling - self.om
+        pull, turn, *_ = friction = self.friction(tape, kind, sign, u_h * u_h + u_2 * u_2, over)
 
         precession = w1 / s
         gyro = i3 * w3 - i1 * (c * precession)
@@ -155,17 +158,22 @@ class Reduced(Formulation):
         w2_rate = (w1 * gyro - g0 * normal - height * along) / i1
         w3_rate = (c * couple - radius * across) / i3
         v_h, v_2 = u_h + height * w2, u_2 - depth * w1 + radius * w3
-        slip_rates = [
-            along + precession * v_2 - g0 * square - height * w2_rate,
-            across - precession * v_h + depth * w1_rate - radius * w3_rate + rho * (w2 * drilling),
-        ]
-        drilling_rate = s * w1_rate + c * w3_rate - w2 * (c * w1 - s * w3)
-
         psi_rate = w3 - c * precession
         out, side = u_h + rho * w2, u_2 + radius * psi_rate
         sin_phi, cos_phi = tape.sin_cos(phi)
+        pull_h, pull_2 = tape.constant(0), tape.constant(0)
+        if self.om:
+            out = out + self.om * (x * sin_phi - y * cos_phi)
+            side = side + self.om * (x * cos_phi + y * sin_phi)
+            pull_h, pull_2 = self.om * side, -self.om * out
+        slip_rates = [
+            along + pull_h + precession * v_2 - g0 * square - height * w2_rate,
+            across + pull_2 - precession * v_h + depth * w1_rate - radius * w3_rate + rho * (w2 * drilling),
+        ]
+        drilling_rate = s * w1_rate + c * w3_rate - w2 * (c * w1 - s * w3)
+
         path = [out * cos_phi - side * sin_phi, out * sin_phi + side * cos_phi]
-        heat = -(along * u_h + across * u_2 + couple * drilling)
+        heat = -(along * u_h + across * u_2 + couple * over)
         rates = [tape.constant(1), heat, -w2, w1_rate, w2_rate, w3_rate, *slip_rates]
         rates += [precession, psi_rate, *path]
         force = [along, across, normal]

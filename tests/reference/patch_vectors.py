@@ -73,16 +73,25 @@ class Vectors(Formulation):
         return mpfr(3) / 2 * f, mpfr(3) / 8 * (q * g)
 
     def start(self):
-        return [mpfr(0), mpfr(0), *self.begin(*map(mpfr, self.scene.start)), mpfr(0)]
+        begun, (x, y) = self.begin(*map(mpfr, self.scene.start)), self.place
+        begun[:2] = [begun[0] + x, begun[1] + y]
+        begun[3:5] = [begun[3] - self.om * y, begun[4] + self.om * x]
+        return [mpfr(0), mpfr(0), *begun, mpfr(0)]
+
+    def in_space(self, vectors, lean=None):
+        """The velocity of the lowest point is that over the table."""
+        *first, contact, (u, h, e2), vanishing = super().in_space(vectors, lean)
+        over = [u[0] + self.om * contact[1], u[1] - self.om * contact[0], u[2]]
+        return [*first, contact, (over, h, e2), vanishing]
 
     def slip_and_drilling(self, y):
         *_, (u, _, _), _ = self.in_space(y[2:17])
-        return gmpy2.hypot(u[0], u[1]), y[16]
+        return gmpy2.hypot(u[0], u[1]), y[16] - self.om
 
     def equations(self, kind, sign):
         tape = Tape()
         tape.state(), tape.state()
-        _, v, e3, material, w = ([tape.state() for _ in range(3)] for _ in range(5))
+        place, v, e3, material, w = ([tape.state() for _ in range(3)] for _ in range(5))
         zero, one = tape.constant(0), tape.constant(1)
         axis = cross(w, e3)
         r, r_rate = scaled(-self.ell, e3), scaled(-self.ell, axis)
@@ -95,14 +104,17 @@ class Vectors(Formulation):
             e1_rate = [*(axis[2] * h[i] + up * h_rate[i] for i in (0, 1)), s_rate]
             r_rate = [x - self.rim * y for x, y in zip(r_rate, e1_rate, strict=True)]
         r[2] = r[2] - self.fillet
-        u = add(v, cross(w, r))[:2]
-        pull, turn, *_ = friction = self.friction(tape, kind, sign, u[0] * u[0] + u[1] * u[1], w[2])
+        u, moves, over = add(v, cross(w, r))[:2], add(v, r_rate), w[2] - self.om
+        if self.om:
+            u = [u[0] + self.om * (place[1] + r[1]), u[1] - self.om * (place[0] + r[0])]
+        pull, turn, *_ = friction = self.friction(tape, kind, sign, u[0] * u[0] + u[1] * u[1], over)
 
         # what there is without the contact, and what a unit of the normal force adds
         spin = dot(w, e3)
         momentum = [self.i1 * w[i] + (self.i3 - self.i1) * (spin * e3[i]) for i in range(3)]
         free = self.turned(scaled(-1, cross(w, momentum)), e3)
-        known = add(cross(free, r), cross(w, r_rate), [zero, zero, -one])
+        table = [self.om * moves[1], -self.om * moves[0], -one]
+        known = add(cross(free, r), cross(w, r_rate), table)
         aim = [pull * u[0], pull * u[1], one]
         swung = self.turned(add(cross(r, aim), [zero, zero, turn]), e3)
         answer = add(aim, cross(swung, r))
@@ -111,7 +123,7 @@ class Vectors(Formulation):
         acceleration = [free[i] + normal * swung[i] for i in range(3)]
         slip_rates = [known[i] + normal * answer[i] for i in (0, 1)]
 
-        heat = -(force[0] * u[0] + force[1] * u[1] + couple * w[2])
+        heat = -(force[0] * u[0] + force[1] * u[1] + couple * over)
         rates = [one, heat, *v, force[0], force[1], normal - 1, *axis, *cross(w, material), *acceleration]
         return self.finished(tape, kind, rates, friction, u, slip_rates, acceleration[2], force, couple)
 

@@ -96,13 +96,16 @@ def follow(model):
 
 
 class Scene:
-    """A body (ell, i1, i3, fillet), a table (mu, patch), a start (theta, w1, w2, w3, u_h, u_2) and times."""
+    """A body (ell, i1, i3, fillet), a table (mu, patch), a start (theta, w1, w2, w3, u_h, u_2) and times.
 
-    def __init__(self, name, body, mu, patch, start, end, samples=4):
+    The table turns at `turning` about its normal through 0, and the contact begins at `place`.
+    """
+
+    def __init__(self, name, body, mu, patch, start, end, samples=4, turning=0.0, place=(0.0, 0.0)):
         self.name, self.mu, self.patch = name, float(mu), float(patch)
         self.body = [float(x) for x in body]
         self.start = [float(x) for x in start]
-        self.end = float(end)
+        self.end, self.turning, self.place = float(end), float(turning), [float(x) for x in place]
         self.samples = sorted({float(end * k / samples) for k in range(1, samples + 1)})
 
 
@@ -130,6 +133,10 @@ def scenes():
     yield Scene("rounded disk", low, 0.3, 0.05, (0.6, 1.2, 0.2, 0.1, -0.3, 0.5), 6)
     turns = (1.1, 0.17, -0.64, 1.09, 0.54, -0.05)
     yield Scene("can whose drilling turns round", can, 0.18, 0.14, turns, 7)
+    where = {"turning": 0.6, "place": (1.0, -0.5)}
+    yield Scene("ball on a turntable", heavy, 0.2, 0.05, (1.2, 1, 0.1, 2, 0.3, 1), 6, **where)
+    yield Scene("can on a turntable", can, 0.18, 0.14, turns, 3, **where)
+    yield Scene("rounded disk on a turntable", low, 0.3, 0.05, (0.6, 1.2, 0.2, 0.1, -0.3, 0.5), 4, **where)
     yield Scene("thin disk", thin, 0.17, 0.123, (0.79, -0.26, 0.25, 0.68, 0.76, -0.59), 8)
 
 
@@ -146,6 +153,7 @@ def written(scene):
         "mu": scene.mu,
         "patch": scene.patch,
         "start": scene.start,
+        **({"turning": scene.turning, "place": scene.place} if scene.turning else {}),
         "agreement": float(f"{float(agreement):.1e}"),
         "rows": [[kind, *(decimal(x, 1e-30) for x in row)] for kind, row in other.rows],
     }

@@ -118,6 +118,38 @@ def scenes():
         "ball on a tilted turntable", ball, 0.1, (1.0, 0.6, 0.2, -0.5), 6, phi=0.7, **tilted_turn, **rolls
     )
     yield rim("disk slips on a turntable", disk, 0.1, slides, 3, 0.3, phi=0.9, **where)
+    losing = {"rolling": 0.01, "viscous": 0.02}
+    yield rim(
+        "disk rolls with losses on a turntable",
+        disk,
+        0.1,
+        (1.2, 0.5, 0, -2.5),
+        3,
+        phi=0.3,
+        losses=losing,
+        **where,
+        **rolls,
+    )
+    below = {"place": (0.8, -0.6), "turning": -0.7, "phi": 0.6}
+    yield rim("tube hops on a turntable", paper, 0, hops, 3, 0.3, 0.5, **below)
+    yield rim(
+        "cylinder dropped on a turntable", solid, 0, dropped, 4.2, 0.2, 0.6, height=0.5, lift=0.2, **below
+    )
+    yield rim(
+        "cylinder dropped on a tilted turntable",
+        solid,
+        0.35,
+        dropped,
+        3.6,
+        0.2,
+        0.6,
+        height=0.5,
+        lift=0.2,
+        **below,
+    )
+    yield rim(
+        "ball dropped on a turntable", low, 0, (1.2, 0.5, 0.2, 1, 0.3, 0.1), 5, 0.2, 0.7, height=0.4, **below
+    )
 
 
 # The table.

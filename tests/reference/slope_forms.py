@@ -122,10 +122,23 @@ class Reduced(flight_closed.Closed):
     def gravity(self, y):
         return super().gravity(y) - 1 + self.level
 
+    def below(self, pose):
+        """The velocity of the table below the lowest point, along the lean and across."""
+        phi, _, x, y = pose
+        s, c = gmpy2.sin(phi), gmpy2.cos(phi)
+        return self.om * (x * s - y * c), self.om * (x * c + y * s)
+
+    def other(self, y):
+        over = super().other(y)
+        over[1] -= self.om * 2 * self.ell * gmpy2.sin(y[4])
+        return over
+
     def fly(self, y, order, samples, out):
         slow = gmpy2.sqrt(self.level)
         u_h, u_2, heat, begun, theta, w1, w2, w3, *pose = y
         lift, above = (y.lift, y.height) if isinstance(y, Air) else (ZERO, ZERO)
+        table_h, table_2 = self.below(pose)
+        u_h, u_2 = u_h + table_h, u_2 + table_2
         numbers = [u_h / slow, u_2 / slow, heat, ZERO, theta, w1 / slow, w2 / slow, w3 / slow, *pose]
         air = Flight(self, Air(numbers, lift / slow, above))
 
@@ -135,8 +148,11 @@ class Reduced(flight_closed.Closed):
             fast = [slow * w for w in (u_h, u_2, w1, w2, w3)]
             fast[0] += self.downhill * t * gmpy2.cos(phi)
             fast[1] -= self.downhill * t * gmpy2.sin(phi)
-            numbers = [*fast[:2], heat, begun + t, theta, *fast[2:], phi, psi]
-            return Air([*numbers, x + self.downhill * t * t / 2, y], slow * there.lift, there.height)
+            pose = [phi, psi, x + self.downhill * t * t / 2, y]
+            table_h, table_2 = self.below(pose)
+            slip = [fast[0] - table_h, fast[1] - table_2]
+            numbers = [*slip, heat, begun + t, theta, *fast[2:], *pose]
+            return Air(numbers, slow * there.lift, there.height)
 
         found = [(air.lands(1, order) / slow, 0)]
         if self.scene.side:

@@ -86,6 +86,12 @@ class Vectors(flight_vectors.Vectors):
         tape.heights = [middle - up, middle + up][: 1 + self.scene.side]
         return tape
 
+    def in_space(self, vectors, lean=None):
+        """The velocity of the lowest point is that over the table."""
+        *first, contact, (u, h, e2), vanishing = super().in_space(vectors, lean)
+        over = [u[0] + self.om * contact[1], u[1] - self.om * contact[0], u[2]]
+        return [*first, contact, (over, h, e2), vanishing]
+
     def spin_of(self, w, e3):
         """The angular momentum."""
         spin = dot(w, e3)
@@ -136,9 +142,8 @@ class Vectors(flight_vectors.Vectors):
     def strayed(self, y, lean=None):
         if isinstance(y, Air):
             return super().strayed(y, lean)
-        *_, contact, (u, _, _), vanishing = self.in_space(y[4:], lean)
-        table = [-self.om * contact[1], self.om * contact[0]]
-        return max(abs(x) for x in (*(u[i] - table[i] - y[i] for i in (0, 1)), *vanishing))
+        *_, (u, _, _), vanishing = self.in_space(y[4:], lean)
+        return max(abs(x) for x in (*(u[i] - y[i] for i in (0, 1)), *vanishing))
 
 
 def headed(vectors, phi):

@@ -129,6 +129,8 @@ pub(crate) struct Slipping<T, G = (), L = ()> {
     pub losses: Option<Couples<T, G>>,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
+    /// The rate at which the table turns.
+    om: T,
     /// How the coefficient varies; `strength` is that at rest.
     varies: L,
 }
@@ -160,7 +162,19 @@ impl<T: Real> Slipping<T> {
         let reach = shape.rim.ell.abs() + shape.rim.rho;
         // Friction changes the slip by about this speed in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
-        Self { shape: *shape, per_i1, per_i3, strength, soft, dry, losses: None, radius: None, varies: () }
+        let om = strength.splat(0.0);
+        Self {
+            shape: *shape,
+            per_i1,
+            per_i3,
+            strength,
+            soft,
+            dry,
+            losses: None,
+            radius: None,
+            om,
+            varies: (),
+        }
     }
 }
 
@@ -168,14 +182,20 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
     /// Returns this body with a coefficient of friction that follows the speed.
     #[must_use]
     pub fn varying<M>(self, varies: M) -> Slipping<T, G, M> {
-        let Self { shape, per_i1, per_i3, strength, soft, dry, losses, radius, .. } = self;
-        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, varies }
+        let Self { shape, per_i1, per_i3, strength, soft, dry, losses, radius, om, .. } = self;
+        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, om, varies }
     }
 
     /// Returns this body on a patch of this radius.
     #[must_use]
     pub fn with_patch(self, radius: Option<T>) -> Self {
         Self { radius, ..self }
+    }
+
+    /// Returns this body on a table that turns at this rate.
+    #[must_use]
+    pub fn over(self, om: T, turns: bool) -> Self {
+        Self { om, losses: self.losses.map(|losses| losses.over(om, turns)), ..self }
     }
 
     /// The radius of the patch of contact; None for a point.
@@ -192,8 +212,8 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
     /// Returns this body with losses.
     #[must_use]
     pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H, L> {
-        let Self { shape, per_i1, per_i3, strength, soft, dry, radius, varies, .. } = self;
-        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, varies }
+        let Self { shape, per_i1, per_i3, strength, soft, dry, radius, om, varies, .. } = self;
+        Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, om, varies }
     }
 
     /// The response with a couple `push` h/s along the contour that makes psi' change at this rate, with dt/dsigma and
@@ -413,7 +433,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         // slip, which a small patch would answer with all its friction.
         let per = s.splat(1.0) / s.mac(s, c * c).sqrt();
         let (s, c) = (s * per, c * per);
-        let drilling = drilling_of((s, c), w[0], w[2]);
+        let drilling = drilling_of((s, c), w[0], w[2]) - self.om;
         let [share, twist, size] = rubs(u[0].mac(u[0], u[1] * u[1]).sqrt(), drilling, patch);
         let pull = u.map(|u| u * share * size);
         let twist = self.strength * twist;

@@ -391,8 +391,8 @@ impl Together {
         rubs: Rubs,
     ) -> Option<Self> {
         let ((s, c), [w1, w2, w3]) = (angle, w);
-        let (spin, drilling) = (spin_of((s, c), w1, w3), drilling_of((s, c), w1, w3));
-        let still = rounded(s, w);
+        let (spin, turns) = (spin_of((s, c), w1, w3), drilling_of((s, c), w1, w3));
+        let (drilling, still) = (turns - losses.om.unwrap_or(0.0), rounded(s, w));
         let limit =
             |law: Law, rests: bool, by: f64| (losses.has(law) && rests).then(|| losses.coefficient(law) * by);
         let (along, rocks) = (spin.abs() <= still, w2.abs() <= still);
@@ -426,7 +426,7 @@ impl Together {
             let law = slipping.with_losses(Some(base.with_pressed_couple(couple)));
             let at = law.towards(angle, w, u, [pulled[0] - a, pulled[1] - b]);
             let [d1, d2, d3] = at.w;
-            let rolls = rolling_of((s, c), d1, d3) + w2 * drilling;
+            let rolls = rolling_of((s, c), d1, d3) + w2 * turns;
             let drills = drilling_of((s, c), d1, d3) - w2 * rolling_of((s, c), w1, w3);
             (at.force[0], [at.u[0], at.u[1], rolls, d2, rolls, drills])
         };

@@ -26,6 +26,15 @@ pub(crate) struct Kinematics<T> {
     /// The signs of w_h and w2 of a body that only rolls or only rocks, where a caller holds that sign fixed; the other
     /// sign is 0.
     pub only: Option<[T; 2]>,
+    /// The rate at which the table turns.
+    pub om: T,
+}
+
+/// -1, 0 or 1.
+#[inline(always)]
+fn sign<T: Real>(x: T) -> T {
+    let (zero, one) = (x.splat(0.0), x.splat(1.0));
+    x.select_lt(zero, -one, zero.select_lt(x, one, zero))
 }
 
 impl<T: Real> Kinematics<T> {
@@ -34,14 +43,19 @@ impl<T: Real> Kinematics<T> {
     pub fn of(rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Self {
         let (s, c) = angle;
         let spin = w[2] - c * precession;
-        let (zero, one) = (s.splat(0.0), s.splat(1.0));
-        let mut seen = Self { angle, w, spin, radius: rim.radius(angle), signs: [zero; 2], only: None };
-        let sign = here(
-            #[inline(always)]
-            |x: T| x.select_lt(zero, -one, zero.select_lt(x, one, zero)),
-        );
+        let zero = s.splat(0.0);
+        let radius = rim.radius(angle);
+        let mut seen = Self { angle, w, spin, radius, signs: [zero; 2], only: None, om: zero };
         seen.signs = [sign(spin), sign(seen.drilling())];
         seen
+    }
+
+    /// The same over a table that turns at this rate.
+    #[inline(always)]
+    fn over(mut self, om: T) -> Self {
+        self.om = om;
+        self.signs[1] = sign(self.drilling());
+        self
     }
 
     /// w_h, the rolling.
@@ -50,10 +64,10 @@ impl<T: Real> Kinematics<T> {
         -(self.angle.0 * self.spin)
     }
 
-    /// w_z, the drilling.
+    /// w_z over the table, the drilling.
     #[inline(always)]
     pub fn drilling(&self) -> T {
-        self.angle.0.mac(self.w[0], self.angle.1 * self.w[2])
+        self.angle.0.mac(self.w[0], self.angle.1 * self.w[2]) - self.om
     }
 
     /// The square w.w of the angular velocity.
@@ -183,6 +197,8 @@ pub(crate) struct Couples<T, G = ()> {
     pub ways: Option<Ways<T>>,
     /// The pull of a tilted table on the centre, along e_h and e2; None on a level table.
     pub pull: Option<[T; 2]>,
+    /// The rate of a table that turns; None if it does not.
+    pub om: Option<T>,
     pub given: G,
 }
 
@@ -273,8 +289,8 @@ impl<G> Couples<f64, G> {
     /// These losses with another couple beside them.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {
-        let Self { coefficients, present, ways, pull, .. } = self;
-        Couples { coefficients, present, ways, pull, given }
+        let Self { coefficients, present, ways, pull, om, .. } = self;
+        Couples { coefficients, present, ways, pull, om, given }
     }
 }
 
@@ -318,6 +334,7 @@ impl<T: Real> Couples<T> {
             present: losses.coefficients.map(|x| x != 0.0),
             ways: None,
             pull: None,
+            om: None,
             given: (),
         }
     }
@@ -325,7 +342,7 @@ impl<T: Real> Couples<T> {
     /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
-        Self { coefficients, present, ways, pull: None, given: () }
+        Self { coefficients, present, ways, pull: None, om: None, given: () }
     }
 }
 
@@ -335,6 +352,12 @@ impl<T: Real, G: Copy> Couples<T, G> {
     #[inline(always)]
     pub fn pulled(self, pull: [T; 2]) -> Self {
         Self { pull: Some(pull), ..self }
+    }
+
+    /// These losses on a table that turns at this rate.
+    #[must_use]
+    pub fn over(self, om: T, turns: bool) -> Self {
+        Self { om: turns.then_some(om), ..self }
     }
 
     /// These losses in another type of number.
@@ -353,7 +376,8 @@ impl<T: Real, G: Copy> Couples<T, G> {
             *to = number(from);
         }
         let pull = self.pull.map(|[a, b]| [number(a), number(b)]);
-        Couples { coefficients, present: self.present, ways, pull, given: self.given }
+        let om = self.om.map(&number);
+        Couples { coefficients, present: self.present, ways, pull, om, given: self.given }
     }
 }
 
@@ -380,14 +404,17 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         let given = self.given.couple().copied().unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
         let [a, b, c] = given.pressed;
         let pressed = [a + pressed[0], b + pressed[1], c + pressed[2]];
-        let &Self { coefficients, present, ways, pull, .. } = self;
-        Couples { coefficients, present, ways, pull, given: Some(Couple { pressed, ..given }) }
+        let &Self { coefficients, present, ways, pull, om, .. } = self;
+        Couples { coefficients, present, ways, pull, om, given: Some(Couple { pressed, ..given }) }
     }
 
     /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
-        let seen = Kinematics::of(rim, angle, precession, w);
+        let mut seen = Kinematics::of(rim, angle, precession, w);
+        if let Some(om) = self.om {
+            seen = seen.over(om);
+        }
         let Some(ways) = self.ways else { return seen };
         let fixed = ways.rocking != 0.0 || ways.rolling != 0.0 || ways.holds.rolling;
         let only = fixed.then(|| [ways.rolling, ways.rocking].map(|way| angle.0.splat(way)));

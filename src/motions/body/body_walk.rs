@@ -22,7 +22,7 @@ use crate::laws::body::Body;
 use crate::laws::contact::face::FaceFriction;
 use crate::laws::contact::{Contact, Table};
 use crate::laws::loss::{Couples, Losses};
-use crate::laws::state::{State, drilling_of, rolling_of};
+use crate::laws::state::{State, rolling_of};
 use crate::methods::flow::Flow;
 use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, loses, poses};
 use crate::motions::walk::two_runs::CHANCE;
@@ -163,7 +163,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 let (rolls, slide) = (self.contact() == Contact::Rolling, &self.of.slide);
                 let energy = |y: &[f64; N]| {
                     let level = self.contact().energy(&self.of.body, &state(&flow.shown(y)));
-                    if rolls { level - slide.falls(y) } else { level }
+                    if rolls { level + slide.energy_on_table(y) } else { level }
                 };
                 y[N - 1] += energy(from) - energy(&y);
             }
@@ -180,7 +180,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return lost;
         }
         let all = lost.unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
-        Some(all.pulled(self.of.slide.pull(&self.at)))
+        let om = self.of.turning;
+        Some(all.pulled(self.of.slide.pull(&self.at)).over(om, om != 0.0))
     }
 
     /// Moves the walk to the numbers at which a flow has halted.
@@ -215,8 +216,8 @@ impl<G: Own> BodyPhases<G> {
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
-        let mut slide = Slide::new(body, &friction, &ask.losses, tol, own);
-        (slide.tilt, slide.turning) = (ask.slope.tan(), ask.turning);
+        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let slide = slide.on_table([ask.slope.tan(), ask.turning]);
         let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
         let known_ends = !G::IS && !body.is_ball() && ask.is_level();
         Self {
@@ -263,8 +264,8 @@ impl<G: Own> BodyPhases<G> {
                 self.tail = self.tail.map(|_| LastTurns::default());
                 self.nods = self.nods.take().map(|_| Box::default());
             }
-            self.slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
-            (self.slide.tilt, self.slide.turning) = (self.tilt, self.turning);
+            let slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
+            self.slide = slide.on_table([self.tilt, self.turning]);
             self.body = body;
         }
     }
@@ -286,10 +287,11 @@ impl<G: Own> BodyPhases<G> {
             return;
         }
         let State { theta, w1, w2, w3 } = walk.of.state;
-        // Drilling w_z, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that is zero
-        // stays zero.
+        // Drilling over the table, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that
+        // is zero stays zero.
         let (s, c) = theta.sin_cos();
-        let (drilling, rolling) = (drilling_of((s, c), w1, w3) * up, rolling_of((s, c), w1, w3) * up);
+        let drilling = walk.of.slide.drills((s, c), w1, w3) * up + walk.of.turning;
+        let rolling = rolling_of((s, c), w1, w3) * up;
         // Near its other rim the height of the body is known from cos theta, not from theta.
         let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL && !walk.of.body.has_row();
         let end = walk.of.body.theta_end();

@@ -10,7 +10,7 @@ use crate::laws::contact::slip::painleve;
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::laws::contact::{Contact, Force, force};
 use crate::laws::loss::{Couples, Holds, Losses};
-use crate::laws::state::{State, drilling_of, rolling_of};
+use crate::laws::state::{State, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
 use crate::motions::dry::creep::Creeps;
@@ -61,6 +61,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (w, power)
     }
 
+    /// Whether a table that turns does work which [`Slide::energy`] does not know, since others than the table turn the
+    /// body about the vertical.
+    pub(super) fn is_driven(&self) -> bool {
+        self.of.turning != 0.0 && (self.of.tilt != 0.0 || Couples::in_air(&self.ask.losses).is_some())
+    }
+
+    /// w_z over the table.
+    pub(super) fn drills_here(&self) -> f64 {
+        let y = &self.of.state;
+        self.of.slide.drills(y.theta.sin_cos(), y.w1, y.w3)
+    }
+
     /// Whether the contact point slips.
     pub(super) fn slips_here(&self) -> bool {
         let (slip, slide) = (self.at.slip(), &self.of.slide);
@@ -75,7 +87,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let (s, c) = state(&self.at).theta.sin_cos();
         let [w1, w2, w3] = self.at.w();
-        let (drilling, rolling) = (drilling_of((s, c), w1, w3), rolling_of((s, c), w1, w3));
+        let (drilling, rolling) = (self.of.slide.drills((s, c), w1, w3), rolling_of((s, c), w1, w3));
         let mut left = 0f64;
         if stops.drilling {
             (self.at[W1], self.at[W3]) = (w1 - s * drilling, w3 - c * drilling);
@@ -89,7 +101,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             (self.at[W2], left) = (0.0, left.max(w2.abs()));
         }
         if stops.drilling && (stops.contour || stops.rolling) {
-            (self.at[W1], self.at[W3]) = (0.0, 0.0);
+            (self.at[W1], self.at[W3]) = (s * self.of.turning, c * self.of.turning);
         }
         self.claims(left);
         self.of.state = state(&self.at);

@@ -23,7 +23,7 @@ use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::walk::Next;
-use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, W1, W2, W3, lost, pull};
+use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, U2, W1, W2, W3, lost, pull};
 use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
 use core::f64::consts::PI;
 
@@ -120,7 +120,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(super) fn strikes(&mut self) -> Next {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
+        let om = self.of.turning;
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
+            if om != 0.0 {
+                return Next::Ends(Ending::Face);
+            }
             if let Some(next) = self.strikes_flat(e) {
                 return next;
             }
@@ -141,6 +145,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let rims = self.of.body.rims();
         let there = if both { from.on_other_rim(&rims) } else { from };
+        if both && om != 0.0 {
+            return Next::Ends(Ending::Side);
+        }
         if both && from.lift >= 0.0 && there.lift < 0.0 {
             self.turns_over();
             return self.strikes();
@@ -170,10 +177,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let level = || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
-            return self.ends_rattle();
+            return if om == 0.0 { self.ends_rattle() } else { Next::Ends(Ending::Side) };
         }
         if e > 0.0 && self.hardly_rattles(&after) {
-            return self.ends_rattle_on_face();
+            return if om == 0.0 { self.ends_rattle_on_face() } else { Next::Ends(Ending::Face) };
         }
         self.leaves_impact(&after)
     }
@@ -247,7 +254,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
             // Each bounce has the slip that the previous flight has caused.
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
-            let [pull_h, pull_2] = pull(self.of.tilt, &self.at);
+            let mut at = self.at;
+            at[W1..=U2].copy_from_slice(&[w[0], w[1], w[2], struck.slip[0], struck.slip[1]]);
+            let [pull_h, pull_2] = self.of.slide.pull(&at);
             let rates = [along - light.couples[0] * force + pull_h, across + pull_2];
             let [along, across] = rates.map(|rate| 2.0 * rate / fall);
             let slip = [u_h + along, u_2 + across];

@@ -85,7 +85,8 @@ impl<T: Real> Branch<T> {
         let w = [rate * s, s.splat(0.0), rate * depth * sigma];
         let spin = -(rate * n * per_radius);
         let sign = |x: T| x.select_lt(s.splat(0.0), -one, s.splat(0.0).select_lt(x, one, s.splat(0.0)));
-        let mut seen = Kinematics { angle, w, spin, radius, signs: [sign(spin), one], only: None };
+        let mut seen =
+            Kinematics { angle, w, spin, radius, signs: [sign(spin), one], only: None, om: s.splat(0.0) };
         seen.signs[1] = sign(seen.drilling());
         BranchPoint {
             slope: lift - fall + n,

@@ -106,8 +106,14 @@ pub(crate) fn pull_along(tilt: f64, (sin, cos): (f64, f64)) -> [f64; 2] {
 
 /// The velocity of a table that turns at this rate under the contact point, along e_h and e2, from the sine and cosine of phi.
 #[inline(always)]
-pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N], (sin, cos): (f64, f64)) -> [f64; 2] {
-    [turning * (y[X] * sin - y[Y] * cos), turning * (y[X] * cos + y[Y] * sin)]
+pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N], heading: (f64, f64)) -> [f64; 2] {
+    carried_at(turning, heading, [y[X], y[Y]])
+}
+
+/// The same under a point at this place.
+#[inline(always)]
+pub(crate) fn carried_at(turning: f64, (sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
+    [turning * (x * sin - y * cos), turning * (x * cos + y * sin)]
 }
 
 /// The velocity of the contact point over the table, along e_h and e2.

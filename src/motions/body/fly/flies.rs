@@ -64,7 +64,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
         let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
         let Takeoff { height, lift, .. } = self.of.takeoff;
-        Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose }
+        Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose, om: self.of.turning }
     }
 
     /// The state with these numbers. Its inclination is computed once in an impact of a uniform ball, whose bounces cost
@@ -169,6 +169,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
+            // On a table that turns a face, or two rims, end the motion.
+            Ending::Face | Ending::Side if self.of.turning != 0.0 => Next::Ends(ending),
             Ending::Face if self.of.body.rim() > 0.0 => self.settles_on_face(),
             // Another part of a body, which may land first, has no known shape.
             Ending::LiftOff if self.of.body.lands_on_rims() => {
@@ -324,18 +326,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// Compares the energy, with all that has been taken from it, with that at the start. Their difference, over the
     /// largest speed, is an error of the numbers.
     pub(crate) fn compares_energy(&mut self) {
-        if self.ask.restitution.is_none() || self.perturbation > 0.0 {
+        if self.ask.restitution.is_none() || self.perturbation > 0.0 || self.is_driven() {
             return;
         }
         let (from, law) = (self.aloft(), &self.of.slide.law);
         let [v_h, v_2] = law.centre(from.angle, from.w, from.slip);
         let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let mut has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
-        if self.of.tilt != 0.0 {
-            // The centre has fallen along x.
-            let [phi, _, x, _] = from.pose;
-            has -= self.of.tilt * (x - law.shape.rim.lever(from.angle) * phi.cos());
-        }
+        has += self.of.slide.energy_on_table(&self.at);
         let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
         let whole = has + self.at[HEAT] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));

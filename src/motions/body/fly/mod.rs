@@ -22,6 +22,7 @@ use crate::laws::body::{Body, Landings, MOST_CIRCLES, Rim, Shape};
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Spent, Steps};
+use crate::motions::walk::numbers::carried_at;
 use core::f64::consts::{FRAC_PI_2, PI};
 use lands::Leaves;
 
@@ -31,13 +32,15 @@ pub(crate) struct Aloft {
     /// Sine and cosine of theta.
     pub angle: (f64, f64),
     pub w: [f64; 3],
-    /// The velocity of the lowest point of the rim: along e_h, along e2, and upwards.
+    /// The velocity of the lowest point of the rim over the table: along e_h, along e2, and upwards.
     pub slip: [f64; 2],
     pub lift: f64,
     /// The height of that point.
     pub height: f64,
     /// phi, psi, and the place on the table below that point.
     pub pose: [f64; 4],
+    /// The rate at which the table turns.
+    pub om: f64,
 }
 
 impl Aloft {
@@ -48,6 +51,12 @@ impl Aloft {
 
     pub fn pose(&self) -> Pose {
         posed(self.pose, self.height)
+    }
+
+    /// The velocity of the table below the lowest point of the rim, along e_h and e2.
+    fn carried(&self) -> [f64; 2] {
+        let [phi, _, x, y] = self.pose;
+        carried_at(self.om, phi.sin_cos(), [x, y])
     }
 
     /// The same body, told with the phi with which its axis leaves a pole: theta grows from 0, or falls from pi. The
@@ -63,7 +72,7 @@ impl Aloft {
         let (sin, cos) = phi.sin_cos();
         Self {
             w: [0.0 - w1, 0.0 - w2, w3],
-            slip: [0.0 - u, -(radius * w3) - v],
+            slip: [0.0 - u, -(radius * w3) - v - lever * self.om],
             lift: self.lift + lever * w2,
             pose: [phi + PI, psi - c * PI, x - lever * cos, y - lever * sin],
             ..*self
@@ -79,10 +88,11 @@ impl Aloft {
         Self {
             angle: (s, 0.0 - c),
             w: [w1, 0.0 - w2, 0.0 - w3],
-            slip: [0.0 - u_h - above * w2, deep * w1 - wide * w3 - u_2],
+            slip: [0.0 - u_h - above * w2, deep * w1 - wide * w3 - u_2 - apart * self.om],
             lift: self.lift + apart * w2,
             height: self.height + above,
             pose: [phi + PI, 0.0 - psi, x - apart * phi.cos(), y - apart * phi.sin()],
+            om: self.om,
         }
     }
 }
@@ -181,9 +191,10 @@ impl Flight {
         let upright = if s == 0.0 { c } else { 0.0 };
         let begin = (-s * w2 * size).atan2(c * i1 * transverse * transverse - axial * w1 * s);
         let begin = if upright < 0.0 { PI } else { begin };
+        let [out, on] = from.carried();
         let velocity = [
-            from.slip[0] + height * w2,
-            from.slip[1] - image * (rim.depth(from.angle) * w1 - rim.radius(from.angle) * w3),
+            from.slip[0] + out + height * w2,
+            from.slip[1] + on - image * (rim.depth(from.angle) * w1 - rim.radius(from.angle) * w3),
             from.lift + lever * w2,
         ];
         let mut flight = Self {
@@ -311,7 +322,7 @@ impl Flight {
             let ((sin, cos), faster) = (phi.sin_cos(), self.tilt * t);
             (moved_x + 0.5 * faster * t, v_h + faster * cos, v_2 - faster * sin)
         };
-        Aloft {
+        let mut flown = Aloft {
             angle,
             w: [w1, w2, w3],
             slip: [v_h - rim.height(angle) * w2, v_2 + rim.depth(angle) * w1 - rim.radius(angle) * w3],
@@ -323,7 +334,11 @@ impl Flight {
                 from.pose[2] - begin * cos0 + moved_x + lever * phi.cos(),
                 from.pose[3] - begin * sin0 + moved_y + lever * phi.sin(),
             ],
-        }
+            om: from.om,
+        };
+        let [out, on] = flown.carried();
+        flown.slip = [flown.slip[0] - out, flown.slip[1] - on];
+        flown
     }
 
     /// The error of the height of a rim at a time, due to rounding.

@@ -6,7 +6,6 @@ use crate::error::Error;
 use crate::laws::body::border_at;
 use crate::laws::contact::Table;
 use crate::laws::loss::Holds;
-use crate::laws::state::State;
 use crate::methods::flow::{Flow, Spent, Steps};
 use crate::motions::Ending;
 use crate::motions::body::body_walk::{BodyWalk, LossyPhase};
@@ -26,7 +25,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let (losses, friction) = (self.ask.losses, self.friction());
         if friction.patch() > 0.0 {
             // The patch hardly drills.
-            self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+            self.claims(LOST_DRILLING * self.drills_here().abs());
             self.stops_exactly(Holds { drilling: true, ..Holds::default() });
         }
         let (on, y) = ((&self.of.body, self.contact()), self.of.state);
@@ -162,7 +161,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
             Halt::Slips if let Some(slip) = flow.creeps(&self.of.state) => {
                 (self.at[UH], self.at[U2]) = (slip[0], slip[1]);
-                self.claims(LOST_DRILLING * drilling(&self.of.state).abs());
+                self.claims(LOST_DRILLING * self.drills_here().abs());
                 self.forgets_a_moment(self.at[TIME]);
                 Next::Slips
             }
@@ -177,8 +176,4 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.continues_with(next);
         Ok(None)
     }
-}
-
-fn drilling(y: &State) -> f64 {
-    y.theta.sin() * y.w1 + y.theta.cos() * y.w3
 }

@@ -53,7 +53,8 @@ impl<L: Own> Slide<L> {
     /// The slip of the creep of a uniform ball on a patch; it is zero while the ball does not roll. None for another body,
     /// and with poses where the slip does not vanish, since it would turn with e_h.
     fn creep_of<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
-        let (creeping, angle) = (self.creeping.filter(|_| self.tilt == 0.0)?, y.angle());
+        let level = self.tilt == 0.0 && self.turning == 0.0;
+        let (creeping, angle) = (self.creeping.filter(|_| level)?, y.angle());
         if creeping.k == 0.0 || is_still(y) {
             return Some([0.0; 2]);
         }
@@ -122,7 +123,7 @@ impl<L: Own> Creeps<MARGINS, REACTING> for Slide<L> {
 
     #[inline(always)]
     fn drilling<T: Real, const N: usize>(&self, y: &[T; N]) -> T {
-        drilling_of(y.angle(), y[W1], y[W3])
+        drilling_of(y.angle(), y[W1], y[W3]) - y[W1].splat(self.turning)
     }
 
     /// The rims tell how much a force changes the slip.

@@ -36,8 +36,8 @@ impl<L: Own> Slide<L> {
         let losses = losses.linear(&seen, |_| self.slips(angle, w, slip, way).0.force[0]);
         let rests =
             Together::of_body(&self.law.shape, &losses, (angle, w), slip, Rubs::Slips { pull, twist });
-        let mut ways = Ways::of(spin_of(angle, w[0], w[2]), drilling_of(angle, w[0], w[2]));
-        if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 {
+        let mut ways = Ways::of(spin_of(angle, w[0], w[2]), self.drills(angle, w[0], w[2]));
+        if w[0] == 0.0 && w[2] == 0.0 && pull[1] == 0.0 && twist == 0.0 && self.turning == 0.0 {
             // The body only rocks, since no couple turns it.
             ways = Ways { rocking: sign_or_zero(w[1]), ..Ways::default() };
         }
@@ -64,7 +64,7 @@ impl<L: Own> Slide<L> {
         if !self.law.dry {
             return (slip.map(|u| mu * u), 0.0);
         }
-        let (drilling, size) = (drilling_of((s, c), w[0], w[2]), slip[0].hypot(slip[1]));
+        let (drilling, size) = (self.drills((s, c), w[0], w[2]), slip[0].hypot(slip[1]));
         match self.law.patch() {
             Some(patch) if size > 0.0 || drilling != 0.0 => {
                 let [share, twist, _] = rubs(size, drilling, patch);

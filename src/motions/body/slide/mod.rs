@@ -21,14 +21,14 @@ mod standstill;
 
 use super::face::FLAT;
 use super::own::Own;
-use crate::laws::body::{Body, leaves};
+use crate::laws::body::{Body, Shape, leaves};
 use crate::laws::contact::Force;
 use crate::laws::contact::slip::{Friction, SlipResponse, Slipping};
 use crate::laws::loss::{Couples, Law, Losses};
-use crate::laws::state::State;
+use crate::laws::state::{State, drilling_of};
 use crate::motions::dry::creep::Creeping;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, Halt, PHI, SIN, W1, W2, W3, X, carried, contact_velocity, driven, poses, pull, sum,
+    BodyNumbers, COS, Halt, PHI, SIN, W1, W2, W3, X, Y, carried, contact_velocity, driven, poses, pull, sum,
 };
 use crate::numbers::Dual;
 pub(super) use creeps::is_still;
@@ -105,6 +105,21 @@ impl<L: Own> Slide<L> {
         }
     }
 
+    /// The same on a slope with this tangent, or on a table that turns at this rate.
+    pub fn on_table(mut self, [tilt, turning]: [f64; 2]) -> Self {
+        let turns = turning != 0.0;
+        (self.tilt, self.turning) = (tilt, turning);
+        (self.law, self.bare) = (self.law.over(turning, turns), self.bare.over(turning, turns));
+        self.sloped = self.sloped.over(Dual::constant(turning), turns);
+        self
+    }
+
+    /// w_z over the table, from w1 and w3.
+    #[inline(always)]
+    pub fn drills(&self, angle: (f64, f64), w1: f64, w3: f64) -> f64 {
+        drilling_of(angle, w1, w3) - self.turning
+    }
+
     /// The pull on the centre along e_h and e2, of a slope and of a table that turns.
     pub fn pull<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let tilted = pull(self.tilt, y);
@@ -142,18 +157,25 @@ impl<L: Own> Slide<L> {
         (at, self.law.power(angle, w, at.force[0]))
     }
 
-    /// The energy of the body with these numbers.
+    /// The energy of the body with these numbers; on a table that turns, less its rate times the angular momentum.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
-        self.law.energy(&state, y.slip()) - self.falls(y)
+        self.law.energy(&state, y.slip()) + self.energy_on_table(y)
     }
 
-    /// The energy that a tilted table has given to a centre which falls along x; 0 on a level one.
-    pub fn falls<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        if self.tilt == 0.0 || !poses(N) {
+    /// What that energy has beside the one of a body that slips as fast on a level table at rest.
+    pub fn energy_on_table<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        if self.tilt == 0.0 && self.turning == 0.0 || !poses(N) {
             return 0.0;
         }
-        self.tilt * (y[X] - self.law.shape.rim.lever(y.angle()) * y[PHI].cos())
+        let (Shape { rim, i1, i3 }, (s, c), (sin, cos)) = (&self.law.shape, y.angle(), y[PHI].sin_cos());
+        // The centre falls along x. It is at (x, z), and g om faster over the table there than at the contact point.
+        let (x, z) = (y[X] - rim.lever((s, c)) * cos, y[Y] - rim.lever((s, c)) * sin);
+        let [_, v_2] = self.law.centre((s, c), y.w(), y.slip());
+        let ahead = self.turning * rim.lever((s, c));
+        let spins = i1 * s * y[W1] + i3 * c * y[W3];
+        let carried = self.turning * spins + 0.5 * self.turning * self.turning * (x * x + z * z);
+        ahead * (v_2 + 0.5 * ahead) - carried - self.tilt * x
     }
 
     /// The response of the body, as one compiled copy of the law for callers that need it only

@@ -18,7 +18,7 @@ mod free;
 mod patched;
 mod steps;
 
-use crate::laws::body::{Body, leaves};
+use crate::laws::body::{Body, Shape, leaves};
 use crate::laws::contact::lossy::{Acted, Held, Lossy};
 use crate::laws::contact::together::{Resting, Rubs, Together};
 use crate::laws::contact::{Contact, Force};
@@ -31,7 +31,7 @@ use crate::motions::dry::held::holds;
 use crate::motions::walk::numbers::{
     COS, Halt, P, PHI, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses, pull_along,
 };
-use crate::numbers::{Dual, Real};
+use crate::numbers::{Dual, Real, sign_or_zero};
 use free::pace_of;
 pub(crate) use free::{LossyUnheld, from_side};
 pub(crate) use steps::at_rest;
@@ -135,9 +135,15 @@ impl<G: Own> LossyFlow<G> {
         if self.is_pulled() {
             let [s, c] = [at[SIN], at[COS]];
             let pull = self.pull_at(at, (s, c), at[W2], at[W3] - c * at[P] / s);
-            self.law.losses = self.law.losses.pulled(pull);
+            self.law.losses = self.law.losses.pulled(pull).over(self.om, self.om != 0.0);
             self.turn(self.ways());
         }
+    }
+
+    /// w_z over the table, from w1 and w3.
+    #[inline(always)]
+    pub fn drills(&self, angle: (f64, f64), w1: f64, w3: f64) -> f64 {
+        drilling_of(angle, w1, w3) - self.om
     }
 
     /// The pull on the centre along e_h and e2, for this w2 and psi'.
@@ -181,9 +187,9 @@ impl<G: Own> LossyFlow<G> {
         here
     }
 
-    /// Whether a pull turns a body that only rocks out of its plane.
+    /// Whether a pull turns a body that only rocks out of its plane, or will do so.
     fn is_pulled_aside(&self) -> bool {
-        self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
+        self.om != 0.0 || self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
     }
 
     pub fn holds_drilling(&self) -> bool {
@@ -211,7 +217,7 @@ impl<G: Own> LossyFlow<G> {
     /// Sets which motions are held at a state, and the signs of the others.
     fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
-        let (spin, drilling) = (y.spin(), drilling_of(angle, y.w1, y.w3));
+        let (spin, drilling) = (y.spin(), self.drills(angle, y.w1, y.w3));
         self.settled = false;
         self.turn(Ways::of(spin, drilling));
         // What a slip has held is at rest up to rounding.
@@ -228,7 +234,7 @@ impl<G: Own> LossyFlow<G> {
                 self.stop(Resting::Drilling, angle, w);
             }
             if self.has(Law::RollingResistance) && pace_of(angle, y.precession(), w) < REST {
-                self.stop_rolling(angle, drilling);
+                self.stop_rolling(angle, drilling + self.om);
             }
         }
     }
@@ -312,7 +318,7 @@ impl<G: Own> LossyFlow<G> {
         let slow = |x: f64| x.abs() < little;
         Holds {
             contour: slow(y.spin()) && self.has(Law::DryContour),
-            drilling: slow(drilling_of(angle, y.w1, y.w3)) && self.can_hold_drilling(),
+            drilling: slow(self.drills(angle, y.w1, y.w3)) && self.can_hold_drilling(),
             rolling: slow(pace_of(angle, y.precession(), [y.w1, y.w2, y.w3]))
                 && self.has(Law::RollingResistance),
         }
@@ -323,6 +329,9 @@ impl<G: Own> LossyFlow<G> {
     fn stop_rolling(&mut self, angle: (f64, f64), drilling: f64) {
         if self.keeps_still(angle, drilling) {
             self.turn(self.ways().holding_rolling());
+            if self.om != 0.0 && (drilling - self.om).abs() <= rounded(angle.0, [drilling; 3]) {
+                self.drills_away(angle);
+            }
         } else {
             self.leave(angle, drilling);
         }
@@ -359,13 +368,39 @@ impl<G: Own> LossyFlow<G> {
     pub fn has_stopped(&self, y: &State) -> bool {
         let (s, c) = y.theta.sin_cos();
         let w = [y.w1, y.w2, y.w3];
-        let turns = drilling_of((s, c), y.w1, y.w3).abs() > rounded(s, w);
+        let turns = self.drills((s, c), y.w1, y.w3).abs() > rounded(s, w);
+        if self.om != 0.0 {
+            // A slope pulls a body that turns with the table in all directions.
+            let [couple, limit] = self.carries((s, c));
+            return self.ways().holds.rolling && self.tilt == 0.0 && !turns && couple.abs() <= limit;
+        }
         if self.only_rocks() {
             return self.has(Law::RollingResistance) && y.w2.abs() < REST && self.keeps_still((s, c), 0.0);
         }
         // On a slope a couple may turn a body that only stands on its rim.
         let begins = || self.responds((s, c), [0.0; 3]).w.into_iter().any(|rate| rate.abs() > REST);
         self.ways().holds.rolling && !turns && !(self.is_pulled() && begins())
+    }
+
+    /// Lets a body that neither rolls nor rocks, and turns with the table, drill if friction does not hold it.
+    fn drills_away(&mut self, angle: (f64, f64)) {
+        let [couple, limit] = self.carries(angle);
+        let begins = if couple.abs() > limit { -sign_or_zero(couple) } else { 0.0 };
+        self.turn(Ways { drilling: begins, ..self.ways() });
+    }
+
+    /// The couple about the vertical that turns a body which neither rolls nor rocks with the table, and the largest
+    /// that friction can exert.
+    fn carries(&self, (s, c): (f64, f64)) -> [f64; 2] {
+        let Shape { rim, i1, i3 } = &self.law.rates.reduced().shape;
+        let (far, mut still) = (rim.lever((s, c)), *self);
+        still.turn(Ways { drilling: 0.0, ..self.ways() });
+        let acted = still.responds((s, c), [s * self.om, 0.0, c * self.om]);
+        let turn = drilling_of((s, c), acted.w[0], acted.w[2]);
+        let [normal, along, across] = acted.force;
+        let drags = self.law.losses.coefficient(Law::Drilling);
+        let limit = self.patch.map_or(drags, |patch| patch.grips(along.hypot(across), normal));
+        [-turn * (i1 * s * s + i3 * c * c + far * far), limit]
     }
 
     /// w, with a small speed in the direction in which rolling and rocking begin from rest.
@@ -391,6 +426,10 @@ impl<G: Own> LossyFlow<G> {
             }
             Halt::Contour => self.stop(Resting::Contour, angle, w),
             // Without the drilling the body may begin to rock.
+            Halt::Drilling if holds.rolling && self.om != 0.0 => {
+                self.drills_away(angle);
+                return self.has_stopped(y);
+            }
             Halt::Drilling if holds.rolling => return !self.rocks_back(angle),
             Halt::Drilling if !self.moves => self.rocks_only(angle, w[1]),
             Halt::Drilling => self.stop(Resting::Drilling, angle, w),
@@ -438,7 +477,7 @@ impl<G: Own> LossyFlow<G> {
         let [s, c, mut w1, mut w3] = [y[SIN], y[COS], y[P], y[W3]];
         if self.starts_still && self.moves {
             // Here w_z vanishes exactly, and its rounding error is removed.
-            let off = drilling_of((s, c), w1, w3);
+            let off = self.drills((s, c), w1, w3);
             if c.abs() > 0.5 {
                 w3 -= off / c
             } else {

@@ -9,7 +9,7 @@ use super::LossyFlow;
 use crate::laws::contact::Force;
 use crate::laws::contact::lossy::{Acted, Held};
 use crate::laws::contact::slip::Friction;
-use crate::laws::state::{State, drilling_of};
+use crate::laws::state::State;
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::walk::numbers::BodyNumbers;
@@ -49,6 +49,6 @@ impl<G: Own> LossyFlow<G> {
     /// The slip of a contact point on a patch that creeps under the contact force of this state.
     pub fn creeps(&self, y: &State) -> Option<[f64; 2]> {
         let (patch, Force { normal, along, across }) = (self.patch?, self.force(y));
-        patch.begins_to_creep([across, along], normal, drilling_of(y.theta.sin_cos(), y.w1, y.w3))
+        patch.begins_to_creep([across, along], normal, self.drills(y.theta.sin_cos(), y.w1, y.w3))
     }
 }

@@ -157,7 +157,7 @@ impl<G: Own> LossyFlow<G> {
         let square = along * along + across * across;
         let mut grip = if self.mu.is_finite() { grip(number(self.mu), normal, square) } else { one };
         if self.is_patch() {
-            grip = grip.min(hardly_drills(drilling_of((s, c), w[0], w[2])));
+            grip = grip.min(hardly_drills(drilling_of((s, c), w[0], w[2]) - number(self.om)));
         }
         let [push, mut limit] = acted.held;
         if let Some(grips) = grips {
@@ -370,7 +370,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     /// A drilling that is held stays zero. The errors of the steps would let it begin on a patch of contact.
     fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
         if self.moves && self.holds_drilling() {
-            let drilling = y[P] + y[COS] * y[W3];
+            let drilling = y[P] + y[COS] * y[W3] - self.om;
             (y[P], y[W3]) = (y[P] - y[SIN] * y[SIN] * drilling, y[W3] - y[COS] * drilling);
         }
         y
