@@ -344,7 +344,7 @@ def test_the_work_of_a_table_is_its_rate_times_the_angular_momentum_it_gives(law
 
 def test_a_marble_is_carried_round_where_rolling_resistance_holds_it():
     ball, rate, delta = sc.Body.ball(0.0, 0.4, 0.4), 0.5, 0.1
-    how = {"contact": sc.Coulomb(0.3, patch=0.05), "losses": sc.loss.RollingResistance(delta)}
+    how = {"contact": sc.Coulomb(0.3, patch=0.15), "losses": sc.loss.RollingResistance(delta)}
     for r, held in ((0.3, True), (0.39, True), (0.41, False)):
         spins = sc.State(1.0, rate * np.sin(1.0), 0.0, rate * np.cos(1.0))
         m = sc.roll(ball, spins, 1.0, table=sc.Table(turning=rate, place=(r, 0.0)), **how)

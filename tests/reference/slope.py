@@ -148,7 +148,7 @@ def scenes():
         **below,
     )
     yield rim(
-        "ball dropped on a turntable", low, 0, (1.2, 0.5, 0.2, 1, 0.3, 0.1), 5, 0.2, 0.7, height=0.4, **below
+        "ball dropped on a turntable", low, 0, (1.2, 0.5, 0.2, 1, 0.3, 0.1), 4, 0.2, 0.7, height=0.4, **below
     )
 
 

@@ -72,7 +72,8 @@ pub struct Ask {
     #[cfg_attr(feature = "serde", serde(default))]
     pub slope: f64,
     /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are over the table, and
-    /// the other numbers of a motion are those in the laboratory.
+    /// the other numbers of a motion are those in the laboratory. A body that comes to rest over a level table, which carries
+    /// it, stops; a face that lands, and a second rim, end a motion.
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
