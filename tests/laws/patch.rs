@@ -415,3 +415,21 @@ fn static_friction_holds_the_drilling_of_a_ball_as_a_body_and_as_a_stone_alike()
     }
     assert!(held > drawn(90) && drilled > drawn(15), "{held} are held, and {drilled} begin to drill");
 }
+
+#[test]
+fn a_body_that_does_not_drill_slips_and_rolls_on_a_patch_as_on_a_point() {
+    // It rocks in a plane, and friction alternates between rest and slip.
+    let low = Body::ball(-0.4, 0.4, 0.42).unwrap();
+    for (mu, w2) in [(0.1, 0.5), (0.1, 1.5), (0.2, 1.5), (0.25, 1.5)] {
+        let y = State { theta: 2.0, w1: 0.0, w2, w3: 0.0 };
+        let [point, wide] = [0.0, 0.05].map(|patch| {
+            let ask = Ask::on(Friction::Coulomb { mu, fixed: mu, patch });
+            roll_with(&low, y, &[10.0], &ask, || true).unwrap().unwrap()
+        });
+        let (a, b) = (point.states[0], wide.states[0]);
+        let claim = 1e-12 + point.error + wide.error;
+        assert!((a.theta - b.theta).abs().max((a.w2 - b.w2).abs()) < claim, "{a:?} {b:?}");
+        let phases = |m: &Motion| m.path.as_ref().unwrap().phases.len();
+        assert!(phases(&point) == phases(&wide) && phases(&wide) > 3);
+    }
+}

@@ -17,7 +17,6 @@ const _: () = assert!(4 + LOSSY_NUMBERS < NUMBERS);
 pub(super) struct LossyKind {
     pub contact: Contact,
     pub round: bool,
-    pub tilted: bool,
     pub present: [bool; COUNT],
 }
 

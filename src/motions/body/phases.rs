@@ -29,6 +29,8 @@ use core::f64::consts::PI;
 const ALL_BUT_FLAT: f64 = 1e-6;
 /// The first step of a phase, as a share of the last step of the phase of its kind before.
 const LATELY: f64 = 0.5;
+/// A patch that drills more slowly than this, which is rounding, does not drill.
+const HARDLY_DRILLS: f64 = 1e-13;
 /// The first step of a body on its face.
 const STANDING: f64 = 0.05;
 
@@ -280,7 +282,10 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         walk.of.slide.rubs(&walk.at)
     }
     fn begins_slowly(walk: &BodyWalk<'_, N, G>) -> bool {
-        !G::IS && walk.of.slide.law.patch().is_none() && walk.of.slide.begins_to_roll().is_none()
+        let slide = &walk.of.slide;
+        // A patch on which friction has held the drilling begins to slip as a point does.
+        let as_point = slide.law.patch().is_none() || slide.drilling(&walk.at).abs() < HARDLY_DRILLS;
+        !G::IS && as_point && slide.begins_to_roll().is_none()
     }
 
     fn has_series(walk: &BodyWalk<'_, N, G>) -> bool {

@@ -226,8 +226,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if sticks || slips { FromRest::Tips } else { FromRest::Jams }
     }
 
-    /// Whether friction and the ring both just hold the body on a slope: a spin then lets it creep, ever faster by the third
-    /// root of the time, and neither ends.
+    /// Whether friction and the ring both just hold the body on a slope. A small spin then lets it slide on for ever, at less than
+    /// the speed of its rim, which is the error of saying that it rests.
     fn creeps(&self) -> bool {
         let Table::Rubs(Friction::Coulomb { mu, fixed, .. }) = self.ask.table else { return false };
         let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
