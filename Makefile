@@ -184,7 +184,7 @@ $(VENV)/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	$(SAY) 'the wheel: some sixty small crates, then this one, which takes a minute or two'
 	@alive='the compiler is at work'; $(ALIVE); \
 	$(NEEDS) | $(BIN)/python -m pip install --quiet --no-compile -r /dev/stdin & needs=$$!; \
-	$(BIN)/python -m maturin build --release --out $(VENV)/wheels $(TIMED); built=$$?; wait $$needs; exit $$built
+	$(BIN)/python -m maturin build --release --compression-level 9 --out $(VENV)/wheels $(TIMED); built=$$?; wait $$needs; exit $$built
 	$(SAY) 'the wheel is installed'
 	$(BIN)/python -m pip install --quiet --force-reinstall --no-deps $(VENV)/wheels/*.whl
 	$(BIN)/python -m pip install --quiet --no-compile "$$(echo $(VENV)/wheels/*.whl)[plot,sweep]"
@@ -196,7 +196,7 @@ dist/.built: $(VENV)/.made $(CORE) $(PACKAGE)
 	$(BIN)/python -m pip install --quiet 'maturin[zig]'
 	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do \
 		test ! -d "$$(rustc --print target-libdir --target $$target)" || PATH="$(CURDIR)/$(BIN):$$PATH" maturin build \
-		--quiet --release --zig --compatibility manylinux2014 --target $$target --out dist || exit 1; done
+		--quiet --release --compression-level 9 --zig --compatibility manylinux2014 --target $$target --out dist || exit 1; done
 	$(BIN)/python -m maturin sdist --out dist
 	@ls dist/*.whl || (echo "No wheel: rustup target add x86_64-unknown-linux-gnu"; false)
 	touch $@

@@ -171,6 +171,8 @@ def test_a_sweep_over_slopes_has_the_motions_that_roll_has():
             assert found["status"].values[i] == m.status
         again = sc.sweep.roll(**sc.sweep.inputs(found), want=want)
         assert all(np.array_equal(again[name], found[name], equal_nan=True) for name in again.data_vars)
+        level = sc.sweep.roll(DISK, START, 3.0, want="final", tol=1e-12, **how)
+        assert all(float(level[name]) == found[name][1] for name in ("theta", "w1", "w2", "w3")), how
 
 
 SCENES = {
@@ -187,40 +189,65 @@ SCENES = {
 }
 
 
+#: Rows that nobody would choose: at rest, lying, a slope of less than a digit, hardly any slip, straight down and up.
+ODD = (
+    {"slope": 0.0},
+    {"w1": 0.0, "w2": 0.0, "w3": 0.0, "slip": 0.0},
+    {"theta": np.pi / 2, "w1": 0.0, "w2": 0.0, "w3": 0.0, "slip": 0.0},
+    {"slope": 1e-300},
+    {"slip": 1e-300, "w3": 0.0},
+    {"w1": 0.0, "w3": 0.0, "slip": 0.0, "phi0": 0.0},
+    {"w1": 0.0, "w3": 0.0, "slip": 0.0, "phi0": np.pi},
+    {"theta": 1.5, "w3": 0.1},
+)
+
+
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.filterwarnings("ignore")
 def test_random_bodies_in_a_sweep_move_down_a_slope_as_each_alone(scene):
-    how, count, until = {"tol": 1e-12} | SCENES[scene], 24, 6.0
+    how, count, until, known = {"tol": 1e-12} | SCENES[scene], 24, 6.0, []
     rng = np.random.default_rng(list(SCENES).index(scene))
     bodies = [sc.Body.solid(0.1), sc.Body.solid(0.8), sc.Body.tube(2.0, 0.8), sc.Body.solid(0.5, fillet=0.1)]
     for body in bodies:
-        theta = rng.uniform(0.3, 1.5, count)
-        if scene != "rolls":
-            # A third of them slides on its face.
-            theta[::3] = 0.0
-        w1, w2, w3 = (rng.uniform(-x, x, count) * (theta > 0.0) for x in (1.0, 0.5, 3.0))
-        slip = tuple(rng.uniform(-1, 1, count) * (scene != "rolls") for _ in range(2))
-        slope, phi0 = rng.uniform(-0.5, 0.5, count), rng.uniform(-3, 3, count)
-        slope[1] = 0.0
-        rows = [xarray.DataArray(x, dims="row") for x in (theta, w1, w2, w3, *slip, slope, phi0)]
+        low, high = [0.3, -1, -0.5, -3, -1, -1, -0.5, -3], [1.5, 1, 0.5, 3, 1, 1, 0.5, 3]
+        names = ("theta", "w1", "w2", "w3", "slip", "slip_2", "slope", "phi0")
+        given = dict(zip(names, rng.uniform(low, high, (count, 8)).T, strict=True))
+        for row, odd in enumerate(ODD):
+            odd = odd | ({"slip_2": 0.0} if "slip" in odd else {})
+            for name, x in odd.items():
+                given[name][row] = x
+        if "contact" in how:
+            # A third of the others slides on its face.
+            given["theta"][len(ODD) :: 3] = 0.0
+            given["w1"][len(ODD) :: 3] = given["w2"][len(ODD) :: 3] = 0.0
+        else:
+            given["slip"][:] = given["slip_2"][:] = 0.0
+        theta, w1, w2, w3, *slip, slope, phi0 = given.values()
+        rows = [xarray.DataArray(x, dims="row") for x in given.values()]
         start, table = sc.State(*rows[:4], slip=tuple(rows[4:6])), sc.Table(rows[6], phi0=rows[7])
-        found = sc.sweep.roll(body, start, until, table=table, want=("final", "end"), **how)
         taken = ("dissipated",) if "contact" in how else ()
-        taken = (
-            sc.sweep.roll(body, start, until, table=table, want=taken, **how)["dissipated"] if taken else None
-        )
+        found = sc.sweep.roll(body, start, until, table=table, want=("final", "end", *taken), **how)
         for i in range(count):
             own = sc.State(theta[i], w1[i], w2[i], w3[i], slip=(slip[0][i], slip[1][i]))
-            m = sc.roll(body, own, until, table=sc.Table(slope[i], phi0=phi0[i]), **how)
+            try:
+                m = sc.roll(body, own, until, table=sc.Table(slope[i], phi0=phi0[i]), **how)
+            except ValueError:
+                # A body whose other rim is down cannot roll as if it were on one.
+                assert found["status"].values[i] in (sc.sweep.Status.INVALID, sc.sweep.Status.PAINLEVE), (
+                    scene,
+                    i,
+                )
+                continue
             assert found["status"].values[i] == m.status, (scene, body, i)
             last = m.event.state if m.event else m.states
             claim = 1e-12 + m.error + float(found["error"][i])
-            for name in ("theta", "w1", "w2", "w3"):
-                apart = abs(float(found[name][i]) - float(np.ravel(getattr(last, name))[0]))
-                assert not apart > claim, (scene, body, i, name, apart, claim)
-            if taken is not None and m.event is None:
-                apart = abs(float(taken[i]) - float(np.ravel(m.dissipated)[-1]))
-                assert not apart > 10 * claim, (scene, body, i, apart, claim)
+            apart = [float(found[name][i]) - float(np.ravel(getattr(last, name))[0]) for name in names[:4]]
+            if taken and m.event is None:
+                apart.append(0.1 * (float(found["dissipated"][i]) - float(np.ravel(m.dissipated)[-1])))
+            given_up = m.status == sc.Ending.BOUNDED
+            assert given_up or np.abs(apart).max() <= claim, (scene, body, i, apart, claim)
+            known.append(claim < 1e-6)
+    assert np.mean(known) > 0.8
 
 
 @pytest.mark.parametrize("phi0", [np.nan, np.inf, 2e6])

@@ -25,6 +25,7 @@ use crate::motions::body::check_walk;
 use crate::motions::body::spun::knows;
 use crate::motions::slope::Slope;
 use crate::motions::walk::Pause;
+use crate::motions::walk::numbers::poses;
 use crate::motions::walk::two_runs::{Followed, rougher};
 use crate::motions::{Ask, Ending, Kind, Phase, Start};
 use crate::numbers::in_lanes;
@@ -109,7 +110,7 @@ impl MotionBlock<'_> {
         Ok(Asked { body, seen, start: own, ask, tilted: Some((slope, start, since)) })
     }
 
-    /// Computes these motions of the block, all of them on level tables or all on slopes.
+    /// Computes these motions of the block: all of them on slopes if walks have a pose among their N numbers, else on level tables.
     pub(super) fn flow<const N: usize>(
         &self,
         level: Option<Level>,
@@ -150,8 +151,10 @@ impl MotionBlock<'_> {
                 let walk = motion.as_ref().map_err(|e| *e).and_then(|motion| {
                     let Asked { seen, start, ask, tilted, .. } = motion;
                     let times = tilted.as_ref().map_or(times, |(.., since)| since);
-                    let in_lanes =
-                        wide && !self.starts.has_row(self.first + k) && can_roll_in_lanes(&ask.table);
+                    let in_lanes = wide
+                        && !poses(N)
+                        && !self.starts.has_row(self.first + k)
+                        && can_roll_in_lanes(&ask.table);
                     let walk = BodyWalk::of_body(seen, ask, tol, times, start)?;
                     Ok(walk.leaving_rolling_to_caller(in_lanes))
                 });
@@ -169,7 +172,8 @@ impl MotionBlock<'_> {
                 return Ok(());
             }
             let Some(i) = all.queues.iter().position(|(_, queue)| !queue.is_empty()) else {
-                if all.rolls.is_empty() {
+                // On a slope no walk waits for the first integrals, which know none.
+                if const { poses(N) } || all.rolls.is_empty() {
                     break;
                 }
                 self.roll_phases_in_lanes(level, &mut all, go_on)?;
@@ -235,18 +239,23 @@ impl MotionBlock<'_> {
         all: &mut Walks<'_, N>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
+        // Walks with a pose among their numbers are those on slopes.
         match all.queues[queue].0 {
-            FlowKind::Slips { dry, tilted: false } => {
-                lanes::<_, _, 8, _, N>(like, queue, Slips::new(like, dry), all, go_on)
-            }
-            FlowKind::Slips { dry, tilted: true } => {
-                lanes::<_, _, 11, _, N>(like, queue, Slips::new(like, dry), all, go_on)
-            }
-            FlowKind::Lossy(kind) if kind.tilted => {
-                lanes::<_, _, 9, _, N>(like, queue, LossyLanes::new(like, kind), all, go_on)
+            FlowKind::Slips { dry } => {
+                let law = Slips::new(like, dry);
+                if const { poses(N) } {
+                    lanes::<_, _, 11, _, N>(like, queue, law, all, go_on);
+                } else {
+                    lanes::<_, _, 8, _, N>(like, queue, law, all, go_on);
+                }
             }
             FlowKind::Lossy(kind) => {
-                lanes::<_, _, 6, _, N>(like, queue, LossyLanes::new(like, kind), all, go_on)
+                let law = LossyLanes::new(like, kind);
+                if const { poses(N) } {
+                    lanes::<_, _, 9, _, N>(like, queue, law, all, go_on);
+                } else {
+                    lanes::<_, _, 6, _, N>(like, queue, law, all, go_on);
+                }
             }
         }
     }

@@ -17,7 +17,6 @@ const _: () = assert!(4 + LOSSY_NUMBERS < NUMBERS);
 pub(super) struct LossyKind {
     pub contact: Contact,
     pub round: bool,
-    pub tilted: bool,
     pub present: [bool; COUNT],
 }
 
@@ -40,6 +39,8 @@ impl<T: SideBySide> LossyLanes<T> {
 /// On a tilted table K is 9, else 6.
 impl<T: SideBySide, const K: usize> Flows<T, K, 7> for LossyLanes<T> {
     type Seen = Acted<T>;
+    /// On a tilted table the rates are slow enough for a loop, and it is a third of the code.
+    const LOOPS: bool = K > 6 || rk8::LOOPS;
 
     #[inline(always)]
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self {

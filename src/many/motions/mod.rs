@@ -225,10 +225,8 @@ pub(crate) fn roll_among(
             } else {
                 conserved(&work, level, (flat, &mut out), still)
             };
-            let done = done.and_then(|()| match (tilted.is_empty(), loses) {
-                (true, _) => Ok(()),
-                (false, true) => work.flow::<14>(level, &tilted, &mut out, still),
-                (false, false) => work.flow::<13>(level, &tilted, &mut out, still),
+            let done = done.and_then(|()| {
+                if tilted.is_empty() { Ok(()) } else { work.flow::<14>(level, &tilted, &mut out, still) }
             });
             if let Err(e) = done {
                 // The first error is reported, and later errors are dropped.

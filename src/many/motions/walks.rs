@@ -11,7 +11,7 @@ use crate::methods::flow::schedule::{STEPS_ALONE, Waiting, follow};
 use crate::methods::flow::{Spent, steps_to_stuck_test};
 use crate::motions::body::BodyWalk;
 use crate::motions::body::roll::lossy::LOSSY_NUMBERS;
-use crate::motions::walk::numbers::{PHI, TIME, X, pull};
+use crate::motions::walk::numbers::{PHI, TIME, X, poses, pull};
 use crate::motions::walk::{Pause, Phases, WalkStep};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
@@ -38,18 +38,9 @@ pub(super) struct FlowTask<const N: usize> {
 pub(super) enum FlowKind {
     /// Slips; `dry` means that the friction is dry and keeps a direction where the slip vanishes, unlike viscous
     /// friction or ice.
-    Slips { dry: bool, tilted: bool },
+    Slips { dry: bool },
     /// Motions without slip that lose energy by the same laws, or whose table is tilted.
     Lossy(LossyKind),
-}
-
-impl FlowKind {
-    /// Whether the tables are tilted.
-    fn is_tilted(self) -> bool {
-        match self {
-            Self::Slips { tilted, .. } | Self::Lossy(LossyKind { tilted, .. }) => tilted,
-        }
-    }
 }
 
 /// The flows of one kind that wait for lanes.
@@ -72,16 +63,14 @@ fn kind_and_lane_numbers<const N: usize>(
 ) -> Option<(FlowKind, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
-    let tilted = walk.ask.slope != 0.0;
     // A hop that rolls and loses nothing on a level table is short; the lanes know one circle of radius 1 or two equal rims.
     let apart = walk.of.lying.is_some() || walk.of.standing.is_some();
-    if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() && !tilted {
+    if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() && !poses(N) {
         return None;
     }
     numbers[NUMBERS - 1] = walk.of.slide.tilt;
     if let Some(lossy) = walk.lossy() {
-        let (contact, round) = (walk.contact(), !body.is_sharp());
-        let law = LossyKind { contact, round, tilted, present: lossy.present() };
+        let law = LossyKind { contact: walk.contact(), round: !body.is_sharp(), present: lossy.present() };
         numbers[4..4 + LOSSY_NUMBERS].copy_from_slice(&lossy.numbers());
         return lossy.is_free().then_some((FlowKind::Lossy(law), numbers));
     }
@@ -90,14 +79,14 @@ fn kind_and_lane_numbers<const N: usize>(
     let there = f64::from(u8::from(body.theta_end() < PI));
     numbers[4..9].copy_from_slice(&[slide.law.strength, slide.over_in_lanes(y), sine, cosine, there]);
     (slide.law.losses.is_none() && slide.law.patch().is_none())
-        .then_some((FlowKind::Slips { dry: slide.law.dry, tilted }, numbers))
+        .then_some((FlowKind::Slips { dry: slide.law.dry }, numbers))
 }
 
-/// The numbers of a walk in a lane, whose last one is the time. On a tilted table those before it are the cosine and sine of
-/// phi, without the sign of a rounding straight up or down, and x.
-fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N], tilted: bool) -> [f64; K] {
+/// The numbers of a walk in a lane, whose last one is the time. Walks have a pose on tilted tables only. There the lane also has
+/// cos phi and sin phi, without the sign of a rounding straight up or down, and x.
+fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N]) -> [f64; K] {
     let mut all = core::array::from_fn(|i| y[i]);
-    if tilted {
+    if poses(N) {
         let [cos, against] = pull(1.0, y);
         all[K - 4..K - 1].copy_from_slice(&[cos, -against, y[X]]);
     }
@@ -106,12 +95,12 @@ fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N], tilted: bool) -> [
 }
 
 /// The numbers of a walk that began with `from` and has reached these numbers in a lane.
-fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K], tilted: bool) -> [f64; N] {
+fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K]) -> [f64; N] {
     let mut all = *from;
-    let own = if tilted { K - 4 } else { K - 1 };
+    let own = if poses(N) { K - 4 } else { K - 1 };
     all[..own].copy_from_slice(&y[..own]);
     all[TIME] = y[K - 1];
-    if tilted {
+    if poses(N) {
         (all[PHI], all[X]) = (y[K - 3].atan2(y[K - 4]), y[K - 2]);
     }
     all
@@ -195,14 +184,14 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>> {
         let next = self.all.queues[self.queue].1.pop_front()?;
         let FlowTask { step, numbers, tol, until, patience, made, .. } = next;
-        let y = lane_numbers(&next.y, self.all.queues[self.queue].0.is_tilted());
+        let y = lane_numbers(&next.y);
         self.tasks[k] = Some(next);
         Some(Entry { y, step, numbers, tol, until, patience, made })
     }
 
     fn leave(&mut self, k: usize, status: LaneStatus, (y, step): ([f64; K], f64), spent: Spent) {
         let Some(ended) = self.tasks[k].take() else { return };
-        let y = walk_numbers(&ended.y, &y, self.all.queues[self.queue].0.is_tilted());
+        let y = walk_numbers(&ended.y, &y);
         let spent = Spent { evaluations: spent.evaluations - ended.made, ..spent };
         self.all.handle(&ended, status, (y, step), spent, self.go_on);
     }

@@ -293,9 +293,10 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         walk.of.slide.rubs(&walk.at)
     }
     fn begins_slowly(walk: &BodyWalk<'_, N, G>) -> bool {
+        let slide = &walk.of.slide;
         // A patch on which friction has held the drilling begins to slip as a point does.
-        let as_point = walk.of.slide.law.patch().is_none() || walk.drills_here().abs() < HARDLY_DRILLS;
-        !G::IS && as_point && walk.of.slide.begins_to_roll().is_none()
+        let as_point = slide.law.patch().is_none() || slide.drilling(&walk.at).abs() < HARDLY_DRILLS;
+        !G::IS && as_point && slide.begins_to_roll().is_none()
     }
 
     fn has_series(walk: &BodyWalk<'_, N, G>) -> bool {

@@ -167,6 +167,11 @@ impl FaceFriction {
         found.or_else(|| (lam <= 1.0 && s <= v).then(|| FaceForce::at_a_point(s / v, lam)))
     }
 
+    /// Whether the part of a disc that presses shrinks to a point where slide and spin are as fast as each other.
+    pub fn shrinks(&self) -> bool {
+        self.near.is_some()
+    }
+
     /// The part that presses, from the whole face, or else from ever narrower parts.
     fn first_part(&self, whole: PressedPart, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         self.solved(whole, v, s).or_else(|| self.narrowed(v, s))

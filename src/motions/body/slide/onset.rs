@@ -17,8 +17,9 @@ impl<L: Own> Slide<L> {
         (all[UH], all[U2]) = (all[UH] + pull_h, all[U2] + pull_2);
         let turning = [w[0] / s, w[2] - c * w[0] / s];
         if poses(N) {
-            let over = self.runs(y, turning[1], y[PHI].sin_cos());
-            all[PHI..PHI + 4].copy_from_slice(&pose_rates(y[PHI].sin_cos(), turning, over));
+            let heading = y[PHI].sin_cos();
+            let over = self.runs(y, turning[1], heading);
+            all[PHI..PHI + 4].copy_from_slice(&pose_rates(heading, turning, over));
         }
         if loses(N) {
             all[N - 1] = self.law.power((s, c), w, at.force[0]);
@@ -48,8 +49,9 @@ impl<L: Own> Slide<L> {
         let precession = w[0] / s;
         if poses(N) {
             let turning = [precession, w[2] - c * precession];
-            let over = self.runs(start, turning[1], start[PHI].sin_cos());
-            rates[PHI..PHI + 4].copy_from_slice(&pose_rates(start[PHI].sin_cos(), turning, over));
+            let heading = start[PHI].sin_cos();
+            let over = self.runs(start, turning[1], heading);
+            rates[PHI..PHI + 4].copy_from_slice(&pose_rates(heading, turning, over));
         }
         if loses(N) {
             rates[N - 1] = self.law.power(angle, w, at.force[0]);

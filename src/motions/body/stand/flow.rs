@@ -40,8 +40,8 @@ const SHARE: usize = W3;
 const SLID_OUT: f64 = 1e-14;
 /// At the fold itself there is no centre of the pressure any more.
 const SHORT_OF_FOLD: f64 = 1.0 - 1e-9;
-/// Where slide and spin are as fast as each other at the fold, the pressed part shrinks to a point, and friction tends to its
-/// last value with the root of what is left: the flow ends before it, and what is left follows from that root.
+/// Where slide and spin of a tall disc become as fast as each other, the part that presses shrinks to a point, and friction tends
+/// to its last value with the root of what is left: the flow ends before it, and what is left follows from that root.
 const SHORT_OF_POINT: f64 = 1.0 - 1e-5;
 /// A spin and a velocity across the slope below this share of the speed are rounding errors.
 const STRAIGHTENED: f64 = 1e-15;
@@ -189,33 +189,36 @@ impl StandingFlow {
     }
 
     fn ends_at_point(&self) -> bool {
-        self.dry && self.face.fold() == 1.0
+        self.dry && self.face.shrinks()
     }
 
-    /// The numbers where slide and spin have become as fast as each other, from those just before.
-    pub fn at_point<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
+    /// The way from these numbers to where slide and spin become as fast as each other, at the shares 0 to 1 of its time; None if
+    /// they do not.
+    pub fn to_point<const N: usize>(&self, y: &[f64; N]) -> Option<impl Fn(f64) -> [f64; N] + use<N>> {
         if !self.ends_at_point() {
-            return *y;
+            return None;
         }
         let soft = Self { course: Braking::Soft, ..*self };
-        let (begin, mut rates) = (soft.enter(y), [0.0; N]);
-        soft.write_rates(&begin, &mut rates);
+        let (begin, mut first) = (soft.enter(y), [0.0; N]);
+        soft.write_rates(&begin, &mut first);
         let (v, w) = (begin[UH].hypot(begin[U2]), begin[W3]);
         // At the point friction acts across v alone, with the centre of the pressure in the ring.
-        let aside = -self.radius / self.height * (self.up * w).signum();
-        let force = [-aside * begin[U2] / v, aside * begin[UH] / v];
-        let turns = -self.up * self.lost(self.up * w) / self.shape.i3;
-        let last = [(UH, force[0] + self.pull[0]), (U2, force[1] + self.pull[1]), (W3, turns)];
-        for (i, last) in last.into_iter().chain([(HEAT, 0.0)]) {
-            rates[i] = (last + 2.0 * rates[i]) / 3.0;
-        }
-        let faster = (begin[UH] * rates[UH] + begin[U2] * rates[U2]) / v;
-        let nears = faster - self.radius * w.signum() * rates[W3];
+        let (aside, mut last) = (-self.radius / self.height * (self.up * w).signum(), first);
+        last[UH] = self.pull[0] - aside * begin[U2] / v;
+        last[U2] = self.pull[1] + aside * begin[UH] / v;
+        last[W3] = -self.up * self.lost(self.up * w) / self.shape.i3;
+        last[HEAT] = 0.0;
+        let mean = |i: usize| (last[i] + 2.0 * first[i]) / 3.0;
+        let faster = (begin[UH] * mean(UH) + begin[U2] * mean(U2)) / v;
+        let nears = faster - self.radius * w.signum() * mean(W3);
         let left = self.radius * w.abs() - v;
-        if !(left > 0.0 && nears > 0.0) {
-            return *y;
-        }
-        soft.shown(&core::array::from_fn(|i| begin[i] + left / nears * rates[i]))
+        let lasts = left / nears;
+        (left > 0.0 && nears > 0.0).then_some(move |share: f64| {
+            // The rates tend to their last values with the root of what is left.
+            let passed = 2.0 / 3.0 * (1.0 - (1.0 - share) * (1.0 - share).sqrt());
+            let gone = |i: usize| last[i] * share + (first[i] - last[i]) * passed;
+            soft.shown(&core::array::from_fn(|i| begin[i] + lasts * gone(i)))
+        })
     }
 
     /// Whether friction or losses change the velocities.

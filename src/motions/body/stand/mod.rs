@@ -30,7 +30,7 @@ use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses, pull,
+    BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses, pull,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, ending};
 use crate::motions::{Ending, Kind};
@@ -226,8 +226,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if sticks || slips { FromRest::Tips } else { FromRest::Jams }
     }
 
-    /// Whether friction and the ring both just hold the body on a slope: a spin then lets it creep, ever faster by the third
-    /// root of the time, and neither ends.
+    /// Whether friction and the ring both just hold the body on a slope. A small spin then lets it slide on for ever, at less than
+    /// the speed of its rim, which is the error of saying that it rests.
     fn creeps(&self) -> bool {
         let Table::Rubs(Friction::Coulomb { mu, fixed, .. }) = self.ask.table else { return false };
         let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
@@ -337,18 +337,24 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn topples(&mut self, flow: &StandingFlow, friction: &Friction) -> Next {
         let (shape, up) = (self.of.slide.law.shape, self.up());
         let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
-        let (begin, end) = (self.at, flow.at_point(&self.at));
-        let lasts = end[TIME] - begin[TIME];
-        while let Some(t) = self.until().filter(|t| *t < end[TIME]) {
-            let share = (t - begin[TIME]) / lasts;
-            self.writes_standing(flow, &core::array::from_fn(|i| begin[i] + share * (end[i] - begin[i])));
+        if let Some(there) = flow.to_point(&self.at) {
+            let (begin, end) = (self.at, there(1.0));
+            let whole = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT] + lost(y);
+            let [v_h, v_2] = flow.velocity(&end);
+            let off = (v_h.hypot(v_2) - a * end[W3].abs()).abs() + (whole(&end) - whole(&begin)).abs();
+            self.claims(off);
+            while let Some(t) = self.until().filter(|t| *t < end[TIME]) {
+                self.writes_standing(flow, &there((t - begin[TIME]) / (end[TIME] - begin[TIME])));
+            }
+            self.arrives(end);
+            return Next::Ends(Ending::Painleve);
         }
-        self.at = end;
         let ([v_h, v_2], w) = (flow.velocity(&self.at), up * self.at[W3]);
         let v = v_h.hypot(v_2);
         let square = (v - a * w.abs()) * (v + a * w.abs());
         // A spin as fast as the slide leaves no slip at this point, which stays.
         if square <= (SLIPS_OFF * v).powi(2) {
+            self.claims((v - a * w.abs()).abs());
             return Next::Ends(Ending::Painleve);
         }
         let slip = square.sqrt();
