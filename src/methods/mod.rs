@@ -5,6 +5,7 @@ pub(crate) const SHORT_CODE: bool = cfg!(short_code);
 
 pub(crate) mod antiderivative;
 pub(crate) mod beat;
+pub(crate) mod falling;
 pub(crate) mod flow;
 pub(crate) mod gauss;
 pub(crate) mod radau;

@@ -37,8 +37,8 @@ pub(crate) struct StoneLaw<T> {
     /// The squares of the semi-axes.
     pub squares: [T; 3],
     pub inertia: Symmetric<T>,
-    inverse: Symmetric<T>,
-    offset: [T; 3],
+    pub inverse: Symmetric<T>,
+    pub offset: [T; 3],
     /// The coefficient of friction: mu, or c for a viscous film.
     pub strength: T,
     /// The speed of slip below which the variable sigma differs much from time.
@@ -384,6 +384,12 @@ impl<T: Real> StoneLaw<T> {
     pub fn swings(&self, at: &Touching<T>, couple: [T; 3]) -> [T; 3] {
         let turned = self.inverse.times(couple);
         cross(if at.holds.drilling { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
+    }
+
+    /// The inverse inertia of the contact point, along x and y of the laboratory.
+    pub fn light(&self, at: &Touching<T>, lab: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+        let per = lab.map(|axis| self.yields(at, axis));
+        lab.map(|axis| per.map(|per| dot(axis, per)))
     }
 
     /// Kinetic and potential energy of a stone whose contact point has the velocity `u`; heights are above the table.

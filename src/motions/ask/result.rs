@@ -330,11 +330,12 @@ pub struct Phase<S = State> {
     pub rim: u8,
 }
 
-/// An impact of a rim on the table.
+/// An impact of a rim or of a stone on the table. The components of a stone are along x and y of the laboratory, and
+/// upwards; those of its velocities as in [`EllipsoidState`](crate::stone::roll).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
-pub struct Strike {
+pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
     /// Whether the rim that lands is not the one from which the initial state was seen; for a body of several circles,
@@ -345,7 +346,7 @@ pub struct Strike {
     /// The motion of the contact point in the impact.
     pub hit: Hit,
     /// The state before and after the impact, as seen from the rim that lands.
-    pub states: [State; 2],
+    pub states: [S; 2],
     /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
     pub velocities: [[f64; 3]; 2],
     /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
@@ -383,7 +384,7 @@ pub struct Path<S = State> {
     /// the body leaves the table.
     pub aloft: Vec<[f64; 2]>,
     /// The impacts.
-    pub impacts: Vec<Strike>,
+    pub impacts: Vec<Strike<S>>,
     /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
     /// empty if the motion ends where the body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]

@@ -2,12 +2,11 @@
 //!
 //! ```text
 //! body, laws of the user, slip      what does not change but for what friction and losses hold
-//! lossy, lying, takeoff             the current phase, if it is one of these
+//! lossy, lying                      the current phase, if it is one of these
 //! ```
 //! [`phases`](super::phases) begins and ends the phases. A rougher run is perturbed by a share of the state (`perturbs_by`), so
 //! that its difference from the finer run shows how errors grow.
 
-use super::fly::Takeoff;
 use super::lie::flow::LyingPhase;
 use super::own::Own;
 use super::roll::lossy::LossyFlow;
@@ -25,7 +24,6 @@ use crate::laws::loss::{Couples, Losses};
 use crate::laws::state::{State, rolling_of};
 use crate::methods::flow::Flow;
 use crate::motions::walk::numbers::{COS, HEAT, PHI, SIN, TIME, U2, W3, X, Y, leans_over, loses, poses};
-use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Phases, Walk};
 use crate::motions::{Ask, Start};
 use core::cell::Cell;
@@ -33,12 +31,6 @@ use core::f64::consts::PI;
 
 /// The walk of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize, G = ()> = Walk<'a, BodyPhases<G>, N>;
-
-/// The first step of a rougher run is this many times as long as that of the finer run, so that
-/// their steps differ.
-pub(crate) const LONGER: f64 = 3.0;
-/// Size of cos theta below which a rougher run perturbs this number and not theta.
-const LEVEL: f64 = 1e-3;
 
 /// The data of a body's walk: its equations, and the current phase.
 pub(crate) struct BodyPhases<G: Own = ()> {
@@ -76,14 +68,6 @@ pub(crate) struct BodyPhases<G: Own = ()> {
     pub(crate) standing: Option<Box<StandingFlow>>,
     /// The friction of the face on which it has stood last, and the number lam on which it depends.
     pub(super) face: Cell<Option<(f64, FaceFriction)>>,
-    /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
-    pub(super) takeoff: Takeoff,
-    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
-    /// at the start.
-    pub(super) struck: f64,
-    pub(super) energy: Option<f64>,
-    /// The step errors by which a rougher run has been perturbed.
-    pub(super) shown: f64,
     /// Whether only theta changes, so that rounding must not make the body turn.
     pub(super) planar: bool,
     /// The steps at the ends of the last slip and of the last phase that loses energy without one, in their variables.
@@ -240,10 +224,6 @@ impl<G: Own> BodyPhases<G> {
             lying: None,
             standing: None,
             face: Cell::default(),
-            takeoff: Takeoff::default(),
-            struck: 0.0,
-            energy: None,
-            shown: 0.0,
             planar: state.w1 == 0.0
                 && state.w3 == 0.0
                 && slip[1] == 0.0
@@ -268,56 +248,5 @@ impl<G: Own> BodyPhases<G> {
             self.slide = slide.on_table([self.tilt, self.turning]);
             self.body = body;
         }
-    }
-
-    /// Perturbs the state by this share.
-    pub(crate) fn perturbs_by<const N: usize>(walk: &mut BodyWalk<'_, N, G>, share: f64)
-    where
-        Self: Phases<N>,
-    {
-        if share == 0.0 || walk.of.lying.is_some() {
-            return;
-        }
-        let (down, up) = (1.0 - share, 1.0 + share);
-        if walk.is_on_face() {
-            let more = share * walk.at[W3];
-            walk.at[W3] += more;
-            walk.at[U2] -= walk.of.body.rim() * more;
-            walk.of.state.w3 = walk.at[W3];
-            return;
-        }
-        let State { theta, w1, w2, w3 } = walk.of.state;
-        // Drilling over the table, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that
-        // is zero stays zero.
-        let (s, c) = theta.sin_cos();
-        let drilling = walk.of.slide.drills((s, c), w1, w3) * up + walk.of.turning;
-        let rolling = rolling_of((s, c), w1, w3) * up;
-        // Near its other rim the height of the body is known from cos theta, not from theta.
-        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL && !walk.of.body.has_row();
-        let end = walk.of.body.theta_end();
-        let theta = match () {
-            () if near => theta,
-            () if walk.of.body.has_row() && end - theta < theta => end - (end - theta) * up,
-            () => theta * down,
-        };
-        let (s, c) = if near { (walk.at[SIN], walk.at[COS] * down) } else { theta.sin_cos() };
-        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
-        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
-        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
-    }
-
-    /// The share by which a rougher run perturbs the state at the end of a phase. A motion that has hopped is also
-    /// perturbed by a share of the step errors since the last time: impacts multiply them, and where both runs take the
-    /// same steps only this shows by how much.
-    pub(crate) fn share_of_errors<const N: usize>(walk: &mut BodyWalk<'_, N, G>) -> f64
-    where
-        Self: Phases<N, State = State>,
-    {
-        let mut share = walk.perturbation;
-        if share > 0.0 && !walk.made.path.impacts.is_empty() {
-            let erred = walk.spent.erred - core::mem::replace(&mut walk.of.shown, walk.spent.erred);
-            share += CHANCE * erred * walk.of.slide.tol * walk.sign_of_rounding();
-        }
-        share
     }
 }

@@ -1,5 +1,5 @@
 //! The phases of a body of revolution: their beginnings, their flows and their ends.
-use super::body_walk::{BodyPhases, BodyWalk, LONGER, LossyPhase};
+use super::body_walk::{BodyPhases, BodyWalk, LossyPhase};
 use super::own::Own;
 use super::slide::Slide;
 use super::slide::slow::{BodySlips, Slippery};
@@ -16,6 +16,7 @@ use crate::motions::ask::row::OutputRow;
 use crate::motions::dry::creep::Creeps;
 use crate::motions::dry::friction::slipped;
 use crate::motions::walk::errors::doubted;
+use crate::motions::walk::hops::LONGER;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses, pull,
 };
@@ -31,6 +32,8 @@ const ALL_BUT_FLAT: f64 = 1e-6;
 const LATELY: f64 = 0.5;
 /// A patch that drills more slowly than this, which is rounding, does not drill.
 const HARDLY_DRILLS: f64 = 1e-13;
+/// Size of cos theta below which a rougher run perturbs this number and not theta.
+const LEVEL: f64 = 1e-3;
 /// The first step of a body on its face.
 const STANDING: f64 = 0.05;
 
@@ -148,9 +151,36 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         walk.told(kind)
     }
 
-    fn perturbs(walk: &mut BodyWalk<'_, N, G>) {
-        let share = Self::share_of_errors(walk);
-        BodyPhases::perturbs_by(walk, share);
+    fn perturbs_by(walk: &mut BodyWalk<'_, N, G>, share: f64) {
+        if share == 0.0 || walk.of.lying.is_some() {
+            return;
+        }
+        let (down, up) = (1.0 - share, 1.0 + share);
+        if walk.is_on_face() {
+            let more = share * walk.at[W3];
+            walk.at[W3] += more;
+            walk.at[U2] -= walk.of.body.rim() * more;
+            walk.of.state.w3 = walk.at[W3];
+            return;
+        }
+        let State { theta, w1, w2, w3 } = walk.of.state;
+        // Drilling over the table, rolling w_h and rocking w2 are each changed by a share of themselves: a motion that
+        // is zero stays zero.
+        let (s, c) = theta.sin_cos();
+        let drilling = walk.of.slide.drills((s, c), w1, w3) * up + walk.of.turning;
+        let rolling = rolling_of((s, c), w1, w3) * up;
+        // Near its other rim the height of the body is known from cos theta, not from theta.
+        let near = walk.ask.restitution.is_some() && walk.at[COS].abs() < LEVEL && !walk.of.body.has_row();
+        let end = walk.of.body.theta_end();
+        let theta = match () {
+            () if near => theta,
+            () if walk.of.body.has_row() && end - theta < theta => end - (end - theta) * up,
+            () => theta * down,
+        };
+        let (s, c) = if near { (walk.at[SIN], walk.at[COS] * down) } else { theta.sin_cos() };
+        let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
+        walk.of.state = State { theta, w1, w2: w2 * down, w3 };
+        walk.at[..5].copy_from_slice(&[s, c, w1, w2 * down, w3]);
     }
 
     fn write(walk: &mut BodyWalk<'_, N, G>, y: &[f64; N]) {

@@ -1,48 +1,27 @@
 //! The impacts of a body, one by one and in sequences, and the phases that follow.
 //!
 //! ```text
-//! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
-//! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
 //! both rims           land at once while both come down, else in turn, until none comes down
 //! ```
-//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where
-//! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
-//! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
 
-use super::body_walk::{BodyWalk, LONGER};
+use super::body_walk::BodyWalk;
 use super::face::ALMOST_FLAT;
-use super::fly::{Aloft, Takeoff};
+use super::fly::Aloft;
 use super::own::Own;
 use crate::laws::body::Rim;
-use crate::laws::contact::delassus::Delassus;
-use crate::laws::contact::impact::{Hit, PointImpact, Struck, lightness, turned};
-use crate::laws::contact::landing::{Landed, Outcome, REVERSES, bounced, land_at, settled};
+use crate::laws::contact::impact::{Hit, Struck, lightness, turned};
+use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Table};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
 use crate::motions::walk::Next;
+use crate::motions::walk::hops::{Bounce, JAM_TAKES, ROUNDED, Takeoff};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, U2, W1, W2, W3, lost, pull};
-use crate::motions::{Ending, Kind, Limit, Method, Moving, Strike};
+use crate::motions::{Ending, Kind, Limit, Moving, Strike};
 use core::f64::consts::PI;
 
-/// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
-/// limits.
-const TAIL_SHARE: f64 = 0.1;
-const TAIL: f64 = 1e-13;
-const LONGEST_TAIL: f64 = 1e-10;
-/// Relative error of the numbers by the sum of the bounces, in units of their time and their first velocity.
-const SUM_ERROR: f64 = 1.0;
-/// The same error of bounces that slip, in units of their velocity over that of the slip.
-const TURNS: f64 = 10.0;
-/// The same share for a body with losses, which act at a contact, but not on a body that bounces.
-const LOSSY_TAIL: f64 = 1e-8;
-/// The tolerance of a step along an impact: this share of that of a motion, within these two limits.
-const IMPACT_SHARE: f64 = 1e-4;
-const IMPACT_TOL: [f64; 2] = [3e-14, 1e-12];
-/// The same tolerance under a coefficient that depends on the speed, in units of the tolerance of the motion.
-const OWN_IMPACT_TOL: f64 = 1e-3;
 /// Both rims rattle until |cos theta| and the normal velocities of both are below this.
 pub(super) const RATTLED: f64 = 1e-7;
 /// Error of the rest of a rattle, in units of the square of its velocities.
@@ -57,10 +36,6 @@ pub(super) const ROCKED_OUT: f64 = 1e-15;
 const BOTH_AT_ONCE: f64 = 1e-14;
 /// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
 pub(super) const RATTLE_OVER: f64 = 1e-9;
-/// Share of its terms below which N0 is a rounding error.
-pub(super) const ROUNDED: f64 = 1e-12;
-/// A jam needs a larger impulse than this share of the slip.
-const JAM_TAKES: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 pub(super) const MOST_IN_TURN: u32 = 10_000;
 
@@ -82,7 +57,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
     /// leave the table as well.
     pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
-        self.of.takeoff = Takeoff::default();
+        self.hops.takeoff = Takeoff::default();
         let from = self.aloft();
         let [free, size] = self.pressed(&from);
         if from.slip == [0.0; 2] || free < ROUNDED * size {
@@ -109,7 +84,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             if self.is_on_face() {
                 self.at[SIN] = 0.0;
             }
-            self.of.takeoff.leaves = Some(1);
+            self.hops.takeoff.leaves = Some(1);
             return Next::Own(Kind::Flying);
         }
         if self.is_on_face() { self.leaves_face() } else { self.touches_down() }
@@ -163,8 +138,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
         let [force, _] =
             self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
-        let left =
-            if struck.lift > 0.0 && force > 0.0 { self.bounces_for(&from, &struck, force, e) } else { None };
+        let left = self.bounces(&from, &struck, force, e);
         self.claims(left.map_or(0.0, |left| left * self.couple_bound(&from, force)));
         let (stays, bounce) = (left.is_some(), struck.lift);
         if stays && let Some(last) = self.impact(&from, 0.0) {
@@ -173,7 +147,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let after = self.struck(&from, &struck, (self.made.path.view.over, stays));
         self.sets(&after);
         if let Some(left) = left {
-            self.sums_bounces(&after, left, bounce);
+            let u @ [along, across] = after.slip;
+            let State { theta, w1, w2, w3 } = after.state();
+            let slides = || self.of.slide.slips(theta.sin_cos(), [w1, w2, w3], u, None).0.force;
+            let power = if u == [0.0; 2] {
+                0.0
+            } else {
+                let [_, f_2, f_h] = slides();
+                -(f_2 * across + f_h * along)
+            };
+            let share = self.sums_bounces((left, bounce), [along.hypot(across), power], after.w);
+            self.of.roundings.turned += share;
         }
         let level = || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
@@ -195,21 +179,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             // Rounding must not make the slip turn.
             (light.level[1][1], light.normal, light.couples[0]) = (light.level[0][0], 1.0, 0.0);
         }
-        self.rim_impact(from.slip, from.lift, light).on(&self.ask.table, e, &self.of.own)
-    }
-
-    /// The impact of a rim. A rougher run begins it with a longer step, so that the two runs take different steps.
-    fn rim_impact(&self, slip: [f64; 2], lift: f64, light: Delassus) -> PointImpact {
-        let (longer, rougher) = if self.perturbation > 0.0 {
-            (LONGER, self.perturbation * State::SAFETY / f64::EPSILON)
-        } else {
-            (1.0, 1.0)
-        };
-        let fine = self.of.slide.tol / rougher;
-        let tol = (IMPACT_SHARE * fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
-        // A law of the user need not be smooth.
-        let tol = if self.of.own.varies() { OWN_IMPACT_TOL * fine } else { tol };
-        PointImpact { slip, lift, light, tol: tol * rougher, longer }
+        self.point_impact(from.slip, from.lift, light, &self.of.own).on(&self.ask.table, e, &self.of.own)
     }
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
@@ -235,61 +205,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
-    fn bounces_for(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
-        let law = &self.of.slide.law;
-        let light = lightness(&law.shape, from.angle);
-        let (fall, w) = (light.normal * force, turned(&law.shape, from.angle, from.w, struck.impulse));
-        // Both runs of a sweep have its tolerance, so that they end their bounces together.
-        let tail = match self.ask.method {
-            Method::Tolerance(tol) => (TAIL_SHARE * tol).clamp(TAIL, LONGEST_TAIL),
-            _ => TAIL,
-        };
-        let tail = if self.of.loses(&self.ask) { LOSSY_TAIL * tail } else { tail };
-        if 2.0 * struck.lift * struck.lift >= tail * fall {
-            return None;
-        }
-        let mut ratio = e;
-        // A slip as slow as the bounce reverses in each impact, and the flight after it brings it back.
-        let [u_h, u_2] = struck.slip.map(|u| u / struck.lift);
-        if struck.hit == Hit::Sticks || u_h.hypot(u_2) < REVERSES {
-            // Each bounce has the slip that the previous flight has caused.
+    fn bounces(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
+        let shape = &self.of.slide.law.shape;
+        let (light, w) = (lightness(shape, from.angle), turned(shape, from.angle, from.w, struck.impulse));
+        let bounce = Bounce { struck, light: &light, force, loses: self.of.loses(&self.ask) };
+        self.bounces_for(&bounce, e, &self.of.own, || {
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
             let mut at = self.at;
             at[W1..=U2].copy_from_slice(&[w[0], w[1], w[2], struck.slip[0], struck.slip[1]]);
             let [pull_h, pull_2] = self.of.slide.pull(&at);
-            let rates = [along - light.couples[0] * force + pull_h, across + pull_2];
-            let [along, across] = rates.map(|rate| 2.0 * rate / fall);
-            let slip = [u_h + along, u_2 + across];
-            // In units of the bounce, unless a law of the user has a speed of its own.
-            let unit = if self.of.own.varies() { struck.lift } else { 1.0 };
-            let next = self.rim_impact(slip.map(|u| u * unit), -unit, light);
-            ratio = next.on(&self.ask.table, e, &self.of.own).map_or(1.0, |next| next.lift / unit);
-        }
-        let left = 2.0 * struck.lift / (fall * (1.0 - ratio));
-        (ratio < 1.0 && left * struck.lift < tail).then_some(left)
-    }
-
-    /// Counts the friction of the bounces that are summed as lost in impacts, as that of all other bounces, and not as
-    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and
-    /// begin with the velocity `bounce`.
-    fn sums_bounces(&mut self, after: &Aloft, left: f64, bounce: f64) {
-        let speed = after.slip[0].hypot(after.slip[1]);
-        let mut share = SUM_ERROR * left * bounce;
-        if speed > 0.0 {
-            let State { theta, w1, w2, w3 } = after.state();
-            let (angle, slide) = (theta.sin_cos(), &self.of.slide);
-            let [_, along, across] = slide.slips(angle, [w1, w2, w3], after.slip, None).0.force;
-            let heat = -(left * (across * after.slip[0] + along * after.slip[1]));
-            if let Some(last) = self.made.path.impacts.last_mut() {
-                last.lost += heat;
-                self.at[HEAT] -= heat;
-            }
-            // A slip whose direction hardly turns between the bounces has the same impulses, at the same mean time.
-            share *= (TURNS * bounce / speed).min(1.0);
-        }
-        self.claims(share * after.w.into_iter().fold(1.0, |most: f64, w| most.max(w.abs())));
-        self.doubts(share);
-        self.of.roundings.turned += share;
+            [along - light.couples[0] * force + pull_h, across + pull_2]
+        })
     }
 
     /// The numbers after an impact, which is also recorded.
@@ -324,7 +250,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
         }
         let other = rim > 0;
-        self.of.struck += self.made.path.impacts.last().map_or(0.0, |before| before.lost);
         self.records_impact(Strike { time, other, rim, hit, states, velocities, impulse, lost, stays });
     }
 
@@ -366,7 +291,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if there < here {
             self.turns_over();
         }
-        self.of.takeoff.height = 0.0;
+        self.hops.takeoff.height = 0.0;
         let [here, there] = self.lifts_of_both();
         if there < RATTLED {
             return self.ends_rattle();
@@ -375,7 +300,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.claims(here.abs());
             return self.touches_down();
         }
-        self.of.takeoff.leaves = Some(1);
+        self.hops.takeoff.leaves = Some(1);
         Next::Own(Kind::Flying)
     }
 
@@ -418,7 +343,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             if from.w[1] > 0.0 {
                 self.turns_over();
             }
-            self.of.takeoff.lift = 0.0;
+            self.hops.takeoff.lift = 0.0;
             return self.lands_on_both();
         };
         // The last impacts turn a slip that is slower than they are.
@@ -460,7 +385,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.turns_over();
         }
         let before = State { theta: self.of.body.theta_end(), ..self.of.state };
-        let lift = self.of.takeoff.lift;
+        let lift = self.hops.takeoff.lift;
         let Ok(landed) = land_at(&self.of.body, &before, (self.at.slip(), lift), &friction, &self.of.own)
         else {
             let left = self.at[W2].abs();

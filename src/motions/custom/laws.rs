@@ -116,7 +116,7 @@ impl SpeedLaw for OwnLaws<'_> {
         self.custom.friction.is_some()
     }
     fn coefficient_at(&self, speed: f64) -> f64 {
-        self.friction().map_or(f64::NAN, |own| own.mu(speed))
+        self.friction().coefficient_at(speed)
     }
 }
 

@@ -9,7 +9,7 @@
 use super::creep::ASIDE;
 use crate::error::Error;
 use crate::laws::contact::slip::FollowsSpeed;
-use crate::laws::custom::{FrictionLaw, fault_of_friction};
+use crate::laws::custom::{FrictionLaw, SpeedLaw, fault_of_friction};
 use crate::numbers::Dual;
 use core::cell::Cell;
 
@@ -50,6 +50,15 @@ impl OwnFriction<'_> {
     /// Takes the error of a wrong value, unless the law has failed.
     pub fn takes_fault(&self) -> Option<Error> {
         self.fault.take().filter(|_| !self.law.has_failed())
+    }
+}
+
+impl SpeedLaw for Option<OwnFriction<'_>> {
+    fn varies(&self) -> bool {
+        self.is_some()
+    }
+    fn coefficient_at(&self, speed: f64) -> f64 {
+        self.map_or(f64::NAN, |own| own.mu(speed))
     }
 }
 

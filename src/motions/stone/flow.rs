@@ -67,6 +67,8 @@ impl<T: Copy, const N: usize> StoneNumbers<T> for [T; N] {
 /// A minimum of a margin is recorded if it is below this many tolerances of a step: the errors of a motion
 /// that counts as known may be that large.
 const NEAR_END: f64 = 1e7;
+/// Index of the margin of the normal force.
+const LIFTS: usize = 1;
 /// Index of the margin of static friction; in a slip, that of a unique contact force.
 pub(super) const HOLD: usize = 2;
 
@@ -103,6 +105,8 @@ pub(super) struct StoneFlow<'a> {
     pub stride: f64,
     /// Whether events other than a landing of the edge end the flow.
     pub watch: bool,
+    /// Whether the stone goes on where it leaves the table.
+    pub hops: bool,
     /// The direction, in the laboratory, in which rolling and rocking begin from rest.
     pub push: [f64; 2],
     /// How fast rolling resistance changes w; 0 without rolling resistance.
@@ -528,7 +532,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         // If static friction only just holds, a slip that is missed would be too short to matter.
         if let Some(recorded) = self.recorded
             && margin < NEAR_END * self.tol * self.fastest(y)
-            && !(self.rests() && self.law.dry && i == HOLD || i == DRILLING)
+            && !(self.rests() && self.law.dry && i == HOLD || i == DRILLING || i == LIFTS && self.hops)
         {
             recorded.borrow_mut().grazes.push([y[TIME], margin / self.leans(y, i)]);
         }

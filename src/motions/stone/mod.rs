@@ -2,6 +2,7 @@
 
 mod creeps;
 mod flow;
+mod fly;
 pub(crate) mod known;
 mod loses;
 mod moving;
@@ -9,6 +10,7 @@ mod phases;
 mod roll;
 mod rolling;
 mod slow;
+mod strike;
 pub(crate) mod turns;
 mod write;
 
@@ -40,7 +42,7 @@ pub(crate) fn check_stone(
     }
     for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
-        if !ask.table.rubs() {
+        if !ask.table.rubs() && start.aloft.is_none() {
             within("slip", u, (0.0, 0.0), "no slip on this table")?;
         }
     }
@@ -49,12 +51,13 @@ pub(crate) fn check_stone(
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     check_patch(ask)?;
-    if let Some(value) = ask.restitution {
-        return Err(Error::OutOfRange {
-            name: "restitution",
-            value,
-            expected: "none: a stone ends at its edge",
-        });
+    if let Some([height, lift]) = start.aloft {
+        within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
+        within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g a)")?;
+        if ask.restitution.is_none() {
+            let expected = "None without a restitution, which a motion that starts in the air needs";
+            return Err(Error::OutOfRange { name: "height", value: height, expected });
+        }
     }
     let fine = check_flow(ask)?;
     if let Some(&value) = times.last().filter(|t| **t < time) {
@@ -63,5 +66,5 @@ pub(crate) fn check_stone(
         return Err(Error::OutOfRange { name: "t", value, expected });
     }
     check_times_after(time, times)?;
-    Ok((Start { state, slip, time, aloft: None, ..*start }, fine))
+    Ok((Start { state, slip, time, ..*start }, fine))
 }

@@ -22,6 +22,7 @@ use crate::motions::body::roll::lossy::JUMP;
 use crate::motions::dry::creep::{Creeps, LOST_DRILLING};
 use crate::motions::dry::friction::{OwnFriction, slipped};
 use crate::motions::dry::held::HARDLY_ROLLS;
+use crate::motions::walk::hops::Takeoff;
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
@@ -46,13 +47,15 @@ const DOUBTFUL: f64 = 0.9;
 
 /// The data of a stone's walk: the flow of the present phase.
 pub(super) struct StonePhases<'n> {
-    flow: StoneFlow<'n>,
+    pub flow: StoneFlow<'n>,
     /// True if friction of the patch has just let the drilling go.
     freed: bool,
     /// The motion that a dry loss has just let go.
     known: Option<(Resting, bool)>,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
+    /// The semi-axes, and the smallest moment of inertia.
+    pub thick: ([f64; 3], f64),
 }
 
 impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
@@ -81,6 +84,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
             tol,
             stride: if tol > fine { ROUGH_STRIDE } else { 1.0 },
             watch: true,
+            hops: ask.restitution.is_some(),
             push: [0.0; 2],
             resisted: law.resisted(),
             recorded,
@@ -95,9 +99,13 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         at[SLID_Y] = cos * slip[1] + sin * slip[0];
         at[STONE_X..=STONE_Y].copy_from_slice(&start.place);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
-        let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y] };
+        let thick = (stone.axes, stone.moments()[0]);
+        let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y], thick };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
-        walk.next = Some(walk.first_phase()?);
+        walk.next = Some(match start.aloft {
+            Some(aloft) => walk.starts_in_air(aloft),
+            None => walk.first_phase()?,
+        });
         StonePhases::perturbs(&mut walk);
         Ok(walk)
     }
@@ -125,12 +133,12 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let held = law.rolling(&at, w).force;
         let [along, aside, normal] = lab.map(|axis| dot(axis, held));
         // The derivative of the slip per force along the axes of the laboratory.
-        let per = lab.map(|axis| law.yields(&at, axis));
+        let element = law.light(&at, &lab);
         let [mu, fixed] = match self.friction() {
             Friction::Coulomb { mu, fixed, .. } => [mu, fixed],
             Friction::Viscous { .. } => [0.0; 2],
         };
-        let element = |i: usize, j: usize| dot(lab[i], per[j]);
+        let element = |i: usize, j: usize| element[i][j];
         // The derivative of the slip per normal force, from the arm of that force and from the losses.
         let swings = at.lost.map_or([0.0; 3], |lost| law.swings(&at, lost.pressed));
         let pressed = |i: usize| element(i, 2) + dot(lab[i], swings);
@@ -185,7 +193,8 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let rubs = self.ask.table.rubs();
         match halt {
             Halt::Face => self.ends_by(0),
-            Halt::LiftOff => self.ends_by(1),
+            // With a restitution a stone that leaves the table goes on.
+            Halt::LiftOff if !self.of.flow.hops => self.ends_by(1),
             Halt::Slips if !rubs => self.ends_by(HOLD),
             _ => (),
         }
@@ -216,6 +225,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
                 after_rest(self.rests_here())
             }
             Halt::Slips if rubs => after_rest(Phases::lets_go(self)),
+            Halt::LiftOff if self.of.flow.hops => Next::Ends(Ending::LiftOff),
             halt if !matches!(halt, Halt::Face | Halt::Endless) && self.ask.beyond && !rubs => {
                 self.records_event(ending(halt));
                 self.of.flow.watch = false;
@@ -314,24 +324,27 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     }
     fn seen(walk: &StoneWalk<'_, 'n, N>, kind: Kind) -> Phase<StoneState> {
         let (time, at) = (walk.t0 + walk.at[TIME], &walk.at);
-        Phase { time, kind, state: state(at), slip: output_slip(at), aloft: [0.0; 2], rim: 0 }
+        let Takeoff { height, lift, .. } = walk.hops.takeoff;
+        let aloft = if kind == Kind::Flying { [height, lift] } else { [0.0; 2] };
+        Phase { time, kind, state: state(at), slip: output_slip(at), aloft, rim: 0 }
     }
 
-    fn perturbs(walk: &mut StoneWalk<'_, 'n, N>) {
-        if walk.perturbation > 0.0 {
-            let (up, down) = (1.0 + walk.perturbation, 1.0 - walk.perturbation);
-            let y = walk.at;
-            for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
-                *x *= by;
-            }
-            walk.at = walk.of.flow.kept(walk.at);
-            if loses(N) {
-                // Rolling, rocking or drilling that is zero stays zero.
-                let (before, after) = (walk.of.flow.seen_at(&y).lab, walk.of.flow.seen_at(&walk.at).lab);
-                let [a, b, c] = before.map(|axis| dot(axis, y.omega()));
-                let w = plus(across(&after, [a * up, b * down]), c * up, after[2]);
-                walk.at[4..7].copy_from_slice(&w);
-            }
+    fn perturbs_by(walk: &mut StoneWalk<'_, 'n, N>, share: f64) {
+        if share == 0.0 {
+            return;
+        }
+        let (up, down) = (1.0 + share, 1.0 - share);
+        let y = walk.at;
+        for (x, by) in walk.at.iter_mut().zip([up, down, down, up, up, down, up]) {
+            *x *= by;
+        }
+        walk.at = walk.of.flow.kept(walk.at);
+        if loses(N) {
+            // Rolling, rocking or drilling that is zero stays zero.
+            let (before, after) = (walk.of.flow.seen_at(&y).lab, walk.of.flow.seen_at(&walk.at).lab);
+            let [a, b, c] = before.map(|axis| dot(axis, y.omega()));
+            let w = plus(across(&after, [a * up, b * down]), c * up, after[2]);
+            walk.at[4..7].copy_from_slice(&w);
         }
     }
 
@@ -367,7 +380,7 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         } else {
             return Next::Rolls { at_limit: false };
         };
-        if !walk.ask.beyond {
+        if !walk.ask.beyond || ending == Ending::LiftOff && walk.of.flow.hops {
             return Next::Ends(ending);
         }
         walk.records_event(ending);
@@ -389,6 +402,21 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         let (mu, theta) = (walk.of.flow.law.strength, state(&walk.at).theta());
         let Onset { eps, .. } = walk.rest().onset;
         Error::Painleve { mu, theta, limit: mu / eps[0].hypot(eps[1]) }
+    }
+
+    fn audits(walk: &mut StoneWalk<'_, 'n, N>) {
+        walk.compares_energy();
+    }
+    fn goes_on(walk: &mut StoneWalk<'_, 'n, N>, ending: Ending) -> Next {
+        walk.continues_after(ending)
+    }
+    fn goes(
+        walk: &mut StoneWalk<'_, 'n, N>,
+        _: Kind,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<WalkStep<N>>, Error> {
+        walk.flies(go_on);
+        Ok(None)
     }
 
     fn slips(walk: &mut StoneWalk<'_, 'n, N>) -> [f64; N] {

@@ -12,6 +12,7 @@
 //! along a phase, and the conditions for its beginning and its end.
 
 pub(crate) mod errors;
+pub(crate) mod hops;
 pub(crate) mod numbers;
 mod phases;
 mod slips;
@@ -29,6 +30,7 @@ use crate::motions::ask::result::{Ending, Event, Kind, Limit, Phase, Strike};
 use crate::motions::walk::numbers::{Halt, TIME};
 use crate::motions::walk::two_runs::{BRIEF_PHASE, Followed};
 use crate::numbers::larger_or_nan;
+use hops::Hops;
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
@@ -132,6 +134,8 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     resumes: bool,
     /// The time of the last change of the motion.
     last_change: f64,
+    /// The next flight, and what the impacts have taken so far.
+    pub hops: Hops,
     /// Number of consecutive changes at the same time as the change before.
     pub still: u32,
     /// Number of consecutive changes at most `SHORT_PHASE` later than the change before.
@@ -187,6 +191,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
             began: f64::NEG_INFINITY,
             resumes: false,
             last_change: f64::NEG_INFINITY,
+            hops: Hops::default(),
             still: 0,
             short: 0,
             turns: 0,
@@ -432,7 +437,9 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 
     /// Records an impact.
-    pub fn records_impact(&mut self, impact: Strike) {
+    pub fn records_impact(&mut self, impact: Strike<P::State>) {
+        let before = self.made.path.impacts.last();
+        self.hops.struck += before.map_or(0.0, |before| before.lost);
         self.memory_result = self.memory_result.and(grow(&mut self.made.path.impacts, impact));
     }
 

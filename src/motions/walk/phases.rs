@@ -28,8 +28,13 @@ pub(crate) trait Phases<const N: usize>: Sized {
 
     /// A phase of this kind that begins at the current numbers, in the components of the outputs.
     fn seen(walk: &Walk<'_, Self, N>, kind: Kind) -> Phase<Self::State>;
-    /// Perturbs the state of a rougher run by the share `Walk::perturbation`, which is more than rounding.
-    fn perturbs(walk: &mut Walk<'_, Self, N>);
+    /// Perturbs the state by this share.
+    fn perturbs_by(walk: &mut Walk<'_, Self, N>, share: f64);
+    /// Perturbs the state of a rougher run by more than rounding.
+    fn perturbs(walk: &mut Walk<'_, Self, N>) {
+        let share = walk.share_of_errors();
+        Self::perturbs_by(walk, share);
+    }
     /// Writes a point of a slip to the outputs.
     fn write(walk: &mut Walk<'_, Self, N>, y: &[f64; N]);
     /// Writes the current point, which is not on a flow.

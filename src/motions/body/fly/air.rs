@@ -14,7 +14,7 @@
 //! power series there includes it; up to the time until which the series shows the height, it is no margin. Error: the
 //! tolerance of the steps.
 
-use super::lands::{AngleSeries, Leaves, RIM_TERMS};
+use super::lands::{AngleSeries, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
 use crate::laws::body::{Body, MOST_CIRCLES, Shape};
 use crate::laws::loss::{Couples, Kinematics};
@@ -22,6 +22,7 @@ use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};
 use crate::methods::rk8;
 use crate::motions::body::own::Own;
+use crate::motions::walk::hops::Leaves;
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Dual, Real, TERMS};
 use core::cell::RefCell;

@@ -14,10 +14,11 @@ use crate::laws::newton;
 use crate::laws::state::State;
 use crate::methods::flow::Steps;
 use crate::motions::ask::row::OutputRow;
-use crate::motions::body::body_walk::{BodyPhases, BodyWalk, LONGER};
-use crate::motions::body::fly::{Aloft, Flies, Flight, Takeoff};
+use crate::motions::body::body_walk::{BodyPhases, BodyWalk};
+use crate::motions::body::fly::{Aloft, Flies, Flight};
 use crate::motions::body::own::Own;
-use crate::motions::body::strike::{RATTLED, ROUNDED};
+use crate::motions::body::strike::RATTLED;
+use crate::motions::walk::hops::{LONGER, ROUNDED, Takeoff};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind};
@@ -63,7 +64,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn aloft(&self) -> Aloft {
         let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
         let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
-        let Takeoff { height, lift, .. } = self.of.takeoff;
+        let Takeoff { height, lift, .. } = self.hops.takeoff;
         Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose, om: self.of.turning }
     }
 
@@ -91,7 +92,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             () => theta,
         };
         self.of.state = State { theta, w1, w2, w3 };
-        (self.of.takeoff.height, self.of.takeoff.lift) = (to.height, to.lift);
+        (self.hops.takeoff.height, self.hops.takeoff.lift) = (to.height, to.lift);
     }
 
     /// Changes to the view from the other rim, which lands at theta_end.
@@ -136,7 +137,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         } else if self.of.state.theta == PI {
             (self.at[SIN], self.at[COS]) = (0.0, -1.0);
         }
-        self.of.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
+        self.hops.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
         Next::Own(Kind::Flying)
     }
 
@@ -181,12 +182,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                     return Next::Ends(Ending::Slip);
                 }
                 let leaves = if free < -ROUNDED * size { 2 } else { 3 };
-                self.of.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
+                self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
                 Next::Own(Kind::Flying)
             }
             Ending::Side if self.has_two_rims() && self.of.state.theta == self.of.body.theta_end() => {
                 (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
-                self.of.takeoff = Takeoff::default();
+                self.hops.takeoff = Takeoff::default();
                 let down = -self.at[W2];
                 if down == 0.0 {
                     return self.settles_on_side();
@@ -223,7 +224,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let body = &self.of.body;
         let (from, now) = (self.aloft(), self.at[TIME]);
-        let Takeoff { leaves, .. } = self.of.takeoff;
+        let Takeoff { leaves, .. } = self.hops.takeoff;
         let mut course: Box<dyn Flies> = match self.of.own.in_air(&self.ask.losses) {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
@@ -274,7 +275,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let Some((t, group)) = landing else { return };
         // The time of a landing is as uncertain as the height, over the normal velocity; that of a short bounce has the
-        // roundings of a power series. A rougher run lands sooner or later by more than this error.
+        // roundings of a power series.
         let (at, free) = (self.flown(&*course, t, before), *course.free());
         let high = free.doubt_of_height(t);
         let landed = landings.lowest(group, at.angle.1);
@@ -285,12 +286,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if leaves[0] == Some(1) && !upper && free.turns(t) < SHORT_BOUNCE {
             late = late.min(free.roundings(t) * f64::EPSILON * t);
         }
-        self.claims(late);
-        let shown = self.shows() * self.sign_of_rounding();
-        // This part of the difference of the runs is not a step error that has grown.
-        self.made.path.erred += late * shown.abs();
-        let t = (t + late * shown).max(0.0);
-        let at = if shown == 0.0 { at } else { self.flown(&*course, t, before) };
+        let (found, t) = (t, self.claims_landing(t, late));
+        let at = if t == found { at } else { self.flown(&*course, t, before) };
         self.at[TIME] = now + t;
         self.sets(&Aloft { height: if upper { at.height } else { 0.0 }, ..at });
         if upper {
@@ -300,7 +297,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
         }
         self.doubts(free.roundings(t) * f64::EPSILON);
-        self.of.takeoff.height = 0.0;
+        self.hops.takeoff.height = 0.0;
         let next = self.strikes();
         self.continues_with(next);
     }
@@ -334,31 +331,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let v_z = from.lift + law.shape.rim.lever(from.angle) * from.w[1];
         let mut has = newton::energy(&law.shape, from.angle, from.w, [v_h, v_2, v_z]) + from.height;
         has += self.of.slide.energy_on_table(&self.at);
-        let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
-        let whole = has + self.at[HEAT] + self.of.struck + last + if loses(N) { self.at[N - 1] } else { 0.0 };
         let fastest = [v_h, v_2, v_z].into_iter().chain(from.w).fold(1.0, |most: f64, x| most.max(x.abs()));
-        let first = *self.of.energy.get_or_insert(whole);
-        self.claims((whole - first).abs() / fastest);
-    }
-
-    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the
-    /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
-    /// that of the difference.
-    pub(crate) fn doubts(&mut self, share: f64) {
-        BodyPhases::perturbs_by(self, share * self.shows() * self.sign_of_rounding());
-    }
-
-    /// The sign of a perturbation after this impact, as irregular as that of a rounding error: thousands of errors of one sign
-    /// would add up to more than roundings do.
-    pub(crate) fn sign_of_rounding(&self) -> f64 {
-        let mixed = (self.made.path.impacts.len() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        if mixed >> 63 == 0 { 1.0 } else { -1.0 }
-    }
-
-    /// The contact that begins where the normal velocity is zero.
-    pub(crate) fn touches_down(&mut self) -> Next {
-        self.of.takeoff = Takeoff::default();
-        self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))
+        self.compares_energy_with_start(has, fastest);
     }
 
     /// Writes a point to the outputs, with all force components set to `force`.

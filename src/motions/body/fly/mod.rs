@@ -22,9 +22,9 @@ use crate::laws::body::{Body, Landings, MOST_CIRCLES, Rim, Shape};
 use crate::laws::pose::Pose;
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Spent, Steps};
+use crate::motions::walk::hops::Leaves;
 use crate::motions::walk::numbers::carried_at;
 use core::f64::consts::{FRAC_PI_2, PI};
-use lands::Leaves;
 
 /// A body in the air, or in an impact, as seen from one of its rims.
 #[derive(Debug, Clone, Copy)]
@@ -95,16 +95,6 @@ impl Aloft {
             om: self.om,
         }
     }
-}
-
-/// The beginning of a flight.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Takeoff {
-    /// The height of the lowest point of the rim, and its vertical velocity.
-    pub height: f64,
-    pub lift: f64,
-    /// The power of time with which the rim leaves the table; None for a start above the table.
-    pub leaves: Leaves,
 }
 
 /// The time of the first landing, and which of the [`Landings`] it is.

@@ -460,11 +460,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if !other {
             return find(self);
         }
-        let (at, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let (at, state, takeoff) = (self.at, self.of.state, self.hops.takeoff);
         let (body, slide, view) = (self.of.body, self.of.slide, self.made.path.view);
         self.turns_over();
         let found = find(self);
-        (self.at, self.of.state, self.of.takeoff) = (at, state, takeoff);
+        (self.at, self.of.state, self.hops.takeoff) = (at, state, takeoff);
         (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
         self.of.own.sees(view.over);
         found
@@ -693,7 +693,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             () => (y, slip),
         };
         let flies = kind == Kind::Flying;
-        let aloft = if flies { [self.of.takeoff.height, self.of.takeoff.lift] } else { [0.0; 2] };
+        let aloft = if flies { [self.hops.takeoff.height, self.hops.takeoff.lift] } else { [0.0; 2] };
         let (time, rim) = (self.t0 + self.at[TIME], path.rim(lies));
         Phase { time, kind, state, slip, aloft, rim }
     }

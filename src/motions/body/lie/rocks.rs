@@ -35,10 +35,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
     /// near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
-        let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let (begin, state, takeoff) = (self.at, self.of.state, self.hops.takeoff);
         let (body, slide, view) = (self.of.body, self.of.slide, self.made.path.view);
         let found = self.cycle(&begin);
-        (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
+        (self.at, self.of.state, self.hops.takeoff) = (begin, state, takeoff);
         (self.of.body, self.of.slide, self.made.path.view) = (body, slide, view);
         self.of.own.sees(view.over);
         found

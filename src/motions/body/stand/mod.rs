@@ -17,7 +17,6 @@ mod rocks;
 
 use super::body_walk::BodyWalk;
 use super::face::ALMOST_FLAT;
-use super::fly::Takeoff;
 use super::own::Own;
 use super::strike::ROCKED;
 use super::write;
@@ -29,6 +28,7 @@ use crate::laws::contact::standstill::Standstill;
 use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
+use crate::motions::walk::hops::Takeoff;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses, pull,
 };
@@ -77,7 +77,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn lies_on_face(&mut self) {
         let up = self.up();
         (self.at[SIN], self.at[COS], self.at[W1], self.at[W2]) = (0.0, up, 0.0, 0.0);
-        self.of.takeoff = Takeoff::default();
+        self.hops.takeoff = Takeoff::default();
         self.sees_face();
     }
 

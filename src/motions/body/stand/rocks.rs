@@ -19,10 +19,11 @@ use crate::laws::loss::{Law, Losses};
 use crate::laws::state::State;
 use crate::methods::flow::{Flow, Steps};
 use crate::motions::body::body_walk::BodyWalk;
-use crate::motions::body::fly::{Aloft, Takeoff};
+use crate::motions::body::fly::Aloft;
 use crate::motions::body::own::Own;
 use crate::motions::body::strike::{LASTS, MOST_IN_TURN, PERFECTLY_ROUGH, RATTLE_OVER, ROCKED_OUT, gained};
 use crate::motions::walk::Next;
+use crate::motions::walk::hops::Takeoff;
 use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, poses,
 };
@@ -88,7 +89,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             turns: w1,
             spins: up * w3,
             slip: self.at.slip().map(|u| up * u),
-            lift: self.of.takeoff.lift,
+            lift: self.hops.takeoff.lift,
         };
         let (after, mut lost) = falls_flat(&body, arms, falling, (&friction, e), &self.of.own)?;
         let begin = self.at;
@@ -97,7 +98,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let stays = after.leans <= 0.0 && e == 0.0;
         (self.at[W1], self.at[W2], self.at[W3]) = (-after.turns, -up * after.leans, up * after.spins);
         [self.at[UH], self.at[U2]] = after.slip.map(|u| -up * u);
-        self.of.takeoff.lift = if e > 0.0 { after.lift } else { 0.0 };
+        self.hops.takeoff.lift = if e > 0.0 { after.lift } else { 0.0 };
         if e == 0.0 {
             lost += self.keeps_upright();
         }
@@ -163,13 +164,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.claims(here.abs());
             return self.leaves_face();
         }
-        (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
+        (self.hops.takeoff.height, self.hops.takeoff.leaves) = (0.0, Some(1));
         Next::Own(Kind::Flying)
     }
 
     /// The phase of a body that rises from its face on the point that has landed, or that stays.
     pub(crate) fn leaves_face(&mut self) -> Next {
-        self.of.takeoff = Takeoff::default();
+        self.hops.takeoff = Takeoff::default();
         self.sees_face();
         if self.up() * self.at[W2] < 0.0 { self.rises_from_face() } else { self.comes_to_lie() }
     }
@@ -263,7 +264,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The phase after the impact of a face that lies flat: slide and spin go on as on the table, by the impulse in place of time.
     fn bounces_flat(&mut self, e: f64) -> Next {
-        let (comes, from) = (-self.of.takeoff.lift, self.aloft());
+        let (comes, from) = (-self.hops.takeoff.lift, self.aloft());
         if comes <= 0.0 {
             return self.comes_to_lie();
         }
@@ -309,7 +310,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
         }
         self.sees_face();
-        self.of.takeoff.lift = if last { 0.0 } else { e * comes };
+        self.hops.takeoff.lift = if last { 0.0 } else { e * comes };
         let after = self.aloft();
         let moving = |at: &Aloft| {
             self.of.slide.energy(&{
@@ -332,7 +333,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.claims(LAST_BOUNCES * left);
             return self.stands_after(left);
         }
-        (self.of.takeoff.height, self.of.takeoff.leaves) = (0.0, Some(1));
+        (self.hops.takeoff.height, self.hops.takeoff.leaves) = (0.0, Some(1));
         Next::Own(Kind::Flying)
     }
 
@@ -369,7 +370,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.tells_from(v_2.atan2(v_h) + (a * up * self.at[W3] / v).asin());
         let slip = ((v - a * self.at[W3].abs()) * (v + a * self.at[W3].abs())).sqrt();
         (self.at[UH], self.at[U2]) = (-up * slip, 0.0);
-        self.of.takeoff.lift = -comes;
+        self.hops.takeoff.lift = -comes;
         let at = self.aloft();
         let Some(struck) = self.impact(&at, e) else { return Next::Ends(Ending::Landing) };
         let after = self.struck(&at, &struck, (self.made.path.view.over, false));
@@ -425,9 +426,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The numbers at the end of a rocking that has just begun another hop, and their error; None if it does not end.
     #[inline(never)]
     fn rocks_out_flat(&mut self) -> Option<([f64; N], f64)> {
-        let (begin, state, takeoff) = (self.at, self.of.state, self.of.takeoff);
+        let (begin, state, takeoff) = (self.at, self.of.state, self.hops.takeoff);
         let found = self.cycle_flat(&begin);
-        (self.at, self.of.state, self.of.takeoff) = (begin, state, takeoff);
+        (self.at, self.of.state, self.hops.takeoff) = (begin, state, takeoff);
         found
     }
 

@@ -1,0 +1,316 @@
+//! The flights of a stone and its impacts, of its lowest point as of a rim.
+
+use super::flow::{
+    SLID_X, SLID_Y, STONE_HEAT, STONE_X, STONE_Y, StoneFlow, StoneNumbers, Touch, output_slip, slip_of, state,
+};
+use super::fly::{StoneAloft, StoneFlight};
+use super::phases::StoneWalk;
+use crate::laws::contact::impact::Struck;
+use crate::laws::contact::{Table, delassus::Delassus};
+use crate::laws::loss::Holds;
+use crate::laws::stone::StonePose;
+use crate::laws::stone::law::{Touching, across, laboratory};
+use crate::methods::flow::Exhausted;
+use crate::motions::ask::row::OutputRow;
+use crate::motions::walk::Next;
+use crate::motions::walk::hops::{Bounce, JAM_TAKES, ROUNDED, Takeoff};
+use crate::motions::walk::numbers::{TIME, lost};
+use crate::motions::{Ending, Kind, Strike};
+use crate::numbers::vector::{cross, dot, plus};
+
+/// Number of terms that a piece of a flight counts as, in units of the evaluations of a step.
+const PIECE_COSTS: u64 = 30;
+/// Number of pieces between two calls of `go_on`.
+const PIECES_PER_CALL: u64 = 64;
+/// A bounce in which the stone turns by less than this angle is short; its landing is that of a power series.
+const SHORT_BOUNCE: f64 = 0.1;
+
+/// A contact of a stone: the axes of the laboratory, the point, and what an impulse there does.
+struct Contact {
+    lab: [[f64; 3]; 3],
+    at: Touching<f64>,
+    light: Delassus,
+}
+
+impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
+    /// The current numbers, with those of a flight.
+    fn aloft(&self) -> StoneAloft<N> {
+        let Takeoff { height, lift, .. } = self.hops.takeoff;
+        StoneAloft { y: self.at, height, lift }
+    }
+
+    /// Moves the walk to these numbers.
+    fn sets(&mut self, to: &StoneAloft<N>) {
+        self.at = to.y;
+        (self.hops.takeoff.height, self.hops.takeoff.lift) = (to.height, to.lift);
+    }
+
+    /// The contact at these numbers. Nothing is held that is in the air.
+    fn contact_at(&self, y: &[f64; N]) -> Contact {
+        let (law, w) = (&self.of.flow.law, y.omega());
+        let lab = laboratory(y.quaternion());
+        let at = law.losing(law.meeting(&lab, w), &lab, w);
+        let at = Touching { holds: Holds::default(), ..at };
+        let [[a, ab, b_1], [_, b, b_2], [.., normal]] = law.light(&at, &lab);
+        let light = Delassus { level: [[a, ab], [ab, b]], couples: [b_1, b_2], normal };
+        Contact { lab, at, light }
+    }
+
+    /// N0, the normal force without friction, and the size of its terms.
+    fn pressed(&self, y: &[f64; N]) -> [f64; 2] {
+        let (Contact { at, light, .. }, w) = (self.contact_at(y), y.omega());
+        let to = self.of.flow.law.pulled(&at, w, [0.0; 3]);
+        let size = 1.0 + 2.0 * dot(w, w) * dot(at.r, at.r).sqrt();
+        [dot(to.force, at.n), size / light.normal]
+    }
+
+    /// The flight of a stone that starts in the air, or its landing if it starts on the table and comes down.
+    pub(super) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
+        self.hops.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
+        Next::Own(Kind::Flying)
+    }
+
+    /// The phase after an ending past which a motion with restitution continues.
+    pub(super) fn continues_after(&mut self, ending: Ending) -> Next {
+        let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
+        match ending {
+            Ending::LiftOff => {
+                let [free, size] = self.pressed(&self.at);
+                if matches!(self.ask.table, Table::Rolling { .. }) && free > ROUNDED * size {
+                    // Friction lifts the stone, and on a real table the contact point would slip first.
+                    return Next::Ends(Ending::Slip);
+                }
+                let leaves = if free < -ROUNDED * size { 2 } else { 3 };
+                self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
+                Next::Own(Kind::Flying)
+            }
+            Ending::Painleve => self.jams(e).unwrap_or(Next::Ends(ending)),
+            ending => Next::Ends(ending),
+        }
+    }
+
+    /// The phase after the impact that stops a slip which presses the stone into the table. None where the stone could
+    /// leave the table as well.
+    fn jams(&mut self, e: f64) -> Option<Next> {
+        self.hops.takeoff = Takeoff::default();
+        let from = self.aloft();
+        let ([free, size], [u, v]) = (self.pressed(&from.y), slip_of(&from.y));
+        if [u, v] == [0.0; 2] || free < ROUNDED * size {
+            return None;
+        }
+        let struck = self.impact(&from, e).filter(|struck| struck.impulse[2] > JAM_TAKES * u.hypot(v))?;
+        // An output at this time shows the slip, for which there is no force.
+        while self.until().is_some_and(|t| t <= self.at[TIME]) {
+            self.writes_aloft(&from, Kind::Slipping, f64::NAN);
+        }
+        let after = self.struck(&from, &struck, false);
+        self.sets(&after);
+        Some(self.leaves_impact())
+    }
+
+    /// Computes a flight to its end, which sets the next phase.
+    #[inline(never)]
+    pub(super) fn flies(&mut self, go_on: &mut dyn FnMut() -> bool) {
+        let (start, law) = (self.aloft(), self.of.flow.law);
+        let flight = StoneFlight::new(&law, &start, &self.ask.losses, self.of.thick);
+        let (now, last) = (self.at[TIME], self.since.last().copied().unwrap_or(0.0));
+        let (left, mut toil) = (last - now, self.toil());
+        let (mut from, mut since, mut leaves) = (start, 0.0, self.hops.takeoff.leaves);
+        let (mut turned, mut roundings) = (0.0, 4.0);
+        for pieces in 0u64.. {
+            self.spent.evaluations += PIECE_COSTS;
+            toil = toil.saturating_sub(PIECE_COSTS);
+            if toil == 0 || pieces % PIECES_PER_CALL == PIECES_PER_CALL - 1 && !go_on() {
+                let why = if toil == 0 { Exhausted::Evaluations } else { Exhausted::Interrupted };
+                self.sets(&from);
+                self.next = Some(self.gives_up(why.into()));
+                return;
+            }
+            let piece = flight.piece(since, &from, leaves);
+            let whole = since + piece.length < left;
+            let length = if whole { piece.length } else { left - since };
+            let lands = if leaves.is_none() && piece.is_high(&flight, length) {
+                Ok(None)
+            } else {
+                piece.lands(leaves, length)
+            };
+            let landing = match lands {
+                Ok(landing) => landing,
+                Err(why) => {
+                    self.sets(&from);
+                    self.next = Some(self.gives_up(why.into()));
+                    return;
+                }
+            };
+            let end = landing.unwrap_or(length);
+            let at = |t: f64| piece.at(&flight, &start.y, t);
+            while let Some(t) = self.until().filter(|t| *t - now - since <= end) {
+                let shown = at(t - now - since);
+                self.claims(-shown.height);
+                self.writes_aloft(&shown, Kind::Flying, 0.0);
+            }
+            let fastest = flight.fastest(from.y.omega());
+            turned += fastest * end;
+            roundings = 4.0 * (1.0 + turned);
+            self.claims(roundings * f64::EPSILON * fastest.max(1.0));
+            if let Some(recorded) = self.of.flow.recorded
+                && let Some(turns) = &mut recorded.borrow_mut().turns
+            {
+                let spot = |t: f64| piece.spot(now, t - now - since);
+                turns.follow(&spot, spot(now + since), spot(now + since + end));
+            }
+            if landing.is_some() {
+                let lowest = at(end);
+                let high = flight.doubt_of_height(since + end, fastest);
+                let mut late = (high / lowest.lift.abs()).min(high.sqrt());
+                if leaves == Some(1) && turned < SHORT_BOUNCE {
+                    late = late.min(roundings * f64::EPSILON * (since + end));
+                }
+                let t = self.claims_landing(since + end, late) - since;
+                self.sets(&StoneAloft { height: 0.0, ..at(t.max(0.0)) });
+                break;
+            }
+            if !whole {
+                self.sets(&at(end));
+                return;
+            }
+            (from, since, leaves) = (at(end), since + end, None);
+        }
+        self.doubts(roundings * f64::EPSILON);
+        let next = self.strikes();
+        self.continues_with(next);
+    }
+
+    /// The impact of the lowest point; None for a rolling contact without a solution.
+    fn impact(&self, from: &StoneAloft<N>, e: f64) -> Option<Struck> {
+        let (light, own) = (self.contact_at(&from.y).light, self.of.flow.own);
+        self.point_impact(slip_of(&from.y), from.lift, light, &own).on(&self.ask.table, e, &own)
+    }
+
+    /// The next phase after a landing.
+    fn strikes(&mut self) -> Next {
+        let (e, from) = (self.ask.restitution.unwrap_or(0.0), self.aloft());
+        if state(&from.y).vertical[2] <= self.of.flow.edge {
+            // The edge is lower than the ellipsoid, and has no law of contact.
+            return Next::Ends(Ending::Face);
+        }
+        if from.lift >= 0.0 {
+            self.claims(from.lift);
+            return self.touches_down();
+        }
+        let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
+        let bounced = self.after(&from, &struck);
+        let left = self.bounces(&bounced, &struck, e);
+        let bounce = struck.lift;
+        if left.is_some()
+            && let Some(last) = self.impact(&from, 0.0)
+        {
+            struck = last;
+        }
+        let after = self.struck(&from, &struck, left.is_some());
+        self.sets(&after);
+        if let Some(left) = left {
+            let y = after.y;
+            let ([u, v], seen) = (slip_of(&y), StoneFlow { touch: Touch::Slips, ..self.of.flow }.seen_at(&y));
+            let [f, g] = [0, 1].map(|i| dot(seen.lab[i], seen.to.force));
+            let power = if [u, v] == [0.0; 2] { 0.0 } else { -(u * f + v * g) };
+            self.sums_bounces((left, bounce), [u.hypot(v), power], y.omega());
+        }
+        self.leaves_impact()
+    }
+
+    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    fn bounces(&mut self, after: &StoneAloft<N>, struck: &Struck, e: f64) -> Option<f64> {
+        let (Contact { lab, at, light }, w, law) =
+            (self.contact_at(&after.y), after.y.omega(), self.of.flow.law);
+        let [force, _] = self.pressed(&after.y);
+        let bounce = Bounce { struck, light: &light, force, loses: !self.ask.losses.is_none() };
+        let left = self.bounces_for(&bounce, e, &self.of.flow.own, || {
+            let rate = law.slip_rate(&at, w, &law.pulled(&at, w, [0.0; 3]));
+            [0, 1].map(|i| dot(lab[i], rate) - light.couples[i] * force)
+        })?;
+        let couple = at.lost.map_or(0.0, |lost| {
+            let [free, pressed] = [lost.free, lost.pressed].map(|m| dot(m, m).sqrt());
+            free + pressed * force
+        });
+        self.claims(left * couple / self.of.thick.1);
+        Some(left)
+    }
+
+    /// The numbers after an impact.
+    fn after(&self, from: &StoneAloft<N>, struck: &Struck) -> StoneAloft<N> {
+        let Contact { lab, at, .. } = self.contact_at(&from.y);
+        let [x, y, z] = struck.impulse;
+        let push = plus(across(&lab, [x, y]), z, lab[2]);
+        let w = plus(from.y.omega(), 1.0, self.of.flow.law.inverse.times(cross(at.r, push)));
+        let mut y = from.y;
+        y[4..7].copy_from_slice(&w);
+        [y[SLID_X], y[SLID_Y]] = struck.slip;
+        StoneAloft { y, lift: struck.lift, ..*from }
+    }
+
+    /// The numbers after an impact, which is also recorded.
+    fn struck(&mut self, from: &StoneAloft<N>, struck: &Struck, stays: bool) -> StoneAloft<N> {
+        let &Struck { hit, impulse, lost, .. } = struck;
+        let after = self.after(from, struck);
+        // No impact gains energy.
+        self.claims(-lost);
+        let time = self.t0 + self.at[TIME];
+        let velocities = [from, &after].map(|at| {
+            let [u, v] = output_slip(&at.y);
+            [u, v, at.lift]
+        });
+        let states = [state(&from.y), state(&after.y)];
+        self.records_impact(Strike {
+            time,
+            other: false,
+            rim: 0,
+            hit,
+            states,
+            velocities,
+            impulse,
+            lost,
+            stays,
+        });
+        after
+    }
+
+    /// The phase after an impact.
+    fn leaves_impact(&mut self) -> Next {
+        if self.hops.takeoff.lift > 0.0 {
+            self.hops.takeoff.leaves = Some(1);
+            return Next::Own(Kind::Flying);
+        }
+        self.touches_down()
+    }
+
+    /// Compares the energy with that at the start.
+    pub(super) fn compares_energy(&mut self) {
+        if self.ask.restitution.is_none() || self.perturbation > 0.0 {
+            return;
+        }
+        let (StoneAloft { y, height, lift }, law) = (self.aloft(), self.of.flow.law);
+        let w = y.omega();
+        let lab = laboratory(y.quaternion());
+        let at = law.touching(lab[2], w);
+        let u = plus(across(&lab, slip_of(&y)), lift, lab[2]);
+        let fallen = law.tilt.unwrap_or(0.0) * (y[STONE_X] - dot(lab[0], at.r));
+        let fastest = w.into_iter().chain(u).fold(1.0, |most: f64, x| most.max(x.abs()));
+        self.compares_energy_with_start(law.energy(&at, w, u) + height - fallen, fastest);
+    }
+
+    /// Writes a point to the outputs, with all force components set to `force`.
+    fn writes_aloft(&mut self, at: &StoneAloft<N>, kind: Kind, force: f64) {
+        let StoneAloft { y, height, lift } = at;
+        let force = self.ask.force.then(|| ([force; 3].into(), 0.0));
+        let pose = self.ask.pose.then(|| {
+            let lab = laboratory(y.quaternion());
+            let r = self.of.flow.law.touching(lab[2], y.omega()).r;
+            let [a, b, c] = lab.map(|axis| dot(axis, r));
+            let point = [y[STONE_X], y[STONE_Y]];
+            StonePose::new(y.quaternion(), point, [point[0] - a, point[1] - b, height - c])
+        });
+        let row = OutputRow::on_table(state(y), output_slip(y), [y[STONE_HEAT], lost(y)], kind);
+        self.made.push(OutputRow { pose, force, aloft: [*height, *lift], ..row });
+    }
+}
