@@ -56,6 +56,7 @@ mod steep;
 mod sticking;
 mod stone;
 mod stone_claims;
+mod stone_hops;
 mod sweep;
 mod thin_disk;
 mod throw;

@@ -10,7 +10,7 @@ use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Contact, Error, State};
 
 /// A tensor with these principal moments, turned by these angles about axes 3 and 1.
-fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 3]; 3] {
+pub(crate) fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 3]; 3] {
     let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), about_3)
         * nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), about_1);
     let tensor = turn.matrix() * Matrix3::from_diagonal(&moments.into()) * turn.matrix().transpose();

@@ -52,6 +52,29 @@ impl Delassus {
         solved(self.level, velocity)
     }
 
+    /// The principal values of A, and its principal axes.
+    pub fn principal(&self) -> ([f64; 2], [[f64; 2]; 2]) {
+        let [[a, ab], [_, b]] = self.level;
+        if ab == 0.0 {
+            return ([a, b], [[1.0, 0.0], [0.0, 1.0]]);
+        }
+        let (sin, cos) = (0.5 * (2.0 * ab).atan2(a - b)).sin_cos();
+        let mixed = 2.0 * sin * cos * ab;
+        let values = [cos * cos * a + sin * sin * b + mixed, sin * sin * a + cos * cos * b - mixed];
+        (values, [[cos, sin], [-sin, cos]])
+    }
+
+    /// Whether a slip that friction stops before the normal impulse begins lifts the point on the way. It dies out along the
+    /// principal axes as s^k and as s, with s from 1 to 0.
+    pub fn lifts_on_the_way(&self, slip: [f64; 2], lift: f64) -> bool {
+        let ([a, b], axes) = self.principal();
+        let along = |axis: [f64; 2]| inner(axis, slip) * inner(axis, self.couples);
+        let pulls = [along(axes[0]) / a, along(axes[1]) / b];
+        let ([slow, fast], power) = if a < b { (pulls, b / a) } else { ([pulls[1], pulls[0]], a / b) };
+        let s = (-slow / (fast * power)).powf(1.0 / (power - 1.0));
+        s < 1.0 && lift - slow * (1.0 - s) - fast * (1.0 - s.powf(power)) >= 0.0
+    }
+
     /// Whether a slip across the first axis couples to nothing: so it is for a rim, whose first axis is that of the lean.
     pub fn is_lean(&self) -> bool {
         self.level[0][1] == 0.0 && self.couples[1] == 0.0

@@ -117,6 +117,12 @@ impl ImpactCourse {
         (self.lift, self.work) = (0.0, 0.0);
     }
 
+    /// Ends another compression, with this work since the end of the first one: the lowest work so far counts.
+    fn lowers(&mut self, work: f64) {
+        let left = (1.0 - self.e) * (1.0 + self.e);
+        self.restores = self.restores.map(|restores| restores + left * work.min(0.0));
+    }
+
     /// Continues in a constant direction, in which the normal velocity grows at the rate `k`, for at most the normal
     /// impulse `most`. Returns whether the impact ends.
     fn straight(&mut self, k: f64, push: [f64; 2], mut most: f64) -> bool {
@@ -129,6 +135,9 @@ impl ImpactCourse {
             self.moves(k, push, end);
             self.turns_round();
             most -= end;
+        }
+        if self.lift < 0.0 && k > 0.0 && -self.lift <= k * most {
+            self.lowers(self.work - 0.5 * self.lift * self.lift / k);
         }
         let left = self.restores.map_or(0.0, |work| work - self.work);
         let square = self.lift * self.lift + 2.0 * k * left;
@@ -167,7 +176,7 @@ impl PointImpact {
                 let stops = self.light.pushes(slip.map(|u| -u));
                 course.impulse = [stops[0], stops[1], 0.0];
                 course.lift += self.light.lifts(stops);
-                if course.lift >= 0.0 {
+                if course.lift >= 0.0 || self.light.lifts_on_the_way(slip, lift) {
                     return None;
                 }
                 Along::Rest
@@ -252,7 +261,7 @@ impl PointImpact {
         let mut flow = ImpactSlip { light: self.light, rubs, restores: course.restores, tol: self.tol };
         let ([p_1, p_2, p], mut first) = (course.impulse, FIRST * self.longer);
         let mut y = [slip[0], slip[1], p_1, p_2, p, course.lift, course.work];
-        let mut done = false;
+        let (mut done, mut again) = (false, None);
         while !done && !flow.is_over([y[0], y[1]]) {
             let steps = Steps {
                 first: Some(first),
@@ -263,14 +272,19 @@ impl PointImpact {
             };
             let flown = flow.run(flow.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true);
             (y, first) = (flown.y, flown.step);
-            ([course.lift, course.work], done) = ([y[LIFT], y[WORK]], flow.restores.is_some());
+            [course.lift, course.work] = [y[LIFT], y[WORK]];
             match flown.halt {
-                SlipEnd::Over if !done => {
+                SlipEnd::Over if flow.restores.is_some() => done = true,
+                SlipEnd::Over if again.take().is_some() => {
+                    course.lowers(course.work);
+                    (course.lift, y[LIFT], flow.restores) = (0.0, 0.0, course.restores);
+                }
+                SlipEnd::Over => {
                     course.turns_round();
                     (flow.restores, y[LIFT], y[WORK], done) = (course.restores, 0.0, 0.0, course.e == 0.0);
                 }
-                SlipEnd::Over => {}
-                SlipEnd::Straight => done = false,
+                SlipEnd::Falls => again = flow.restores.take(),
+                SlipEnd::Straight => {}
                 SlipEnd::GivenUp => return None,
             }
         }
@@ -302,45 +316,94 @@ enum Along {
 }
 
 impl ImpactCourse {
-    /// The whole impact on a viscous film, whose force is c u times the normal force, for a slip across that couples to
-    /// nothing, as on a rim: otherwise the normal velocity may rise and fall twice.
-    fn film(&mut self, c: f64, [u_h, u_2]: [f64; 2], light: &Delassus) {
-        debug_assert!(light.is_lean(), "the film below a rim");
-        let ([[a_h, _], [_, a_2]], [b, _], a_n) = (light.level, light.couples, light.normal);
-        let decay = |x: f64| -(-x).exp_m1();
-        // The integrals of exp(-c a_h p) over p, once and twice.
-        let once = |p: f64| decay(c * a_h * p) / (c * a_h);
-        let twice = |p: f64| {
-            let x = c * a_h * p;
-            if x > 0.1 {
-                return (p - once(p)) / (c * a_h);
-            }
-            p * p
-                * (0.5
-                    - x * (1.0 / 6.0
-                        - x * (1.0 / 24.0
-                            - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
+    /// The whole impact on a viscous film, whose force is c u times the normal force. Along the principal axes of A each part
+    /// of the slip falls to that which the normal impulse drives, as one exponential function.
+    fn film(&mut self, c: f64, slip: [f64; 2], light: &Delassus) {
+        let (level, axes) = light.principal();
+        let along = |v: [f64; 2]| axes.map(|[x, y]| x * v[0] + y * v[1]);
+        let ([u, v], [b_1, b_2]) = (along(slip), along(light.couples));
+        let parts = [(level[0], b_1, u), (level[1], b_2, v)];
+        let first = self.lift;
+        let lift = |p: f64| {
+            parts.iter().fold(first + light.normal * p, |all, &(a, b, u)| {
+                all - c * b * u * once(c * a, p) - b * b / a * (p - once(c * a, p))
+            })
         };
-        let (first, pulls, sticking) = (self.lift, c * b * u_h, b * b / a_h);
-        let lift = |p: f64| first + a_n * p - pulls * once(p) - sticking * (p - once(p));
-        let work =
-            |p: f64| first * p + 0.5 * a_n * p * p - pulls * twice(p) - sticking * (0.5 * p * p - twice(p));
-        let rises = |f: &dyn Fn(f64) -> f64, from: f64| {
+        let work = |p: f64| {
+            parts.iter().fold(first * p + 0.5 * light.normal * p * p, |all, &(a, b, u)| {
+                let twice = twice(c * a, p);
+                all - c * b * u * twice - b * b / a * (0.5 * p * p - twice)
+            })
+        };
+        // u_n' is a constant less two exponential functions, which has two zeros at most, with one bend between them.
+        let held = parts.iter().fold(light.normal, |all, (a, b, _)| all - b * b / a);
+        let falls = parts.map(|(a, b, u)| b / a * (c * a * u - b));
+        let rate = |p: f64| held - (0..2).map(|i| falls[i] * (-c * level[i] * p).exp()).sum::<f64>();
+        let bend = (-(falls[0] * level[0]) / (falls[1] * level[1])).ln() / (c * (level[0] - level[1]));
+        let mut turns = zeros(
+            &rate,
+            &[0.0]
+                .into_iter()
+                .chain((bend > 0.0 && bend < f64::INFINITY).then_some(bend))
+                .collect::<Vec<_>>(),
+        );
+        turns.insert(0, 0.0);
+        let stops = zeros(&lift, &turns);
+        let e = self.e;
+        let mut p = stops[0];
+        if e > 0.0 {
+            let left = (1.0 - e) * (1.0 + e);
+            let off = |p: f64, lowest: f64| work(p) - left * lowest;
+            let first = work(stops[0]);
+            // Where the film presses the body down again before the work is done, the lowest work so far counts.
+            let from = if stops.len() == 3 && off(stops[1], first) < 0.0 { stops[2] } else { stops[0] };
+            let lowest = first.min(work(from));
+            // Work below rounding is restored at once.
+            p = zeros(&|p: f64| off(p, lowest), &[from]).first().copied().unwrap_or(from);
+        }
+        let pushed = parts.map(|(a, b, u)| -c * (u * once(c * a, p) + b / (c * a) * (p - once(c * a, p))));
+        let push = [0, 1].map(|i| axes[0][i] * pushed[0] + axes[1][i] * pushed[1]);
+        self.impulse = [push[0], push[1], p];
+        (self.lift, self.work) = (lift(p), work(p));
+    }
+}
+
+/// The zeros of a function that is monotone between these places and after them, where it ends positive.
+fn zeros(f: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
+    let mut found = Vec::new();
+    for (i, &from) in places.iter().enumerate() {
+        let begin = f(from);
+        let begin = if begin == 0.0 { -f64::MIN_POSITIVE } else { begin };
+        let to = places.get(i + 1).copied().unwrap_or_else(|| {
             let mut far = from.max(1.0);
             while f(far) < 0.0 {
                 far *= 2.0;
             }
-            crossing(f, from, far, f(from).min(-f64::MIN_POSITIVE), f(far))
-        };
-        // A slip that jams presses the rim down first, until its film has slowed it.
-        let lowest = ((pulls - sticking) / (a_n - sticking)).max(1.0).ln() / (c * a_h);
-        let middle = rises(&lift, lowest);
-        let target = (1.0 - self.e) * (1.0 + self.e) * work(middle);
-        let p = if self.e == 0.0 { middle } else { rises(&|p| work(p) - target, middle) };
-        let along = u_h * once(p) + b / (c * a_h) * (p - once(p));
-        self.impulse = [-c * along, -(u_2 * decay(c * a_2 * p) / a_2), p];
-        (self.lift, self.work) = (lift(p), work(p));
+            far
+        });
+        let end = f(to);
+        if (begin < 0.0) != (end < 0.0) {
+            found.push(crossing(f, from, to, begin, end));
+        }
     }
+    found
+}
+
+/// The integrals of exp(-k p) over p, once and twice.
+fn once(k: f64, p: f64) -> f64 {
+    -(-k * p).exp_m1() / k
+}
+
+fn twice(k: f64, p: f64) -> f64 {
+    let x = k * p;
+    if x > 0.1 {
+        return (p - once(k, p)) / k;
+    }
+    p * p
+        * (0.5
+            - x * (1.0 / 6.0
+                - x * (1.0 / 24.0
+                    - x * (1.0 / 120.0 - x * (1.0 / 720.0 - x * (1.0 / 5040.0 - x / 40320.0))))))
 }
 
 #[cfg(test)]

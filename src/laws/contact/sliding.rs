@@ -26,6 +26,8 @@ const STRAIGHT_ON: f64 = 1e-14;
 /// the share where that is less than the tolerance, below which no error counts.
 const DIES: f64 = 1e-6;
 const DYING: f64 = 1e-3;
+/// A normal velocity that counts as falling again: restitution begins with zero.
+const BARELY_DOWN: f64 = 1e-9;
 /// The first step along an impact.
 pub(super) const FIRST: f64 = 0.3;
 
@@ -41,6 +43,8 @@ pub(super) const WORK: usize = 6;
 pub(super) enum SlipEnd {
     /// Compression ends, or restitution.
     Over,
+    /// Friction presses the point down again before restitution ends.
+    Falls,
     /// It stops, or keeps its direction from here on.
     Straight,
     /// It takes too many steps.
@@ -107,7 +111,7 @@ impl ImpactSlip<'_> {
     }
 }
 
-impl Flow<1> for ImpactSlip<'_> {
+impl Flow<2> for ImpactSlip<'_> {
     type Halt = SlipEnd;
     const TIME: usize = PUSHED;
     const OVER: SlipEnd = SlipEnd::GivenUp;
@@ -130,17 +134,27 @@ impl Flow<1> for ImpactSlip<'_> {
         all[WORK] = per * (y[LIFT] * sigma);
     }
 
-    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 1] {
-        let falls = if self.restores.is_none() { place.rate[LIFT] } else { place.rate[WORK] };
-        [Dual { value: self.margin(&place.y, 0), slope: -falls }]
+    fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
+        let [falls, rises] = if self.restores.is_none() {
+            [place.rate[LIFT], 0.0]
+        } else {
+            [place.rate[WORK], place.rate[LIFT]]
+        };
+        let [over, up] = [0, 1].map(|i| self.margin(&place.y, i));
+        [Dual { value: over, slope: -falls }, Dual { value: up, slope: rises }]
     }
 
-    fn margin<const N: usize>(&self, y: &[f64; N], _: usize) -> f64 {
-        self.restores.map_or(-y[LIFT], |work| work - y[WORK])
+    fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        match (self.restores, i) {
+            (None, 0) => -y[LIFT],
+            (Some(work), 0) => work - y[WORK],
+            (Some(_), _) => y[LIFT] + BARELY_DOWN,
+            _ => 1.0,
+        }
     }
 
-    fn end(&self, _: usize) -> SlipEnd {
-        SlipEnd::Over
+    fn end(&self, i: usize) -> SlipEnd {
+        [SlipEnd::Over, SlipEnd::Falls][i]
     }
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {

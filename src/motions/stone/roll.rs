@@ -12,6 +12,8 @@ use super::flow::{ALL, LOSING};
 use super::known::{Recorded, Runs, settle};
 use super::phases::StoneWalk;
 use crate::error::Error;
+use crate::laws::contact::Table;
+use crate::laws::contact::slip::Friction;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::dry::friction::OwnFriction;
 use crate::motions::slope::{AtPace, on_slope};
@@ -91,6 +93,7 @@ fn settled(
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
+    let (ask, start) = &without_friction(stone, ask, start);
     let mut run = |tol: f64, times: &[f64], recorded| {
         let of = (stone, start);
         if ask.losses.is_none() {
@@ -113,6 +116,19 @@ fn settled(
         found.stays_unjudged();
     }
     Ok(found)
+}
+
+/// The question and the start of a motion on a smooth table with impacts: the centre is at rest until an impact, and the
+/// stone slips without friction.
+fn without_friction(stone: &Ellipsoid, ask: &Ask, start: &Start<StoneState>) -> (Ask, Start<StoneState>) {
+    let (mut ask, mut start) = (*ask, *start);
+    if ask.table == Table::Smooth && ask.restitution.is_some() {
+        ask.table = Friction::coulomb(0.0).into();
+        if start.aloft.is_none() {
+            start.slip = stone.slip(&start.state, [0.0; 2]);
+        }
+    }
+    (ask, start)
 }
 
 /// Begins a walk, on the heap, since threads may have only a small stack.
