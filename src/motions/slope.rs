@@ -210,6 +210,7 @@ impl Slope {
             hit.states = hit.states.map(|state| state.at_pace(pace));
             hit.velocities = hit.velocities.map(|v| v.map(|v| v * pace));
             (hit.impulse, hit.lost) = (hit.impulse.map(|p| p * pace), hit.lost * weight);
+            hit.couple *= pace;
         }
         for [u_h, u_2, rest @ ..] in &mut path.other_rim {
             (*u_h, *u_2) = (*u_h * pace, *u_2 * pace);

@@ -19,7 +19,9 @@
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
 
 use super::delassus::{Delassus, speed};
-use super::sliding::{FIRST, ImpactSlip, LIFT, Roughness, STOPPED, SlipEnd, WORK};
+use super::sliding::{
+    DRILLING, FIRST, ImpactSlip, LIFT, PatchedPoint, Roughness, SLIDING, STOPPED, SlipEnd, WORK,
+};
 use super::slip::Friction;
 use super::table::Table;
 use crate::laws::body::Shape;
@@ -41,6 +43,8 @@ coded! {
         Smooth = 3,
         /// Both rims land at once, or the other rim lands without a bounce; the impulse is the sum over both rims.
         BothRims = 4,
+        /// Its slip follows the drilling of the patch of contact.
+        Creeps = 5,
     }
 }
 
@@ -51,6 +55,8 @@ pub(crate) struct PointImpact {
     pub slip: [f64; 2],
     pub lift: f64,
     pub light: Delassus,
+    /// The patch of contact; None for a point.
+    pub patch: Option<PatchedPoint>,
     /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and the factor by which the first step is
     /// longer.
     pub tol: f64,
@@ -61,6 +67,8 @@ pub(crate) struct PointImpact {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Struck {
     pub impulse: [f64; 3],
+    /// The impulse of the couple about the normal.
+    pub couple: f64,
     pub slip: [f64; 2],
     pub lift: f64,
     pub hit: Hit,
@@ -81,18 +89,20 @@ pub(crate) fn lightness(shape: &Shape<f64>, angle: (f64, f64)) -> Delassus {
     }
 }
 
-/// The angular velocity after these impulses.
-pub(crate) fn turned(
-    shape: &Shape<f64>,
-    angle: (f64, f64),
-    w: [f64; 3],
-    [p_h, p_2, p_n]: [f64; 3],
-) -> [f64; 3] {
-    let Shape { rim, i1, i3 } = shape;
+/// The patch of this radius on a rim that drills as fast as this.
+pub(crate) fn patched(shape: &Shape<f64>, angle: (f64, f64), radius: f64, drilling: f64) -> PatchedPoint {
+    let (Shape { rim, i1, i3 }, (s, c)) = (shape, angle);
+    let across = s * rim.depth(angle) / i1 - c * rim.radius(angle) / i3;
+    PatchedPoint { radius, drilling, row: [0.0, across, 0.0], about: s * s / i1 + c * c / i3 }
+}
+
+/// The angular velocity after an impact.
+pub(crate) fn turned(shape: &Shape<f64>, angle: (f64, f64), w: [f64; 3], struck: &Struck) -> [f64; 3] {
+    let (Shape { rim, i1, i3 }, ([p_h, p_2, p_n], couple)) = (shape, (struck.impulse, struck.couple));
     [
-        w[0] + rim.depth(angle) * p_2 / i1,
+        w[0] + (rim.depth(angle) * p_2 + angle.0 * couple) / i1,
         w[1] - (rim.height(angle) * p_h + rim.lever(angle) * p_n) / i1,
-        w[2] - rim.radius(angle) * p_2 / i3,
+        w[2] - (rim.radius(angle) * p_2 - angle.1 * couple) / i3,
     ]
 }
 
@@ -102,6 +112,7 @@ const IMPACT_STEPS: u64 = 5_000;
 /// The impact so far, with all velocities in units of the first normal velocity, or of the slip where that is zero.
 struct ImpactCourse {
     impulse: [f64; 3],
+    couple: f64,
     lift: f64,
     /// The work of the normal force in compression, or since its end.
     work: f64,
@@ -125,7 +136,7 @@ impl ImpactCourse {
 
     /// Continues in a constant direction, in which the normal velocity grows at the rate `k`, for at most the normal
     /// impulse `most`. Returns whether the impact ends.
-    fn straight(&mut self, k: f64, push: [f64; 2], mut most: f64) -> bool {
+    fn straight(&mut self, k: f64, push: [f64; 3], mut most: f64) -> bool {
         if self.restores.is_none() {
             let end = if k > 0.0 { -self.lift / k } else { f64::INFINITY };
             if end > most || end == f64::INFINITY {
@@ -154,7 +165,8 @@ impl ImpactCourse {
     }
 
     /// Adds the normal impulse `p` in a constant direction.
-    fn moves(&mut self, k: f64, [p_1, p_2]: [f64; 2], p: f64) {
+    fn moves(&mut self, k: f64, [p_1, p_2, couple]: [f64; 3], p: f64) {
+        self.couple += couple * p;
         self.work += p * (self.lift + 0.5 * k * p);
         self.lift += k * p;
         self.impulse = [self.impulse[0] + p_1 * p, self.impulse[1] + p_2 * p, self.impulse[2] + p];
@@ -169,7 +181,7 @@ impl PointImpact {
     pub fn on(&self, table: &Table, e: f64, own: &impl SpeedLaw) -> Option<Struck> {
         let big = if self.lift < 0.0 { -self.lift } else { speed(self.slip) };
         let (lift, slip) = (self.lift / big, self.slip.map(|u| u / big));
-        let mut course = ImpactCourse { impulse: [0.0; 3], lift, work: 0.0, restores: None, e };
+        let mut course = ImpactCourse { impulse: [0.0; 3], couple: 0.0, lift, work: 0.0, restores: None, e };
         let along = match *table {
             Table::Rolling { .. } => {
                 // The slip is stopped before the normal impulse begins.
@@ -190,16 +202,23 @@ impl PointImpact {
             {
                 let law = |speed: f64| own.coefficient_at(speed * big);
                 let rubs = Roughness { mu, law: if own.varies() { Some(&law) } else { None } };
-                self.rubs(&mut course, slip, rubs, fixed)?
+                let patch = self.patch.filter(|patch| patch.turns(self.slip, &self.light));
+                let patch = patch.map(|patch| PatchedPoint { drilling: patch.drilling / big, ..patch });
+                let flow = ImpactSlip { light: self.light, rubs, patch, restores: None, tol: self.tol };
+                self.rubs(&mut course, slip, flow, fixed)?
             }
             _ => {
-                course.straight(self.light.normal, [0.0; 2], f64::INFINITY);
+                course.straight(self.light.normal, [0.0; 3], f64::INFINITY);
                 Along::Ice
             }
         };
         if let Along::Rest = along {
             let holds = self.light.pushes(self.light.couples.map(|b| -b));
-            course.straight(self.light.normal + self.light.lifts(holds), holds, f64::INFINITY);
+            course.straight(
+                self.light.normal + self.light.lifts(holds),
+                [holds[0], holds[1], 0.0],
+                f64::INFINITY,
+            );
         }
         let [p_1, p_2, p_n] = course.impulse.map(|p| p * big);
         let lift = if e > 0.0 { course.lift * big } else { 0.0 };
@@ -209,17 +228,29 @@ impl PointImpact {
             return None;
         }
         let ([gained, aside], [b_1, b_2]) = (self.light.level([p_1, p_2]), self.light.couples);
-        let [u, v] = [self.slip[0] + (gained + b_1 * p_n), self.slip[1] + (aside + b_2 * p_n)];
+        let mut changes = [gained + b_1 * p_n, aside + b_2 * p_n];
+        let (mut drilled, couple) = (0.0, course.couple * big);
+        if let Some(PatchedPoint { drilling, row: [m_1, m_2, m_n], about, .. }) = self.patch {
+            changes = [changes[0] + m_1 * couple, changes[1] + m_2 * couple];
+            let after = drilling + (m_1 * p_1 + m_2 * p_2 + m_n * p_n) + about * couple;
+            drilled = drilling + if let Along::Held = along { 0.0 } else { after };
+        }
+        let [u, v] = [self.slip[0] + changes[0], self.slip[1] + changes[1]];
         let (slip, hit) = match along {
             Along::Ice => ([u, v], Hit::Smooth),
             Along::Slip => ([u, v], Hit::Slips),
-            Along::Rest => ([0.0; 2], Hit::Sticks),
+            Along::Creep => ([u, v], Hit::Creeps),
+            Along::Rest | Along::Held => ([0.0; 2], Hit::Sticks),
             // A slip that has stopped has no direction left but this one.
             Along::On([x, y]) => ([x, y].map(|to| to * (x * u + y * v)), Hit::SlipsOn),
+            Along::Off => ([u, v], Hit::SlipsOn),
         };
         let lost = -0.5
-            * ((self.slip[0] + slip[0]) * p_1 + (self.slip[1] + slip[1]) * p_2 + (self.lift + lift) * p_n);
-        Some(Struck { impulse: [p_1, p_2, p_n], slip, lift, hit, lost })
+            * ((self.slip[0] + slip[0]) * p_1
+                + (self.slip[1] + slip[1]) * p_2
+                + (self.lift + lift) * p_n
+                + drilled * couple);
+        Some(Struck { impulse: [p_1, p_2, p_n], couple, slip, lift, hit, lost })
     }
 
     /// The impact under dry friction, up to a rest of the slip. None after too many steps.
@@ -227,13 +258,25 @@ impl PointImpact {
         &self,
         course: &mut ImpactCourse,
         slip: [f64; 2],
-        rubs: Roughness<'_>,
+        flow: ImpactSlip<'_>,
         fixed: f64,
     ) -> Option<Along> {
-        let light = &self.light;
-        let moves = speed(slip) > STOPPED * (1.0 + speed(slip)) && (rubs.law.is_some() || rubs.mu > 0.0);
-        if moves && self.slides(course, slip, rubs)?.1 {
-            return Some(Along::Slip);
+        let (light, rubs) = (&self.light, flow.rubs);
+        let mut begin = [0.0; SLIDING];
+        [begin[0], begin[1], begin[DRILLING]] = [slip[0], slip[1], flow.patch.map_or(0.0, |p| p.drilling)];
+        let rubbing = flow.rubbing(&begin);
+        let moves = rubbing > STOPPED * (1.0 + rubbing) && (rubs.law.is_some() || rubs.mu > 0.0);
+        if moves {
+            let (y, ended) = self.slides(course, begin, flow)?;
+            if ended {
+                return Some(if flow.creeps(&y) { Along::Creep } else { Along::Slip });
+            }
+        }
+        if let Some(patch) = &flow.patch {
+            let (forces @ [x, y, couple], holds) = flow.after_rest(patch, fixed)?;
+            let rises = light.normal + light.lifts([x, y]) + patch.row[2] * couple;
+            course.straight(rises, forces, f64::INFINITY);
+            return Some(if holds { Along::Held } else { Along::Off });
         }
         if speed(light.pushes(light.couples)) <= fixed {
             return Some(Along::Rest);
@@ -241,28 +284,30 @@ impl PointImpact {
         let mu = rubs.at(0.0);
         let way = light.way_out(mu);
         if rubs.law.is_some() {
-            let begins = way.map(|x| 2.0 * STOPPED * x);
-            let [u, v] = self.slides(course, begins, rubs)?.0;
+            let mut begins = [0.0; SLIDING];
+            begins[..2].copy_from_slice(&way.map(|x| 2.0 * STOPPED * x));
+            let [u, v, ..] = self.slides(course, begins, flow)?.0;
             return Some(Along::On([u, v].map(|x| x / speed([u, v]))));
         }
         let push = way.map(|x| -mu * x);
-        course.straight(light.normal + light.lifts(push), push, f64::INFINITY);
+        course.straight(light.normal + light.lifts(push), [push[0], push[1], 0.0], f64::INFINITY);
         Some(Along::On(way))
     }
 
-    /// A slip under dry friction. Returns the slip up to which steps have followed it, and whether the impact ends before
-    /// the slip stops; None after too many steps.
+    /// A slip under dry friction from these numbers. Returns those up to which steps have followed it, and whether the impact
+    /// ends before the slip stops; None after too many steps.
     fn slides(
         &self,
         course: &mut ImpactCourse,
-        slip: [f64; 2],
-        rubs: Roughness<'_>,
-    ) -> Option<([f64; 2], bool)> {
-        let mut flow = ImpactSlip { light: self.light, rubs, restores: course.restores, tol: self.tol };
+        begin: [f64; SLIDING],
+        mut flow: ImpactSlip<'_>,
+    ) -> Option<([f64; SLIDING], bool)> {
+        flow.restores = course.restores;
         let ([p_1, p_2, p], mut first) = (course.impulse, FIRST * self.longer);
-        let mut y = [slip[0], slip[1], p_1, p_2, p, course.lift, course.work];
+        let [u, v, drilling, ..] = begin;
+        let mut y = [u, v, drilling, course.lift, p_1, p_2, course.couple, p, course.work];
         let (mut done, mut again) = (false, None);
-        while !done && !flow.is_over([y[0], y[1]]) {
+        while !done && !flow.is_over(&y) {
             let steps = Steps {
                 first: Some(first),
                 most: IMPACT_STEPS,
@@ -288,21 +333,22 @@ impl PointImpact {
                 SlipEnd::GivenUp => return None,
             }
         }
-        let [u, v, p_1, p_2, p, ..] = y;
-        course.impulse = [p_1, p_2, p];
-        let Some(kept) = flow.keeps([u, v]).filter(|_| !done) else { return Some(([u, v], done)) };
-        let ([x, y], sigma, mu) = (kept.way, speed([u, v]), rubs.mu);
+        let [u, v, _, _, p_1, p_2, couple, p, _] = y;
+        (course.impulse, course.couple) = ([p_1, p_2, p], couple);
+        let Some(kept) = flow.keeps([u, v]).filter(|_| !done) else { return Some((y, done)) };
+        let ([x, z], sigma, mu) = (kept.way, speed([u, v]), flow.rubs.mu);
         let slow = -self.light.growth(kept.way, mu);
         let push = kept.way.map(|x| -mu * x);
         let most = if slow > 0.0 { sigma / slow } else { f64::INFINITY };
-        let ended = course.straight(self.light.normal + self.light.lifts(push), push, most);
+        let ended =
+            course.straight(self.light.normal + self.light.lifts(push), [push[0], push[1], 0.0], most);
         // The remaining slip across that direction falls as a power of the slip.
         let long = (course.impulse[2] - p) / sigma;
         let log = if slow * long == 0.0 { -long } else { (-slow * long).max(-1.0).ln_1p() / slow };
         let across = kept.across * (mu * kept.light * log).exp_m1() / kept.light;
-        course.impulse[0] -= y * across;
+        course.impulse[0] -= z * across;
         course.impulse[1] += x * across;
-        Some(([u, v], ended))
+        Some((y, ended))
     }
 }
 
@@ -310,7 +356,13 @@ impl PointImpact {
 enum Along {
     Ice,
     Slip,
+    /// The slip follows the drilling of the patch.
+    Creep,
     Rest,
+    /// Slip and drilling of the patch have stopped, and friction holds both.
+    Held,
+    /// They have stopped, and friction cannot hold both.
+    Off,
     /// It slips on along this direction.
     On([f64; 2]),
 }
@@ -408,6 +460,7 @@ fn twice(k: f64, p: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::patch;
     use super::*;
 
     /// The skew ellipsoid of an independent model with 30 digits, along axes that lean to no side of it.
@@ -418,7 +471,7 @@ mod tests {
     };
 
     fn struck(light: Delassus, slip: [f64; 2], mu: f64, e: f64) -> Struck {
-        let impact = PointImpact { slip, lift: -1.0, light, tol: 3e-14, longer: 1.0 };
+        let impact = PointImpact { slip, lift: -1.0, light, patch: None, tol: 3e-14, longer: 1.0 };
         impact.on(&Friction::coulomb(mu).into(), e, &()).unwrap()
     }
 
@@ -468,5 +521,87 @@ mod tests {
             hits[here.hit as usize] += 1;
         }
         assert!(hits[..3].iter().all(|&n| n > 10), "{hits:?}");
+    }
+
+    /// The patch of that ellipsoid.
+    const SKEW_PATCH: PatchedPoint = PatchedPoint {
+        radius: 0.05,
+        drilling: 3.0,
+        row: [0.8001985746, -0.4498319147, 0.0104008837],
+        about: 3.1524766760,
+    };
+
+    fn on_patch(light: Delassus, patch: PatchedPoint, slip: [f64; 2], mu: f64, e: f64) -> Struck {
+        let impact = PointImpact { slip, lift: -1.0, light, patch: Some(patch), tol: 3e-14, longer: 1.0 };
+        impact.on(&Friction::Coulomb { mu, fixed: mu, patch: patch.radius }.into(), e, &()).unwrap()
+    }
+
+    #[test]
+    fn a_patch_slips_and_drills_along_an_impact_as_in_an_independent_model() {
+        let found = on_patch(SKEW, SKEW_PATCH, [0.5, -0.3], 0.2, 0.6);
+        let known = [-0.0763430747, 0.1992179466, 1.1318113199, -0.0005783491, 0.5841577062];
+        let [p, q, n] = found.impulse;
+        let off = [p, q, n, found.couple, found.lift].into_iter().zip(known).map(|(a, b)| (a - b).abs());
+        assert!(found.hit == Hit::Slips && off.fold(0.0, f64::max) < 3e-10, "{found:?}");
+    }
+
+    #[test]
+    fn a_patch_tends_to_the_point_in_the_first_order_of_its_radius_also_where_it_creeps() {
+        for (slip, mu) in [([0.5, -0.3], 0.2), ([0.5, -0.3], 0.6), ([0.02, 0.01], 0.9), ([0.0, 0.0], 0.1)] {
+            let point = struck(SKEW, slip, mu, 0.6);
+            let mut before = f64::INFINITY;
+            for radius in [1e-2, 1e-3, 1e-4, 1e-6, 1e-9, 1e-13] {
+                let found = on_patch(SKEW, PatchedPoint { radius, ..SKEW_PATCH }, slip, mu, 0.6);
+                let off = (0..3).map(|i| (found.impulse[i] - point.impulse[i]).abs());
+                let off = off.fold((found.lift - point.lift).abs(), f64::max);
+                assert!(off < 2.0 * radius + 1e-12 && off < before, "{slip:?} {mu} {radius}: {off:e}");
+                assert!(found.lost > 0.0 && found.couple <= 0.0, "{found:?}");
+                assert!(found.hit != Hit::Sticks, "{found:?}");
+                before = off.max(1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_ball_on_a_patch_is_struck_as_it_slides_for_the_time_of_the_impulse() {
+        // Pure drilling loses (3 pi/16) mu eps (1 + e)/I, and stops.
+        let ball = Delassus { level: [[3.5, 0.0], [0.0, 3.5]], couples: [0.0; 2], normal: 1.0 };
+        for (drilling, e) in [(2.0, 0.7), (-2.0, 0.0), (0.01, 0.9)] {
+            let patch = PatchedPoint { radius: 0.05, drilling, row: [0.0; 3], about: 2.5 };
+            let found = on_patch(ball, patch, [0.0; 2], 0.3, e);
+            let slows =
+                (3.0 * core::f64::consts::PI / 16.0 * 0.3 * 0.05 * (1.0 + e) * 2.5).min(drilling.abs());
+            let off = found.couple + slows * drilling.signum() / 2.5;
+            assert!(off.abs() < 1e-14 && found.impulse[..2] == [0.0; 2], "{drilling}: {off:e} {found:?}");
+        }
+    }
+
+    #[test]
+    fn slip_and_drilling_that_have_stopped_are_held_or_leave_along_the_one_way_out() {
+        let mut hits = [0; 6];
+        for k in 0..300 {
+            let part = |i: u32| (0.61803398875 * f64::from(k * 11 + i)).fract();
+            let (mu, radius) = (0.02 + 0.5 * part(1), [0.3, 0.03, 1e-4][k as usize % 3]);
+            // A drilling that the normal impulse drives itself, as of a stone that lands on a twisted side.
+            let row = [2.0 * part(2) - 1.0, 2.0 * part(3) - 1.0, 0.6 * part(4) - 0.3];
+            let patch = PatchedPoint { radius, drilling: 0.0, row, about: 3.2 };
+            let couples = [0.4 * part(5) - 0.2, 0.4 * part(6) - 0.2];
+            let light = Delassus { couples, ..SKEW };
+            let found = on_patch(light, patch, [0.0; 2], mu, 0.5);
+            let [x, y, n] = found.impulse;
+            let [u, v] = found.slip;
+            let drilling = row[0] * x + row[1] * y + row[2] * n + 3.2 * found.couple;
+            assert!(found.lost > -1e-15 && x.hypot(y) <= mu * n * (1.0 + 1e-12), "{k} {found:?}");
+            if found.hit == Hit::Sticks {
+                assert!(drilling.abs() < 1e-14 && [u, v] == [0.0; 2], "{k} {drilling:e} {found:?}");
+            } else {
+                // The motion has the friction of its own slip and drilling.
+                let [share, couple, _] = patch::rubs(u.hypot(v), drilling, radius);
+                let off = [x + mu * n * share * u, y + mu * n * share * v, found.couple - mu * n * couple];
+                assert!(off.into_iter().all(|x| x.abs() < 1e-9), "{k} {off:?} {found:?}");
+            }
+            hits[found.hit as usize] += 1;
+        }
+        assert!(hits[Hit::Sticks as usize] > 20 && hits[Hit::SlipsOn as usize] > 20, "{hits:?}");
     }
 }

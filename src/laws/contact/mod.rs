@@ -19,7 +19,7 @@ pub(crate) mod lying;
 pub mod patch;
 pub(crate) mod reduced;
 pub mod rolling;
-mod sliding;
+pub(crate) mod sliding;
 pub mod slip;
 pub mod smooth;
 pub(crate) mod standstill;

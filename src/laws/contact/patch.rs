@@ -18,8 +18,11 @@
 //! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
 
 use crate::methods::search::crossing;
-use crate::numbers::Real;
+use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
+
+/// A step takes at most this share of the distance to k = 1.
+const NEARER_K: f64 = 0.5;
 
 /// f and g/q for k >= 1 as polynomials in 2 s - 1, Chebyshev series of 22 terms; the terms left out sum up to 7e-17.
 #[rustfmt::skip]
@@ -70,6 +73,36 @@ pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
     let [share, couple] = friction_and_couple(slip, turn);
     let (zero, against) = (slip.splat(0.0), radius * couple);
     [share, drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero)), slip + turn]
+}
+
+/// The rubbing speeds of a patch: its slip S, and the speed R of its rim by the drilling.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rubbing<T> {
+    pub slip: T,
+    pub turn: T,
+}
+
+impl<T: Real> Rubbing<T> {
+    #[inline(always)]
+    pub fn of([u, v]: [T; 2], drilling: T, radius: T) -> Self {
+        Self { slip: u.mac(u, v * v).sqrt(), turn: radius * drilling.abs() }
+    }
+
+    #[inline(always)]
+    pub fn speed(&self) -> T {
+        self.slip + self.turn
+    }
+}
+
+impl Rubbing<Dual<f64>> {
+    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one
+    /// side only, so that steps become shorter towards k = 1, and a step across k = 1 is so short that this term is
+    /// below the tolerance.
+    pub fn longest(&self, tol: f64) -> f64 {
+        let left = (self.slip.value - self.turn.value).abs();
+        let past = (self.slip.slope - self.turn.slope).abs();
+        ((NEARER_K * left).max(tol.powf(0.4) * self.speed().value) / past).min(f64::INFINITY)
+    }
 }
 
 /// f and g of a slip that is `k` times eps |w_z|.

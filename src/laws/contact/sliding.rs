@@ -1,20 +1,27 @@
-//! The slip of a contact point along an impact, followed by steps of a flow.
+//! The slip of a contact point along an impact, or of a patch that also drills, followed by steps of a flow.
 //!
 //! ```text
-//! y = (u_1, u_2, P_1, P_2, p, u_n, work)        dp = |u|/(|u| + k) dx, in which nothing is singular
-//! u' = b |u| - mu A u,   P' = -mu u,   p' = |u|,   u_n' = a_n |u| - mu b.u,   work' = u_n |u|       all over |u| + k
+//! y = (u_1, u_2, w_n, u_n, P_1, P_2, C, p, work)        dp = S/(S + k) dx, in which nothing is singular
+//! F = -mu u/|u|,   S = |u|;   on a patch F = -mu f u/|u| and C' = -mu eps g sgn w_n,   S = |u| + eps |w_n|
+//! u' = b + A F + m_t C',   w_n' = m.(F, 1) + i C',   u_n' = a_n + b.F + m_n C',   work' = u_n          per dp
 //! compression ends where u_n = 0, the impact where the work since then is e^2 times that of compression
 //! ```
-//! [`Delassus`] has A, b and a_n. All velocities are in units of the first normal velocity, or of the slip where that is zero.
-//! The time of this flow is p. The coefficient mu is constant, with k = 1, or a function of the speed, with k = mu, since mu
-//! may vanish with the speed.
+//! [`Delassus`] has A, b and a_n, [`PatchedPoint`] m, i and the radius eps. All velocities are in units of the first normal
+//! velocity, or of the slip where that is zero. The time of this flow is p. The coefficient mu is constant, with k = 1, or
+//! a function of the speed, with k = mu, since mu may vanish with the speed; k = mu tr A on a patch. A small patch creeps
+//! behind the impulse, in implicit steps. (F, C') is minus the gradient of a convex function of (u, w_n), so that
+//! they are unique for every mu and every body (Moreau 1988).
 //!
 //! Error: the tolerance of the steps.
 
 use super::delassus::{Delassus, speed};
+use super::patch::{self, Rubbing, rubs};
 use crate::methods::flow::{Flow, FlowPlace};
-use crate::methods::rk8;
+use crate::methods::search::crossing;
+use crate::methods::{radau, rk8};
 use crate::numbers::Dual;
+use core::f64::consts::FRAC_PI_2;
+use nalgebra::{Matrix3, Vector3};
 
 /// A slip slower than this share of the speed, or of the normal velocity, counts as zero.
 pub(super) const STOPPED: f64 = 1e-15;
@@ -28,15 +35,51 @@ const DIES: f64 = 1e-6;
 const DYING: f64 = 1e-3;
 /// A normal velocity that counts as falling again: restitution begins with zero.
 const BARELY_DOWN: f64 = 1e-9;
+/// Step of an angle over which a derivative is computed.
+const ANGLE_STEP: f64 = 1e-5;
+/// Largest number of Newton's steps to the way in which a patch at rest begins to move, and the angle by which one of them
+/// may turn it.
+const MOST_NEWTON: usize = 2000;
+const FARTHEST_TURN: f64 = 0.7;
 /// The first step along an impact.
 pub(super) const FIRST: f64 = 0.3;
 
-/// The places of the numbers of the slip after u: the impulse so far, the normal velocity, and the work of the normal force.
-const P_1: usize = 2;
-const P_2: usize = 3;
-const PUSHED: usize = 4;
-pub(super) const LIFT: usize = 5;
-pub(super) const WORK: usize = 6;
+/// The longest stable explicit step, in units of the impulse in which friction would stop a slow slip.
+const STABLE_STEP: f64 = 5.5;
+/// Where so many stable steps are too few for the impact, steps are implicit.
+const MANY_STEPS: f64 = 60.0;
+
+/// The places of the numbers of the slip after u: the drilling, the normal velocity, the impulse so far, and the work of the
+/// normal force.
+pub(super) const DRILLING: usize = 2;
+pub(super) const LIFT: usize = 3;
+const P_1: usize = 4;
+const P_2: usize = 5;
+const COUPLE: usize = 6;
+const PUSHED: usize = 7;
+pub(super) const WORK: usize = 8;
+/// The number of these numbers, and of those that react to each other.
+pub(super) const SLIDING: usize = 9;
+const REACTING: usize = 4;
+
+/// A patch that drills: its radius, the drilling, how an impulse along the two horizontal axes and along the normal changes
+/// the drilling, and how a couple about the normal does. The same numbers tell how that couple changes the velocities.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PatchedPoint {
+    pub radius: f64,
+    pub drilling: f64,
+    pub row: [f64; 3],
+    pub about: f64,
+}
+
+impl PatchedPoint {
+    /// Whether the patch may drill along an impact that begins with this slip; else it acts as a point.
+    pub fn turns(&self, slip: [f64; 2], light: &Delassus) -> bool {
+        let [m_1, m_2, m_n] = self.row;
+        let planar = light.is_lean() && slip[1] == 0.0;
+        self.drilling != 0.0 || m_1 != 0.0 || m_n != 0.0 || m_2 != 0.0 && !planar
+    }
+}
 
 /// The reason for which a slip along an impact is followed no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +112,7 @@ impl Roughness<'_> {
 pub(super) struct ImpactSlip<'a> {
     pub light: Delassus,
     pub rubs: Roughness<'a>,
+    pub patch: Option<PatchedPoint>,
     /// The work that is restored from the end of compression on; None in compression.
     pub restores: Option<f64>,
     pub tol: f64,
@@ -83,10 +127,17 @@ pub(super) struct Straight {
 }
 
 impl ImpactSlip<'_> {
+    /// The longest stable explicit step of the normal impulse, where friction that is proportional to the slip stops it.
+    fn stable_push<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let radius = self.patch.map_or(0.0, |patch| patch.radius);
+        let [share, ..] = rubs(speed([y[0], y[1]]), y[DRILLING], radius);
+        STABLE_STEP / (self.eased() * share)
+    }
+
     /// The direction that this slip keeps; None if it turns, or has stopped.
     pub fn keeps(&self, slip: [f64; 2]) -> Option<Straight> {
         let sigma = speed(slip);
-        if self.rubs.law.is_some() || sigma < STOPPED {
+        if self.rubs.law.is_some() || self.patch.is_some() || sigma < STOPPED {
             return None;
         }
         let way @ [x, y] = slip.map(|u| u / sigma);
@@ -105,9 +156,126 @@ impl ImpactSlip<'_> {
         })
     }
 
-    /// Whether the steps end at this slip.
-    pub fn is_over(&self, slip: [f64; 2]) -> bool {
-        speed(slip) < STOPPED || self.keeps(slip).is_some()
+    /// The speed of the rubbing: of the slip, and on a patch also of its rim by the drilling.
+    pub fn rubbing<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        speed([y[0], y[1]]) + self.patch.map_or(0.0, |patch| patch.radius * y[DRILLING].abs())
+    }
+
+    /// Whether the steps end at these numbers.
+    pub fn is_over<const N: usize>(&self, y: &[f64; N]) -> bool {
+        self.rubbing(y) < STOPPED || self.keeps([y[0], y[1]]).is_some()
+    }
+
+    /// Whether the slip of a patch is no more than that which follows its drilling.
+    pub fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let Some(PatchedPoint { radius, .. }) = self.patch else { return false };
+        let k = patch::slip_for((speed(self.light.pushes(self.light.couples)) / self.rubs.mu).min(1.0));
+        k.is_finite() && speed([y[0], y[1]]) <= (1.01 * k + 1e-6) * radius * y[DRILLING].abs()
+    }
+
+    /// The largest change of the slip by a unit of friction.
+    fn eased(&self) -> f64 {
+        let [[a, _], [_, b]] = self.light.level;
+        self.rubs.mu * (a + b)
+    }
+
+    /// Friction and its couple per normal force, on a patch.
+    fn pulls(&self, [u, v]: [f64; 2], drilling: f64, radius: f64) -> ([f64; 2], f64) {
+        let (sigma, mu) = (speed([u, v]), self.rubs.at(speed([u, v])));
+        let [share, couple, _] = rubs(sigma, drilling, radius);
+        ([-mu * share * u, -mu * share * v], mu * couple)
+    }
+
+    /// The impulses per normal impulse that hold the patch at rest: the friction and its couple.
+    fn holding(&self, patch: &PatchedPoint) -> [f64; 3] {
+        let ([b_1, b_2], [.., m_n]) = (self.light.couples, patch.row);
+        let rest = self.inertia(patch).lu().solve(&Vector3::new(-b_1, -b_2, -m_n));
+        rest.map_or([f64::NAN; 3], Into::into)
+    }
+
+    /// How impulses of friction and of its couple change the slip and the drilling.
+    fn inertia(&self, PatchedPoint { row: [m_1, m_2, _], about, .. }: &PatchedPoint) -> Matrix3<f64> {
+        let [[a, ab], [_, b]] = self.light.level;
+        Matrix3::new(a, ab, *m_1, ab, b, *m_2, *m_1, *m_2, *about)
+    }
+
+    /// What friction does per normal impulse after slip and drilling of a patch have stopped, where static friction is at
+    /// most `fixed`: the impulses that hold both, or else those of the one motion that begins; and whether it holds.
+    pub fn after_rest(&self, patch: &PatchedPoint, fixed: f64) -> Option<([f64; 3], bool)> {
+        let holds @ [x, y, couple] = self.holding(patch);
+        let friction = x.hypot(y);
+        if friction <= fixed {
+            let [_, grip] = patch::of(patch::slip_for(friction / fixed));
+            if couple.abs() <= fixed * patch.radius * grip || fixed == f64::INFINITY {
+                return Some((holds, true));
+            }
+        }
+        self.leaves(patch).map(|way| (way, false))
+    }
+
+    /// The friction and the couple under which a patch at rest begins to move: those of the motion y = B + G (F, C), which
+    /// is unique. F and C depend on its direction alone, by the angles of (u, eps w) across the table and from it, which
+    /// are sought with the speed.
+    fn leaves(&self, patch: &PatchedPoint) -> Option<[f64; 3]> {
+        let ([b_1, b_2], radius, mu) = (self.light.couples, patch.radius, self.rubs.at(0.0));
+        let ways = Vector3::new(1.0, 1.0, 1.0 / radius);
+        let heavy = self.inertia(patch).try_inverse()?;
+        let driven = heavy * Vector3::new(b_1, b_2, patch.row[2]);
+        let way = |alpha: f64, beta: f64| {
+            let ((sin, cos), (up, across)) = (alpha.sin_cos(), beta.sin_cos());
+            Vector3::new(across * cos, across * sin, up).component_mul(&ways)
+        };
+        let pulls = |y: &Vector3<f64>| {
+            let ([x, z], couple) = self.pulls([y[0], y[1]], y[2], radius);
+            Vector3::new(x, z, couple)
+        };
+        let off = |[alpha, beta, speed]: [f64; 3], more: f64| {
+            let y = way(alpha, beta);
+            (heavy * y * speed - driven - pulls(&y) * more).component_mul(&ways)
+        };
+        // Friction that is larger by `more` just holds; there the direction is that in which this friction would be reached.
+        // From there on it is followed while friction falls to its own value.
+        let ratio = [driven[0].hypot(driven[1]), driven[2].abs() / radius];
+        let leans = |beta: f64| {
+            let [force, couple] = patch::of(1.0 / beta.tan());
+            force * ratio[1] - couple * ratio[0]
+        };
+        let beta = crossing(leans, 0.0, FRAC_PI_2, leans(0.0), leans(FRAC_PI_2));
+        let [force, couple] = patch::of(1.0 / beta.tan());
+        let mut x = [driven[1].atan2(driven[0]), beta.copysign(driven[2]), 0.0];
+        let (mut more, mut fall) = (ratio[0].hypot(ratio[1]) / (mu * force.hypot(couple)), 0.5);
+        let mut left = MOST_NEWTON;
+        loop {
+            let next = (more * (1.0 - fall)).max(1.0);
+            let mut tried = x;
+            let known = loop {
+                left = left.checked_sub(1)?;
+                let columns = [0, 1, 2].map(|i| {
+                    if i == 2 {
+                        return (heavy * way(tried[0], tried[1])).component_mul(&ways);
+                    }
+                    let moved = |by: f64| {
+                        off(core::array::from_fn(|k| tried[k] + if k == i { by } else { 0.0 }), next)
+                    };
+                    (moved(ANGLE_STEP) - moved(-ANGLE_STEP)) / (2.0 * ANGLE_STEP)
+                });
+                let step = Matrix3::from_columns(&columns).lu().solve(&off(tried, next))?;
+                let turns = step[0].abs().max(step[1].abs());
+                // A step that turns far, or is no number, is too long.
+                if !(turns < FARTHEST_TURN) {
+                    break false;
+                }
+                tried = core::array::from_fn(|i| tried[i] - step[i]);
+                if turns <= if next > 1.0 { ANGLE_STEP } else { f64::EPSILON.sqrt() * ANGLE_STEP } {
+                    break tried[2] > 0.0;
+                }
+            };
+            match known {
+                true if next == 1.0 => return Some(pulls(&way(tried[0], tried[1])).into()),
+                true => (x, more, fall) = (tried, next, 0.9f64.min(1.5 * fall)),
+                false => fall *= 0.5,
+            }
+        }
     }
 }
 
@@ -121,14 +289,29 @@ impl Flow<2> for ImpactSlip<'_> {
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let sigma = (y[0] * y[0] + y[1] * y[1]).sqrt().max(f64::MIN_POSITIVE);
-        let (mu, light) = (self.rubs.at(sigma), &self.light);
+        let (light, [b_1, b_2]) = (&self.light, self.light.couples);
+        if let Some(PatchedPoint { radius, row: [m_1, m_2, m_n], about, .. }) = self.patch {
+            let ([x, z], couple) = self.pulls([y[0], y[1]], y[DRILLING], radius);
+            let rubbing = self.rubbing(y).max(f64::MIN_POSITIVE);
+            let per = rubbing / (rubbing + self.eased());
+            let [faster, aside] = light.level([x, z]);
+            all[0] = per * (b_1 + faster + m_1 * couple);
+            all[1] = per * (b_2 + aside + m_2 * couple);
+            all[DRILLING] = per * (m_1 * x + m_2 * z + m_n + about * couple);
+            all[LIFT] = per * (light.normal + light.lifts([x, z]) + m_n * couple);
+            (all[P_1], all[P_2], all[COUPLE]) = (per * x, per * z, per * couple);
+            (all[PUSHED], all[WORK]) = (per, per * y[LIFT]);
+            return;
+        }
+        let mu = self.rubs.at(sigma);
         let per = 1.0 / (sigma + if self.rubs.law.is_some() { mu } else { 1.0 });
         let pull = [mu * y[0], mu * y[1]];
-        let ([slows, slows_aside], [b_1, b_2]) = (light.level(pull), light.couples);
+        let [slows, slows_aside] = light.level(pull);
         all[0] = per * (b_1 * sigma - slows);
         all[1] = per * (b_2 * sigma - slows_aside);
         all[P_1] = -(per * pull[0]);
         all[P_2] = -(per * pull[1]);
+        (all[DRILLING], all[COUPLE]) = (0.0, 0.0);
         all[PUSHED] = per * sigma;
         all[LIFT] = per * (light.normal * sigma - light.lifts(pull));
         all[WORK] = per * (y[LIFT] * sigma);
@@ -158,11 +341,11 @@ impl Flow<2> for ImpactSlip<'_> {
     }
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
-        let (sigma, aside) = (speed([y[0], y[1]]), y[1].abs());
+        let (sigma, aside) = (self.rubbing(y), y[1].abs());
         // The error is relative to a fast slip, and so small for a slow slip that its direction stays.
         let per_slip = if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
         let per = |i: usize| match i {
-            1 if self.light.is_lean() && aside > STRAIGHT_ON * sigma => {
+            1 if self.patch.is_none() && self.light.is_lean() && aside > STRAIGHT_ON * sigma => {
                 per_slip.max(1.0 / (DIES * aside).max(self.tol.min(DYING * aside)))
             }
             0 | 1 => per_slip,
@@ -185,12 +368,38 @@ impl Flow<2> for ImpactSlip<'_> {
         f64::INFINITY
     }
 
-    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
-        f64::INFINITY
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let Some(PatchedPoint { radius, .. }) = self.patch else { return f64::INFINITY };
+        let number = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let radius = Dual { value: radius, slope: 0.0 };
+        Rubbing::of([number(0), number(1)], number(DRILLING), radius).longest(self.tol)
+    }
+
+    const MAY_BE_STIFF: bool = true;
+
+    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
+        self.patch.is_some() && MANY_STEPS * self.stable_push(&place.y) * self.light.normal < 1.0
+    }
+
+    fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        self.stable_push(&place.y) / place.rate[PUSHED]
+    }
+
+    #[inline(never)]
+    fn implicit_step<const N: usize>(
+        &self,
+        from: &FlowPlace<N>,
+        h: f64,
+        guess: radau::Guess<N>,
+    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
+        let (y, size) = (&from.y, self.rubbing(&from.y));
+        let sizes: [f64; REACTING] = [size, size, y[DRILLING].abs().max(1e-3), y[LIFT].abs().max(1e-3)];
+        let slopes = radau::slopes(&radau::middle(y, &guess), &sizes, |y| self.rates(y));
+        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol), guess)
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(SlipEnd, [f64; N])> {
-        self.is_over([place.y[0], place.y[1]]).then_some((SlipEnd::Straight, place.y))
+        self.is_over(&place.y).then_some((SlipEnd::Straight, place.y))
     }
 
     fn theta<const N: usize>(&self, _: &[f64; N]) -> f64 {

@@ -396,10 +396,6 @@ pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
         let expected = "0 together with drilling friction, which gives the same couple";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
-    if patch > 0.0 && ask.restitution.is_some() {
-        let expected = "0 together with a restitution";
-        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
-    }
     Ok(())
 }
 

@@ -352,6 +352,9 @@ pub struct Strike<S = State> {
     /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
     /// impulse.
     pub impulse: [f64; 3],
+    /// The impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R); 0 for a point.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub couple: f64,
     /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
     pub lost: f64,
     /// Whether this is the last of a sequence of bounces, after which the body stays on the table.

@@ -9,8 +9,9 @@ use super::face::ALMOST_FLAT;
 use super::fly::Aloft;
 use super::own::Own;
 use crate::laws::body::Rim;
-use crate::laws::contact::impact::{Hit, Struck, lightness, turned};
+use crate::laws::contact::impact::{Hit, Struck, lightness, patched, turned};
 use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
+use crate::laws::contact::sliding::PatchedPoint;
 use crate::laws::contact::slip::Friction;
 use crate::laws::contact::{FLAT, Table};
 use crate::laws::loss::{Couples, Kinematics};
@@ -95,9 +96,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(super) fn strikes(&mut self) -> Next {
         let (e, shape) = (self.ask.restitution.unwrap_or(0.0), self.of.slide.law.shape);
         let mut from = self.aloft();
-        let om = self.of.turning;
+        let one = self.has_one_contact();
         if from.angle.0 < FLAT && self.of.body.rim() > 0.0 {
-            if om != 0.0 {
+            if one {
                 return Next::Ends(Ending::Face);
             }
             if let Some(next) = self.strikes_flat(e) {
@@ -120,7 +121,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let rims = self.of.body.rims();
         let there = if both { from.on_other_rim(&rims) } else { from };
-        if both && om != 0.0 {
+        if both && one {
             return Next::Ends(Ending::Side);
         }
         if both && from.lift >= 0.0 && there.lift < 0.0 {
@@ -136,8 +137,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             return if e == 0.0 { self.lands_on_both() } else { self.rattles(e) };
         }
         let Some(mut struck) = self.impact(&from, e) else { return Next::Ends(Ending::Slip) };
-        let [force, _] =
-            self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, struck.impulse), ..from });
+        let [force, _] = self.pressed(&Aloft { w: turned(&shape, from.angle, from.w, &struck), ..from });
         let left = self.bounces(&from, &struck, force, e);
         self.claims(left.map_or(0.0, |left| left * self.couple_bound(&from, force)));
         let (stays, bounce) = (left.is_some(), struck.lift);
@@ -149,24 +149,39 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if let Some(left) = left {
             let u @ [along, across] = after.slip;
             let State { theta, w1, w2, w3 } = after.state();
-            let slides = || self.of.slide.slips(theta.sin_cos(), [w1, w2, w3], u, None).0.force;
-            let power = if u == [0.0; 2] {
-                0.0
-            } else {
-                let [_, f_2, f_h] = slides();
-                -(f_2 * across + f_h * along)
+            let (angle, w, law) = (theta.sin_cos(), [w1, w2, w3], &self.of.slide.law);
+            let ([_, f_2, f_h], drills) = match law.patch() {
+                Some(patch) => {
+                    let (at, _, drills) = law.on_patch(angle, w, u, patch);
+                    (at.force, drills)
+                }
+                None if u == [0.0; 2] => ([0.0; 3], 0.0),
+                None => (self.of.slide.slips(angle, w, u, None).0.force, 0.0),
             };
+            let power = drills - (f_2 * across + f_h * along);
             let share = self.sums_bounces((left, bounce), [along.hypot(across), power], after.w);
             self.of.roundings.turned += share;
         }
         let level = || self.tilt(from.angle).abs().max(after.lift).max(after.on_other_rim(&rims).lift.abs());
         if self.has_two_rims() && e > 0.0 && level() < RATTLED {
-            return if om == 0.0 { self.ends_rattle() } else { Next::Ends(Ending::Side) };
+            return if !one { self.ends_rattle() } else { Next::Ends(Ending::Side) };
         }
         if e > 0.0 && self.hardly_rattles(&after) {
-            return if om == 0.0 { self.ends_rattle_on_face() } else { Next::Ends(Ending::Face) };
+            return if !one { self.ends_rattle_on_face() } else { Next::Ends(Ending::Face) };
         }
         self.leaves_impact(&after)
+    }
+
+    /// The patch of contact at this inclination; None for a point.
+    fn patched(&self, angle: (f64, f64), w: [f64; 3]) -> Option<PatchedPoint> {
+        let law = &self.of.slide.law;
+        law.patch().map(|radius| patched(&law.shape, angle, radius, self.of.slide.drills(angle, w[0], w[2])))
+    }
+
+    /// Whether the motion ends where a second circle or a face lands: what a table that turns, or a patch, does there has
+    /// no law.
+    pub(super) fn has_one_contact(&self) -> bool {
+        self.of.turning != 0.0 || self.of.slide.law.patch().is_some()
     }
 
     /// The impact at these numbers; None for a rolling contact without a solution.
@@ -179,7 +194,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             // Rounding must not make the slip turn.
             (light.level[1][1], light.normal, light.couples[0]) = (light.level[0][0], 1.0, 0.0);
         }
-        self.point_impact(from.slip, from.lift, light, &self.of.own).on(&self.ask.table, e, &self.of.own)
+        let patch = self.patched(from.angle, from.w);
+        let point = self.point_impact((from.slip, from.lift), (light, patch), &self.of.own);
+        point.on(&self.ask.table, e, &self.of.own)
     }
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
@@ -207,8 +224,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
     fn bounces(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
         let shape = &self.of.slide.law.shape;
-        let (light, w) = (lightness(shape, from.angle), turned(shape, from.angle, from.w, struck.impulse));
-        let bounce = Bounce { struck, light: &light, force, loses: self.of.loses(&self.ask) };
+        let (light, w) = (lightness(shape, from.angle), turned(shape, from.angle, from.w, struck));
+        let patch = self.patched(from.angle, w);
+        let bounce = Bounce { struck, light: &light, patch, force, loses: self.of.loses(&self.ask) };
         self.bounces_for(&bounce, e, &self.of.own, || {
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
             let mut at = self.at;
@@ -220,11 +238,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The numbers after an impact, which is also recorded.
     pub(super) fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
-        let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck.impulse);
+        let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
         // No impact gains energy.
         self.claims(-struck.lost);
         self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
+        self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.couple = struck.couple);
         after
     }
 
@@ -250,7 +269,18 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             }
         }
         let other = rim > 0;
-        self.records_impact(Strike { time, other, rim, hit, states, velocities, impulse, lost, stays });
+        self.records_impact(Strike {
+            time,
+            other,
+            rim,
+            hit,
+            states,
+            velocities,
+            impulse,
+            couple: 0.0,
+            lost,
+            stays,
+        });
     }
 
     /// The vertical velocities of both rims, this one first.

@@ -61,7 +61,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         };
         let impulse = [0.0, 0.0, -((1.0 + e) * lift)];
         let lost = 0.5 * (1.0 - e) * (1.0 + e) * lift * lift;
-        Struck { impulse, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
+        Struck { impulse, couple: 0.0, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
     }
 
     /// Flies to its landing, or to the last time.

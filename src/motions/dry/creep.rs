@@ -20,7 +20,7 @@
 //!
 //! Error: `LOST_DRILLING` times the drilling that is left out.
 
-use crate::laws::contact::patch;
+use crate::laws::contact::patch::{self, Rubbing};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::walk::numbers::{Halt, TIME};
@@ -53,31 +53,10 @@ const STICKY: f64 = 1e9;
 const APPROXIMATIONS: usize = 60;
 /// Two of them that differ by less than this share are the same k.
 const SAME_K: f64 = 1e-14;
-/// A step takes at most this share of the distance to k = 1.
-const NEARER_K: f64 = 0.5;
 
 /// The speed below which a patch of this radius counts as at rest.
 pub(crate) fn rests_below(radius: f64) -> f64 {
     radius * DRILLS
-}
-
-/// The rubbing speeds of a patch: its slip S, and the speed R of its rim by the drilling.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rubbing<T> {
-    pub slip: T,
-    pub turn: T,
-}
-
-impl<T: Real> Rubbing<T> {
-    #[inline(always)]
-    pub fn of([u, v]: [T; 2], drilling: T, radius: T) -> Self {
-        Self { slip: u.mac(u, v * v).sqrt(), turn: radius * drilling.abs() }
-    }
-
-    #[inline(always)]
-    pub fn speed(&self) -> T {
-        self.slip + self.turn
-    }
 }
 
 /// A patch of contact at rest: the coefficients of static friction, which may be infinite, and of sliding friction, and
@@ -126,15 +105,6 @@ impl Rubbing<Dual<f64>> {
     pub fn left(&self, pace: f64) -> f64 {
         let left = self.speed().value / -self.speed().slope;
         if left * pace <= REST_IS_NEAR { left.max(0.0) } else { 0.0 }
-    }
-
-    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one
-    /// side only, so that steps become shorter towards k = 1, and a step across k = 1 is so short that this term is
-    /// below the tolerance.
-    pub fn longest(&self, tol: f64) -> f64 {
-        let left = (self.slip.value - self.turn.value).abs();
-        let past = (self.slip.slope - self.turn.slope).abs();
-        ((NEARER_K * left).max(tol.powf(0.4) * self.speed().value) / past).min(f64::INFINITY)
     }
 }
 
@@ -279,20 +249,4 @@ pub(crate) fn derivatives<const R: usize, const N: usize>(
         (0..R).for_each(|i| all[(i, j)] = rates[i].slope);
     }
     all
-}
-
-/// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.
-pub(crate) fn slopes<const N: usize, const M: usize>(
-    y: &[f64; N],
-    sizes: &[f64; M],
-    rates: impl Fn(&[f64; N]) -> [f64; N],
-) -> SMatrix<f64, M, M> {
-    let mut slopes = SMatrix::zeros();
-    for j in 0..M {
-        let (mut more, mut less) = (*y, *y);
-        (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
-        let [above, below] = [rates(&more), rates(&less)];
-        (0..M).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
-    }
-    slopes
 }

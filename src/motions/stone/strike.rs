@@ -6,6 +6,7 @@ use super::flow::{
 use super::fly::{StoneAloft, StoneFlight};
 use super::phases::StoneWalk;
 use crate::laws::contact::impact::Struck;
+use crate::laws::contact::sliding::PatchedPoint;
 use crate::laws::contact::{Table, delassus::Delassus};
 use crate::laws::loss::Holds;
 use crate::laws::stone::StonePose;
@@ -30,6 +31,7 @@ struct Contact {
     lab: [[f64; 3]; 3],
     at: Touching<f64>,
     light: Delassus,
+    patch: Option<PatchedPoint>,
 }
 
 impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
@@ -53,7 +55,16 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         let at = Touching { holds: Holds::default(), ..at };
         let [[a, ab, b_1], [_, b, b_2], [.., normal]] = law.light(&at, &lab);
         let light = Delassus { level: [[a, ab], [ab, b]], couples: [b_1, b_2], normal };
-        Contact { lab, at, light }
+        let patch = law.patch().map(|radius| {
+            let row = cross(law.inverse.times(lab[2]), at.r);
+            PatchedPoint {
+                radius,
+                drilling: dot(lab[2], w),
+                row: lab.map(|axis| dot(axis, row)),
+                about: dot(lab[2], law.inverse.times(lab[2])),
+            }
+        });
+        Contact { lab, at, light, patch }
     }
 
     /// N0, the normal force without friction, and the size of its terms.
@@ -183,8 +194,8 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The impact of the lowest point; None for a rolling contact without a solution.
     fn impact(&self, from: &StoneAloft<N>, e: f64) -> Option<Struck> {
-        let (light, own) = (self.contact_at(&from.y).light, self.of.flow.own);
-        self.point_impact(slip_of(&from.y), from.lift, light, &own).on(&self.ask.table, e, &own)
+        let (Contact { light, patch, .. }, own) = (self.contact_at(&from.y), self.of.flow.own);
+        self.point_impact((slip_of(&from.y), from.lift), (light, patch), &own).on(&self.ask.table, e, &own)
     }
 
     /// The next phase after a landing.
@@ -213,7 +224,12 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
             let y = after.y;
             let ([u, v], seen) = (slip_of(&y), StoneFlow { touch: Touch::Slips, ..self.of.flow }.seen_at(&y));
             let [f, g] = [0, 1].map(|i| dot(seen.lab[i], seen.to.force));
-            let power = if [u, v] == [0.0; 2] { 0.0 } else { -(u * f + v * g) };
+            let drills = if self.of.flow.law.patch().is_some() {
+                seen.to.couple * dot(y.omega(), seen.at.n)
+            } else {
+                0.0
+            };
+            let power = if [u, v] == [0.0; 2] { 0.0 } else { -(u * f + v * g) - drills };
             self.sums_bounces((left, bounce), [u.hypot(v), power], y.omega());
         }
         self.leaves_impact()
@@ -221,10 +237,10 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
     fn bounces(&mut self, after: &StoneAloft<N>, struck: &Struck, e: f64) -> Option<f64> {
-        let (Contact { lab, at, light }, w, law) =
+        let (Contact { lab, at, light, patch }, w, law) =
             (self.contact_at(&after.y), after.y.omega(), self.of.flow.law);
         let [force, _] = self.pressed(&after.y);
-        let bounce = Bounce { struck, light: &light, force, loses: !self.ask.losses.is_none() };
+        let bounce = Bounce { struck, light: &light, patch, force, loses: !self.ask.losses.is_none() };
         let left = self.bounces_for(&bounce, e, &self.of.flow.own, || {
             let rate = law.slip_rate(&at, w, &law.pulled(&at, w, [0.0; 3]));
             [0, 1].map(|i| dot(lab[i], rate) - light.couples[i] * force)
@@ -242,7 +258,8 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         let Contact { lab, at, .. } = self.contact_at(&from.y);
         let [x, y, z] = struck.impulse;
         let push = plus(across(&lab, [x, y]), z, lab[2]);
-        let w = plus(from.y.omega(), 1.0, self.of.flow.law.inverse.times(cross(at.r, push)));
+        let turn = plus(cross(at.r, push), struck.couple, lab[2]);
+        let w = plus(from.y.omega(), 1.0, self.of.flow.law.inverse.times(turn));
         let mut y = from.y;
         y[4..7].copy_from_slice(&w);
         [y[SLID_X], y[SLID_Y]] = struck.slip;
@@ -251,7 +268,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The numbers after an impact, which is also recorded.
     fn struck(&mut self, from: &StoneAloft<N>, struck: &Struck, stays: bool) -> StoneAloft<N> {
-        let &Struck { hit, impulse, lost, .. } = struck;
+        let &Struck { hit, impulse, couple, lost, .. } = struck;
         let after = self.after(from, struck);
         // No impact gains energy.
         self.claims(-lost);
@@ -269,6 +286,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
             states,
             velocities,
             impulse,
+            couple,
             lost,
             stays,
         });

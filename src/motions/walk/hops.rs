@@ -14,6 +14,7 @@ use super::{Next, Phases, Walk};
 use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::{Hit, PointImpact, Struck};
 use crate::laws::contact::landing::REVERSES;
+use crate::laws::contact::sliding::PatchedPoint;
 use crate::laws::custom::SpeedLaw;
 use crate::motions::{Ending, Method, Moving};
 
@@ -72,6 +73,8 @@ pub(crate) struct Hops {
 pub(crate) struct Bounce<'a> {
     pub struck: &'a Struck,
     pub light: &'a Delassus,
+    /// The patch of contact after it.
+    pub patch: Option<PatchedPoint>,
     /// N0, the normal force without friction.
     pub force: f64,
     /// Whether losses act at the contact.
@@ -83,9 +86,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
     /// steps.
     pub fn point_impact(
         &self,
-        slip: [f64; 2],
-        lift: f64,
-        light: Delassus,
+        (slip, lift): ([f64; 2], f64),
+        (light, patch): (Delassus, Option<PatchedPoint>),
         own: &impl SpeedLaw,
     ) -> PointImpact {
         let (longer, rougher) = if self.perturbation > 0.0 {
@@ -97,14 +99,14 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         let tol = (IMPACT_SHARE * fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
         // A law of the user need not be smooth.
         let tol = if own.varies() { OWN_IMPACT_TOL * fine } else { tol };
-        PointImpact { slip, lift, light, tol: tol * rougher, longer }
+        PointImpact { slip, lift, light, patch, tol: tol * rougher, longer }
     }
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed. `rates` are those of the
     /// slip without a contact force.
     pub fn bounces_for(
         &self,
-        Bounce { struck, light, force, loses }: &Bounce<'_>,
+        Bounce { struck, light, patch, force, loses }: &Bounce<'_>,
         e: f64,
         own: &impl SpeedLaw,
         rates: impl FnOnce() -> [f64; 2],
@@ -127,7 +129,10 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
             let [faster, aside] = rates().map(|rate| 2.0 * rate / fall);
             // In units of the bounce, unless a law of the user has a speed of its own.
             let unit = if own.varies() { struck.lift } else { 1.0 };
-            let next = self.point_impact([u + faster, v + aside].map(|u| u * unit), -unit, **light, own);
+            let slip = [u + faster, v + aside].map(|u| u * unit);
+            let drills = |patch: PatchedPoint| patch.drilling / struck.lift * unit;
+            let patch = patch.map(|patch| PatchedPoint { drilling: drills(patch), ..patch });
+            let next = self.point_impact((slip, -unit), (**light, patch), own);
             ratio = next.on(&self.ask.table, e, own).map_or(1.0, |next| next.lift / unit);
         }
         let left = 2.0 * struck.lift / (fall * (1.0 - ratio));

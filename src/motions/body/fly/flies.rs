@@ -170,8 +170,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
-            // On a table that turns a face, or two rims, end the motion.
-            Ending::Face | Ending::Side if self.of.turning != 0.0 => Next::Ends(ending),
+            // On a table that turns, or on a patch, a face or two rims end the motion.
+            Ending::Face | Ending::Side if self.has_one_contact() => Next::Ends(ending),
             Ending::Face if self.of.body.rim() > 0.0 => self.settles_on_face(),
             // Another part of a body, which may land first, has no known shape.
             Ending::LiftOff if self.of.body.lands_on_rims() => {
