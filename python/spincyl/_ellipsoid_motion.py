@@ -47,9 +47,7 @@ class EllipsoidMotion(Motion):
         the horizontal velocity of the lowest point. Needs a law of friction or `restitution=`.
         """,
     )
-    lift = Number(
-        ALOFT, "(n,) upward velocity of the lowest point, sqrt(g a) or m/s. Needs `restitution=`."
-    )
+    lift = Number(ALOFT, "(n,) upward velocity of the lowest point, sqrt(g a) or m/s. Needs `restitution=`.")
 
     @staticmethod
     def _begun(

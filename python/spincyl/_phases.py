@@ -129,9 +129,7 @@ def impacts(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[I
     found = []
     for time, other, hit, stays, lost, along, across, up, *numbers in rows.tolist():
         half = len(numbers) // 2
-        before, after = (
-            state(at[:-3], at[-3:-1], (0.0, at[-1])) for at in (numbers[:half], numbers[half:])
-        )
+        before, after = (state(at[:-3], at[-3:-1], (0.0, at[-1])) for at in (numbers[:half], numbers[half:]))
         rim, kind, push = RIMS[int(other)], HITS[int(hit)], (along, across, up)
         found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays)))
     return tuple(found)

@@ -3,7 +3,8 @@
 An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim takes
 over, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi changes its sign.
 Angles that refer to the first rim throughout are continuous, except where a body stands on its face: there
-only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples.
+only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples. A stone has
+neither rims nor these angles: only its kinks count.
 """
 
 from contextlib import suppress
@@ -107,6 +108,8 @@ def aloft(m: "Motion", first: float, last: float) -> Aloft:
     # a kink at an end of the motion needs no knots of its own
     edges = np.array([[a - half, b + half] for a, b in _groups(inside, near)]).reshape(-1, 2)
     edges = edges[(first + near < edges[:, 0]) & (edges[:, 1] < last - near)]
+    if not m._nods:
+        return Aloft(edges, np.array(begins), np.empty(0), np.array([(0, 0, 0, 0, 1)]))
     found = Aloft(edges, np.array(begins), *_changes(m, inside, _poles(m, first, last), first, last))
     return _without_turns(m, found) if len(edges) else found
 

@@ -8,8 +8,8 @@ of one period suffice.
 A stone has no axis of symmetry for such angles: its knots hold the four components of a quaternion, which
 is normalised after interpolation.
 
-For a body that leaves the table, the knots also hold the height of the centre, and each kink has two knots,
-an instant apart, with the slopes before and after it. The angles refer to the first rim throughout.
+For a body or a stone that leaves the table, the knots also hold the height of the centre, and each kink has
+two knots, an instant apart, with the slopes before and after it. Angles refer to the first rim.
 """
 
 from contextlib import suppress
@@ -40,6 +40,8 @@ _STEEPEST = 8.0
 _EVALUATIONS = 900
 # columns of a stone's quaternion, and of x and y of its centre, which are the same as for a body
 _TURN, _PLACE = [0, 1, 2, 5], [3, 4]
+#: the column of the height of its centre, if it leaves the table
+_HIGH = 6
 
 
 def span(m: "Motion") -> tuple[float, float]:
@@ -172,7 +174,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     ndarray, shape (n, 11)
         Rows with ascending times: t; theta, phi, psi, x and y of the centre; the slopes of these five. For a
         stone (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body
-        that leaves the table (n, 13): z of the centre after x and y.
+        that leaves the table (n, 13): z of the centre after x and y; for a stone (n, 15): z at last.
 
     Raises
     ------
@@ -282,7 +284,8 @@ def _distance_of_poses(body: Any, drawn: Floats, true: Floats) -> Floats:
 def _(stone: Ellipsoid, drawn: Floats, true: Floats) -> Floats:
     (q, *at), (p, *there) = _stone_of_numbers(stone, drawn), _stone_of_numbers(stone, true)
     places = [np.abs(a - b).max(axis=1) for a, b in zip(at, there, strict=True)]
-    found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.maximum(*places))
+    places.append(np.abs(drawn[:, _HIGH:] - true[:, _HIGH:]).max(axis=1, initial=0.0))
+    found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.max(places, axis=0))
     return found
 
 
@@ -299,7 +302,8 @@ def _places(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     """The numbers of poses along a last axis, in the order of `knots`."""
     if not m._nods:
         turn, centre = seen(m, t, "orientation", "centre")
-        return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
+        high = centre[..., 2:] if up is not None else centre[..., :0]
+        return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:], high], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
     if up is not None:
         return np.concatenate([up.from_first(t, theta, phi, psi), centre], -1)
