@@ -27,7 +27,7 @@ from spincyl._phases import RIMS, has_friction
 from spincyl._slip import lever_of_stone
 from spincyl._state import State
 from spincyl._swing import swing_on
-from spincyl.studio.aloft import Aloft, aloft, goes_up, parts_of_flight
+from spincyl.studio.aloft import Aloft, aloft, goes_up, pace_of_stone, parts_of_flight
 from spincyl.studio.surface import rotations
 
 if TYPE_CHECKING:
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 _MOST, _LONGEST, _SAMPLES = 200_000, 3000, 65
 # largest difference between a slope and its prediction that leaves 2e-4 to the others: see `packed`
 _STEEPEST = 8.0
-# per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
-_EVALUATIONS = 900
 # columns of a stone's quaternion, and of x and y of its centre, which are the same as for a body
 _TURN, _PLACE = [0, 1, 2, 5], [3, 4]
 #: the column of the height of its centre, if it leaves the table
@@ -90,8 +88,7 @@ def pace(m: "Motion") -> float:
     evaluations.
     """
     if not m._nods:
-        many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
-        return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
+        return pace_of_stone(m)
     if goes_up(m):
         first, last = span(m)
         many = sum((end - begin) * often for begin, end, often, _ in parts_of_flight(m, first, last))
@@ -124,11 +121,6 @@ def _mean_pace(m: "Motion") -> float:
             found[k] = 1 / swing_on(m.body, State(tilt, *turning), contact, int(rims[k])).period
     many = float(np.mean(found))
     return 1 / many if many > 0 else np.inf
-
-
-def _end(m: "Motion") -> float:
-    """The time up to which the motion was computed."""
-    return float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
 
 
 class Repeat(NamedTuple):
