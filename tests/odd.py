@@ -132,7 +132,13 @@ def stones():
         "threads": 1,
         "progress": None,
     }
-    hops = {"body": stone, "state": stone.dropped(start, 0.1), "t": [0.0, 1.0], "contact": sc.Coulomb(0.3), "restitution": 0.4}
+    hops = {
+        "body": stone,
+        "state": stone.dropped(start, 0.1),
+        "t": [0.0, 1.0],
+        "contact": sc.Coulomb(0.3),
+        "restitution": 0.4,
+    }
     spinning = {"spin": 0.5, "pitch": 0.01, "roll": 0.0}
     return {
         "Ellipsoid": (

@@ -29,14 +29,13 @@ from spincyl._input.numbers import (
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._scale import Scale
-from spincyl._sized import Sized
 from spincyl._slip import rise_of_stone
 from spincyl._weights import weighted
 
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Ellipsoid(StoneStarts, Sized):
+class Ellipsoid(StoneStarts):
     """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
 
     In natural units the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any one

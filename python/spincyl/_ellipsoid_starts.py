@@ -20,15 +20,12 @@ from spincyl._input.numbers import (
     si,
     turns_per_second,
 )
-from spincyl._scale import Scale
+from spincyl._sized import Sized
 from spincyl._slip import rise_of_stone, slip_of_stone
 
 
-class StoneStarts:
+class StoneStarts(Sized):
     """Base of stones: the states from which their motions start."""
-
-    shape: tuple[int, ...]
-    scale: Scale | None
 
     def spinning(
         self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
@@ -52,7 +49,7 @@ class StoneStarts:
             n = _core.stone_tilted(*numbered(3, pitch, roll))
             return EllipsoidState(n, n * spin[..., None])
 
-    def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
+    def with_centre_velocity(self: Any, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
         """Return the state with the slip that a given velocity of the centre of mass implies.
 
         Parameters
@@ -137,7 +134,7 @@ class StoneStarts:
         refuse_bad_value("height", height, lambda x: ~((x >= 0) & (x < np.inf)), why)
         moves = (reals("velocity", si("velocity", x, "metre/second") if measured else x) for x in velocity)
         x, y, upward = (as_doubles(move) * (second / metre) for move in moves)
-        found = self.with_centre_velocity(state, x, y)
+        found: EllipsoidState = self.with_centre_velocity(state, x, y)
         with np.errstate(all="ignore"):
             rise = upward - rise_of_stone(self, found.vertical, found.w)
             high = as_doubles(height) / metre

@@ -117,7 +117,7 @@ class State(Hinting):
             slip = tuple(si("slip", x, "metre/second") for x in slip)
         height, lift = si("height", height, "metre"), si("lift", lift, "metre/second")
         found = cls(theta, *w, slip=slip, height=height, lift=lift)
-        if found.height is not None:
+        if found.height is not None and found.lift is not None:
             found = replace(found, height=found.height / metre, lift=found.lift * (second / metre))
         along, across = (x * (second / metre) for x in found._slip)
         return found if slip is None else replace(found, slip=(along, across))
@@ -128,7 +128,7 @@ class State(Hinting):
         metre, second, *_ = scale_of(scale)._units
         found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
-        if self.height is not None:
+        if self.height is not None and self.lift is not None:
             found |= {"height": self.height * metre, "lift": self.lift * (metre / second)}
         return {"theta": self.theta} | found | ({} if slip is None else {"slip": slip})
 
@@ -210,7 +210,7 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     return instance_of("state", state, State)._numbers
 
 
-def refuse_state_in_air(state: State, remedy: str) -> None:
+def refuse_state_in_air(state: Any, remedy: str) -> None:
     """Raise ValueError with a remedy for a state in the air."""
     if state.height is not None:
         raise ValueError(f"state: the body is in the air, height = {repr_of_numbers(state.height)}: {remedy}")

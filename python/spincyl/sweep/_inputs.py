@@ -67,7 +67,7 @@ def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Real
     if states.slip is not None:
         found |= zip(("start_slip_x", "start_slip_y"), components(states.slip), strict=True)
     if states.height is not None:
-        found |= {"start_height": states.height, "start_lift": states.lift}
+        found |= zip(("start_height", "start_lift"), states._aloft, strict=True)
     return found
 
 

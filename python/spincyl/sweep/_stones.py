@@ -85,7 +85,7 @@ def question(
     parts = states.vertical, states.w, states._pair
     fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
     if states.height is not None:
-        fields |= {"height": states.height, "lift": states.lift}
+        fields |= zip(("height", "lift"), states._aloft, strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
         contact = contact._natural(scale)
