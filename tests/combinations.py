@@ -83,9 +83,7 @@ REASONS = [
            "The friction of a patch already resists drilling; the law would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
            "A couple of your own is a function of the inclination of an axis, and a stone has none."),
-    Reason("E", r"^restitution: only for bodies of revolution", False,
-           "Impacts of stones are not computed yet: their motion ends where they leave the table."),
-    Reason("F", r"^restitution = .* cannot be combined with a patch of contact", False,
+    Reason("E", r"^restitution = .* cannot be combined with a patch of contact", False,
            "Impacts on a patch are not computed yet."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
@@ -96,12 +94,11 @@ EXCEPT: set[tuple[str, str, str, str]] = set()
 
 def start(body: Any, rubs: bool, falls: bool, factor: Any) -> Any:
     """The start of one body, or of several if the factor of the angular velocity is an array."""
-    slip = (0.2, 0.1) if rubs else None
-    if isinstance(body, sc.Ellipsoid):
-        w, n = np.multiply.outer(factor, (0.2, 0.3, 2.0)), np.array((0.3, 0.4, 0.75**0.5))
-        return sc.EllipsoidState(n, w, slip=slip)
     height = {"height": ALOFT[0], "lift": ALOFT[1]} if falls else {}
     slip = (0.2, 0.1) if rubs or falls else None
+    if isinstance(body, sc.Ellipsoid):
+        w, n = np.multiply.outer(factor, (0.2, 0.3, 2.0)), np.array((0.3, 0.4, 0.75**0.5))
+        return sc.EllipsoidState(n, w, slip=slip, **height)
     return sc.State(0.4, 0.3 * factor, 0.1 * factor, 1.5 * factor, slip=slip, **height)
 
 

@@ -132,6 +132,13 @@ def stones():
         "threads": 1,
         "progress": None,
     }
+    hops = {
+        "body": stone,
+        "state": stone.dropped(start, 0.1),
+        "t": [0.0, 1.0],
+        "contact": sc.Coulomb(0.3),
+        "restitution": 0.4,
+    }
     spinning = {"spin": 0.5, "pitch": 0.01, "roll": 0.0}
     return {
         "Ellipsoid": (
@@ -147,14 +154,21 @@ def stones():
         "Ellipsoid.hertz": (stone.in_metres().hertz, {"state": start}),
         "Ellipsoid.spinning": (stone.spinning, spinning),
         "Ellipsoid.with_centre_velocity": (stone.with_centre_velocity, {"state": start, "x": 0.0, "y": 0.1}),
+        "Ellipsoid.dropped": (stone.dropped, {"state": start, "height": 0.5, "velocity": (0.1, 0.0, 0.2)}),
         "Ellipsoid.rocking": (stone.rocking, {"spin": 0.5}),
         "Ellipsoid.growth_rates": (stone.growth_rates, {"spin": 0.5}),
         "Ellipsoid.stable": (stone.stable, {"spin": 0.5}),
         "Ellipsoid.energy": (stone.energy, {"state": start, "contact": "rolling"}),
-        "EllipsoidState": (sc.EllipsoidState, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0)}),
-        "EllipsoidState.from_si": (sc.EllipsoidState.from_si, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0), "scale": sc.Scale(0.01)}),
+        "EllipsoidState": (
+            sc.EllipsoidState, {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0), "height": 0.5, "lift": 0.1},
+        ),
+        "EllipsoidState.from_si": (
+            sc.EllipsoidState.from_si,
+            {"vertical": vertical, "w": (0, 0, 1), "slip": (0, 0), "height": 0.5, "lift": 0.1, "scale": sc.Scale(0.01)},
+        ),
         "EllipsoidState.in_si": (start.in_si, {"scale": sc.Scale(0.01)}),
         "roll of a stone": (sc.roll, given),
+        "roll of a stone that hops": (sc.roll, hops),
         "EllipsoidMotion.at": (sc.roll(stone, start, 1.0).at, {"t": [0.5, 1.0]}),
         "sweep.roll of stones": (sc.sweep.roll, swept),
     }  # fmt: skip

@@ -48,7 +48,7 @@ OPTIONS = {
     ),
     "beyond": Row("beyond", "beyond", "beyond", "beyond", "beyond", "--beyond", "none: a page ends with the model"),
     "restitution": Row(
-        "restitution", "none: impacts of stones are not known", "restitution", "restitution", "restitution",
+        "restitution", "restitution", "restitution", "restitution", "restitution",
         "none: `spincyl flick` has it, whose motions need it", "restitution: restitution",
     ),
     "losses": Row("losses", "losses", "losses", "losses couple", "losses", "--loss", "losses: law loss"),
@@ -70,7 +70,7 @@ OPTIONS = {
     ),
     "slip": Row("none: of the state", "none: of the state", "none: of the states", "slip", _START, "none: of the state",
                 "none: of the state"),
-    "aloft": Row("none: of the state", "none: a stone starts on the table", "none: of the states", "aloft", _START,
+    "aloft": Row("none: of the state", "none: of the state", "none: of the states", "aloft", _START,
                  "none: of the state", "none: of the state"),
 }  # fmt: skip
 #: What the same places take besides: bodies, states, times, and how the work is done.

@@ -11,6 +11,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._contact import AnyContact, Coulomb, Viscous, code_of
 from spincyl._ellipsoid_rows import SIX, by_blocks, checked_rows, row_parts, rows_by, six_of_tensor
+from spincyl._ellipsoid_starts import StoneStarts, tilt_of_stone
 from spincyl._ellipsoid_state import EllipsoidState, Rocking, as_doubles, as_vectors
 from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import (
@@ -21,24 +22,20 @@ from spincyl._input.numbers import (
     components,
     instance_of,
     lengths_in_metres,
-    numbered,
-    radians,
     read_only_copy,
     reals,
     refuse_bad_value,
-    turns_per_second,
     warn,
 )
 from spincyl._input.reprs import is_lazy
 from spincyl._scale import Scale
-from spincyl._sized import Sized
-from spincyl._slip import slip_of_stone
+from spincyl._slip import rise_of_stone
 from spincyl._weights import weighted
 
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Ellipsoid(Sized):
+class Ellipsoid(StoneStarts):
     """An ellipsoid with any inertia on a table, called a stone: a rattleback, an egg, a pebble.
 
     In natural units the mass M, gravity g and the largest semi-axis a are 1. Lengths may be given in any one
@@ -199,7 +196,7 @@ class Ellipsoid(Sized):
             _core.rattleback,
             axes=(as_vectors("axes", axes, 3), True),
             moments=(wide[0], wide[0] is not None),
-            twist=(_tilt("twist", twist), False),
+            twist=(tilt_of_stone("twist", twist), False),
             offset=(wide[1], wide[1] is not None),
         )
         return found._measured(told, mass)
@@ -251,64 +248,6 @@ class Ellipsoid(Sized):
     def moments(self) -> Floats:
         """Principal moments of inertia about the centre of mass, (..., 3), in M a^2, ascending."""
         return self._each(lambda x: _core.stone_moments(x), 3)
-
-    def spinning(
-        self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
-    ) -> EllipsoidState:
-        """Initial state of a stone that spins about the vertical, upright or nearly upright.
-
-        Parameters
-        ----------
-        spin : array_like
-            Angular velocity about the vertical, sqrt(g/a), counterclockwise as seen from above.
-        hertz : array_like
-            Turns per second about the vertical, in place of `spin`; needs a measured stone.
-        pitch, roll : array_like
-            Angles in radians by which the stone is rotated from upright: first by `pitch` about axis 2, then
-            by `roll` about axis 1. If both are 0, nothing disturbs the upright spin, even if it is unstable.
-        """
-        spin = self._spin(spin, hertz)
-        pitch, roll = _tilt("pitch", pitch), _tilt("roll", roll)
-        common_shape({"spin": spin, "pitch": pitch, "roll": roll})
-        with np.errstate(invalid="ignore"):  # angles and spins that are not finite give NaN without a warning
-            n = _core.stone_tilted(*numbered(3, pitch, roll))
-            return EllipsoidState(n, n * spin[..., None])
-
-    def with_centre_velocity(self, state: EllipsoidState, x: Reals, y: Reals) -> EllipsoidState:
-        """Return the state with the slip that a given velocity of the centre of mass implies.
-
-        Parameters
-        ----------
-        state : EllipsoidState
-            State whose slip, if it has one, is replaced.
-        x, y : array_like
-            Horizontal velocity of the centre of mass, in sqrt(g a), along the axes x and y that
-            `EllipsoidState.slip` describes.
-
-        Examples
-        --------
-        An egg spun on its side, with its centre at rest:
-
-        >>> import numpy as np
-        >>> import spincyl as sc
-        >>> egg = sc.Ellipsoid.egg(0.022, 0.0285).in_metres(0.06)
-        >>> state = egg.with_centre_velocity(egg.spinning(hertz=18, pitch=np.radians(85)), 0.0, 0.0)
-        >>> state.slip.round(3).tolist()
-        [0.0, -0.276]
-        """
-        instance_of("state", state, EllipsoidState)
-        x, y = (as_doubles(reals(name, value)) for name, value in (("x", x), ("y", y)))
-        n, w = state.vertical, state.w
-        states = np.broadcast_to(0.0, np.broadcast_shapes(n.shape[:-1], w.shape[:-1]))
-        common_shape({"body": np.broadcast_to(0.0, self.shape), "state": states, "x": x, "y": y})
-        with np.errstate(all="ignore"):
-            slip = slip_of_stone(self, n, w, x, y)
-        return replace(state, slip=slip)
-
-    def hertz(self, state: EllipsoidState) -> Result:
-        """Turns per second about the vertical, one number for each state; needs a measured stone."""
-        scale = self._sized("hertz")
-        return scale.turns(instance_of("state", state, EllipsoidState).spin)
 
     def rocking(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Rocking:
         """Rocking modes of the stone as it spins upright with its contact point at rest.
@@ -369,29 +308,26 @@ class Ellipsoid(Sized):
     def _with_scale(self, scale: Scale | None) -> Self:
         return replace(self, scale=scale)
 
-    def _spin(self, spin: Reals | None, hertz: Reals | None) -> Reals:
-        """The spin in sqrt(g/a), given directly or in turns per second."""
-        if (spin is None) == (hertz is None):
-            raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
-        if hertz is None:
-            return as_doubles(reals("spin", spin))
-        if self.scale is None:
-            raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")
-        return as_doubles(reals("hertz", turns_per_second("hertz", hertz))) / self.scale._units[3]
-
     def spin_limits(self) -> Floats:
         """Spins, in sqrt(g/a), at which a single stone that spins upright becomes stable or unstable."""
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """Kinetic plus potential energy of a single stone in each state, in M g a, above the table."""
+        """Kinetic plus potential energy of a single stone in each state, in M g a, above the table.
+
+        The velocity of the centre of mass follows from the slip and the lift of the state.
+        """
         instance_of("state", state, EllipsoidState)
         smooth = not isinstance(contact, Coulomb | Viscous) and code_of(contact) == code_of("smooth")
         n, w, u = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
         shape = np.broadcast_shapes(n.shape[:-1], w.shape[:-1], u.shape[:-1])
         rows = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in (n, w, u)], axis=-1)
         found = _core.stone_energies(self._numbers, rows.reshape(-1, 8).tolist(), smooth)
-        return np.array(found).reshape(shape)[()]
+        energy = np.array(found).reshape(shape)[()]
+        if state.height is None:
+            return energy
+        rise, lift = rise_of_stone(self, n, w), np.asarray(state.lift)
+        return (energy + np.asarray(state.height) + lift * (rise + 0.5 * lift))[()]
 
     def __repr__(self) -> str:
         if self.shape:
@@ -443,8 +379,3 @@ class Ellipsoid(Sized):
                 if not self.shape:
                     raise
         return found
-
-
-def _tilt(name: str, value: Reals) -> Reals:
-    """An angle in radians; warns above pi/2, where degrees were probably meant."""
-    return as_doubles(radians(name, value, likely=math.pi / 2))

@@ -1,8 +1,11 @@
 """The motion of a stone."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._asked import Asked, options_for_core
@@ -12,7 +15,7 @@ from spincyl._ellipsoid_state import EllipsoidState
 from spincyl._ending import Event
 from spincyl._input.numbers import Floats, components, instance_of
 from spincyl._motion import ENDINGS, Motion, fixed_step
-from spincyl._outputs import FRICTION, Number
+from spincyl._outputs import ALOFT, FRICTION, Number, output_in_units
 from spincyl._phases import has_friction
 
 
@@ -21,10 +24,10 @@ class EllipsoidMotion(Motion):
 
     Attributes, optional outputs and units are the same as for `Motion`, with the largest semi-axis a in place
     of R. Differences: `theta` is the inclination of axis 3, and `w`, (n, 3), has components along the axes of
-    the ellipsoid. There are no angles phi and psi; `orientation` gives the rotation of the stone. The motion
-    ends where the stone leaves the table, so there are no impacts, and no output that needs `restitution=`.
-    With `tol` above 1e-7 the error may be twice the estimated error. The errors of a stone that rattles grow
-    fast; see `known_until`.
+    the ellipsoid. There are no angles phi and psi; `orientation` gives the rotation of the stone. A stone
+    touches the table at one point, so that there are no outputs of another rim, and `rim` is always 0. The
+    impulses of `impacts` are along x, y and z of the laboratory. With `tol` above 1e-7 the error may be twice
+    the estimated error. The errors of a stone that rattles grow fast; see `known_until`.
     """
 
     _axes = Motion._axes | {
@@ -38,15 +41,30 @@ class EllipsoidMotion(Motion):
     start: EllipsoidState  # type: ignore[assignment]
     slip = Number(
         FRICTION,
-        """(n, 2) velocity of the contact point over the table, sqrt(g a) or m/s. Needs a law of friction.
+        """(n, 2) velocity of the contact point over the table, sqrt(g a) or m/s.
 
-        The components are along x and y of the laboratory, as described in `EllipsoidState`.
+        The components are along x and y of the laboratory, as described in `EllipsoidState`. In the air it is
+        the horizontal velocity of the lowest point. Needs a law of friction or `restitution=`.
         """,
     )
+    lift = Number(ALOFT, "(n,) upward velocity of the lowest point, sqrt(g a) or m/s. Needs `restitution=`.")
 
     @staticmethod
-    def _begun(six: list[float], slip: list[float] | None, _: object = None) -> EllipsoidState:
-        return EllipsoidState(six[:3], six[3:], slip)
+    def _begun(
+        six: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
+    ) -> EllipsoidState:
+        height, lift = aloft or (None, None)
+        return EllipsoidState(six[:3], six[3:], slip, height=height, lift=lift)
+
+    @property
+    def height(self) -> Floats:
+        """(n,) height of the lowest point of the stone above the table, a or m. Needs `restitution=`."""
+        return output_in_units(self, "height", ALOFT)
+
+    @property
+    def rim(self) -> NDArray[np.uint8]:
+        """(n,) zeros: a stone has no rims."""
+        return np.zeros(self.t.size, np.uint8)
 
     @property
     def vertical(self) -> Floats:
@@ -102,7 +120,8 @@ class EllipsoidMotion(Motion):
         """All states as one `EllipsoidState` of arrays, in natural units."""
         if self._natural is not None:
             return self._natural.states  # type: ignore[return-value]
-        return EllipsoidState(self.vertical, self.w, self._extra.get("slip"))
+        aloft = {name: self._extra.get(name) for name in ("height", "lift")}
+        return EllipsoidState(self.vertical, self.w, self._extra.get("slip"), **aloft)
 
     @property
     def y(self) -> Floats:
@@ -116,36 +135,32 @@ class EllipsoidMotion(Motion):
         raise AttributeError(f"{name}: only for bodies of revolution; for a stone use orientation")
 
 
-def refuse_impacts(restitution: object) -> None:
-    """Raise ValueError for impacts of a stone."""
-    if restitution is not None:
-        raise ValueError("restitution: only for bodies of revolution; a stone ends where it leaves the table")
-
-
 def start_of_stone(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
-    """The state from which a stone starts, without a slip where no law of friction acts.
+    """The state from which a stone starts, without a slip where no law of friction acts on the table.
 
     An error names an argument that only bodies of revolution have.
     """
     instance_of("state", state, EllipsoidState)
-    if not has_friction(contact) and state._slips:
+    slides = has_friction(contact) or (restitution is not None and state.height is not None)
+    if not slides and state._slips:
         why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
         raise ValueError(f"state: the stone slips, slip = {state.slip!r}; {why}")
     if step is not None or method is not None:
         raise ValueError(
             "step, method: only for bodies of revolution; for a stone leave them out, or give tol="
         )
-    refuse_impacts(restitution)
-    return state if has_friction(contact) else EllipsoidState(state.vertical, state.w)
+    return state if slides else replace(state, slip=None)
 
 
 def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> EllipsoidMotion:
     """Compute the motion of a stone in natural units from checked arguments."""
-    n, w, slip = (np.asarray(x) for x in (state.vertical, state.w, state._pair))
-    if not n.ndim == w.ndim == slip.ndim == 1:
+    n, w, slip, high = (np.asarray(x) for x in (state.vertical, state.w, state._pair, sum(state._aloft)))
+    if not n.ndim == w.ndim == slip.ndim == high.ndim + 1 == 1:
         raise ValueError("state: expected a single state; use spincyl.sweep.roll for a family")
     start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
-    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, options_for_core(asked, own))
+    aloft = None if state.height is None else [float(x) for x in state._aloft]
+    options = options_for_core(asked, own, aloft)
+    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, options)
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:
@@ -159,7 +174,7 @@ def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> Ellips
         "event": event,
         "rk4": fixed_step(found),
         "_asked": asked,
-        "_impacts": None,
+        "_impacts": found.get("_impacts") if asked.restitution is not None else None,
     }
     m = object.__new__(EllipsoidMotion)
     object.__setattr__(m, "__dict__", found)

@@ -1,7 +1,7 @@
-"""The state of a stone: its vertical, its angular velocity and its slip, or arrays of them."""
+"""The state of a stone: its vertical, its angular velocity, its slip and its height, or arrays of them."""
 
-from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,11 @@ from spincyl._input.numbers import (
     Result,
     components,
     floats,
+    is_scalar,
     numbered,
+    read_only_copy,
     reals,
+    si,
     vector_in,
 )
 from spincyl._input.reprs import is_lazy, repr_of_call
@@ -78,7 +81,11 @@ class EllipsoidState:
     slip : array_like, (..., 2), optional
         Velocity of the contact point over the table, in sqrt(g a), along the axes x and y of the laboratory.
         These are axes 1 and 2 of the stone after the smallest rotation that makes axis 3 upright (for a stone
-        that is upside down: half a turn about axis 1). Default: no slip, the stone rolls.
+        that is upside down: half a turn about axis 1). Default: no slip, the stone rolls. In the air it is
+        the horizontal velocity of the lowest point of the stone.
+    height, lift : array_like, optional
+        For a stone in the air: height of its lowest point above the table, in a, and the upward velocity of
+        that point, in sqrt(g a). If you give only one, the other is 0. `Ellipsoid.dropped` computes both.
 
     Raises
     ------
@@ -102,33 +109,62 @@ class EllipsoidState:
     vertical: Reals
     w: Reals
     slip: Reals | None = None
-    height: ClassVar[None] = None  # a stone does not start in the air
+    height: Reals | None = field(default=None, kw_only=True)
+    lift: Reals | None = field(default=None, kw_only=True)
 
     @classmethod
-    def from_si(cls, vertical: Reals, w: Reals, *, slip: Reals | None = None, scale: Any) -> "EllipsoidState":
-        """State from `w` in rad/s and `slip` in m/s; `scale` is a measured stone, or its `Scale`."""
+    def from_si(
+        cls,
+        vertical: Reals,
+        w: Reals,
+        *,
+        slip: Reals | None = None,
+        height: Reals | None = None,
+        lift: Reals | None = None,
+        scale: Any,
+    ) -> "EllipsoidState":
+        """State from `w` in rad/s, `slip` and `lift` in m/s, and `height` in m.
+
+        `scale` is a measured stone, or its `Scale`.
+        """
         metre, second, *_ = scale_of(scale)._units
         w, slip = vector_in("radian/second", "w", w), vector_in("metre/second", "slip", slip)
-        found = cls(vertical, w, slip)
+        height, lift = si("height", height, "metre"), si("lift", lift, "metre/second")
+        found = cls(vertical, w, slip, height=height, lift=lift)
+        units = {"w": second, "slip": second / metre, "height": 1 / metre, "lift": second / metre}
         with np.errstate(over="ignore"):
-            faster = None if found.slip is None else found.slip * (second / metre)
-            return cls(found.vertical, found.w * second, faster)
+            given = ((name, getattr(found, name), unit) for name, unit in units.items())
+            return replace(found, **{name: x * unit for name, x, unit in given if x is not None})
 
     def in_si(self, scale: Any) -> dict[str, Any]:
-        """Return the arguments of `from_si` as a dict: vertical, w (rad/s), and slip (m/s), if any."""
+        """Return the arguments of `from_si` as a dict: vertical, w (rad/s); also slip, height, lift."""
         metre, second, *_ = scale_of(scale)._units
-        slip = {} if self.slip is None else {"slip": self.slip * (metre / second)}
-        return {"vertical": self.vertical, "w": self.w / second} | slip
+        units = {"slip": metre / second, "height": metre, "lift": metre / second}
+        given = ((name, getattr(self, name), unit) for name, unit in units.items())
+        more = {name: x * unit for name, x, unit in given if x is not None}
+        return {"vertical": self.vertical, "w": self.w / second} | more
 
     def __post_init__(self) -> None:
         for name, width in (("vertical", 3), ("w", 3), ("slip", 2)):
             if name != "slip" or self.slip is not None:
                 object.__setattr__(self, name, as_vectors(name, getattr(self, name), width))
-        shapes = [np.shape(x)[:-1] for x in (self.vertical, self.w, self._pair)]
+        shapes = {
+            "vertical": np.shape(self.vertical)[:-1],
+            "w": np.shape(self.w)[:-1],
+            "slip": np.shape(self._pair)[:-1],
+        }
+        if self.height is not None or self.lift is not None:
+            for name in ("height", "lift"):
+                given = getattr(self, name)
+                value = reals(name, 0.0 if given is None else given)
+                value = read_only_copy(value if is_scalar(value) else as_doubles(value))
+                object.__setattr__(self, name, value)
+                shapes[name] = np.shape(value)
         try:
-            np.broadcast_shapes(*shapes)
+            np.broadcast_shapes(*shapes.values())
         except ValueError:
-            raise ValueError(f"vertical, w, slip: shapes do not fit: {shapes}") from None
+            told = [*shapes.values()]
+            raise ValueError(f"{', '.join(shapes)}: shapes do not fit: {told}") from None
 
     @property
     def spin(self) -> Result:
@@ -148,12 +184,18 @@ class EllipsoidState:
         return found
 
     def __repr__(self) -> str:
-        more = {} if self.slip is None else {"slip": self.slip}
-        return repr_of_call("EllipsoidState", vertical=self.vertical, w=self.w, **more)
+        more = {name: getattr(self, name) for name in ("slip", "height", "lift")}
+        there = {name: x for name, x in more.items() if x is not None}
+        return repr_of_call("EllipsoidState", vertical=self.vertical, w=self.w, **there)
 
     @property
     def _pair(self) -> Reals:
         return np.zeros(2) if self.slip is None else self.slip
+
+    @property
+    def _aloft(self) -> tuple[Reals, Reals]:
+        """Height and lift; 0 on the table."""
+        return (0.0, 0.0) if self.height is None else (self.height, self.lift)
 
     @property
     def _slips(self) -> bool:

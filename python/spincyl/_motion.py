@@ -237,13 +237,13 @@ class Motion(Outputs):
 
     @cached_property
     def impacts(self) -> tuple[Impact, ...]:
-        """All impacts of a rim on the table. Needs `restitution=`.
+        """All impacts on the table. Needs `restitution=`.
 
         An infinite sequence of bounces that is summed counts as one impact.
         """
         if self._impacts is None:
             raise missing_output(self, "impacts", ALOFT)
-        return impacts(self._impacts)
+        return impacts(self._impacts, self._begun)
 
     @property
     def lost_in_impacts(self) -> Floats:

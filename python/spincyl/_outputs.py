@@ -60,10 +60,8 @@ def _how_to_get(m: "Motion", needs: str) -> str:
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     measured, stone, more = m.scale is not None, not isinstance(m.body, Body), ""
     if needs == ALOFT:
-        patch = isinstance(m.contact, Coulomb) and m.contact.patch
-        kind = "of a stone" if stone else "on a patch of contact" if patch else ""
-        if kind:
-            return f"a motion {kind} has none; it ends where the body leaves the table"
+        if isinstance(m.contact, Coulomb) and m.contact.patch:
+            return "a motion on a patch of contact has none; it ends where the body leaves the table"
         why, how = "restitution=; this motion ends where it leaves the table", "restitution=0.0"
     elif needs == LOSSES:
         law, amount = ("RollingResistance", "delta") if stone else ("DryContour", "eps")

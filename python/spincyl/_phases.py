@@ -48,7 +48,7 @@ class Phase(NamedTuple):
         "rolling", "slipping" or "flying". For a body on both rims, or on two circles: "lying" (both slip),
         "pivoting" (one slips), "rolling on its side", or "rolling round its apex" (the point where its axis
         meets the table, if the circles have unequal radii). "on its face": it stands, slides or spins on it.
-    state : State
+    state : State or EllipsoidState
         State at that time, with its slip, in natural units; in the air also with its `height` and `lift`.
         A motion that starts from it continues this one.
     rim : str
@@ -67,7 +67,7 @@ class Phase(NamedTuple):
 
 
 class Impact(NamedTuple):
-    """An impact of a rim on the table.
+    """An impact of a rim, or of a stone, on the table.
 
     Both states are in natural units. For a measured body, time, impulse and energy are in SI; without a mass,
     impulse and energy stay in natural units.
@@ -78,20 +78,21 @@ class Impact(NamedTuple):
         Time in sqrt(R/g) or s.
     rim : str
         Rim that lands: "first" is the rim to which theta of the initial state refers, "other" the other rim.
-        For a body of several circles see `Phase.rim`.
+        For a body of several circles see `Phase.rim`. For a stone always "first".
     kind : str
         What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
         "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
         lands without a bounce, and both rims touch the table.
     impulse : tuple of float
         Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
-        touch the table, the sum of their impulses.
+        touch the table, the sum of their impulses. For a stone along x, y and z of the laboratory, as
+        `Motion.contact_force`.
     lost : float
         Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
-    before : State
+    before : State or EllipsoidState
         State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands; for a
         body of several circles always to its lower end.
-    after : State
+    after : State or EllipsoidState
         State after the impact.
     stays : bool
         Whether the impact ends a sequence of ever smaller bounces, after which the rim stays on the table.
@@ -111,13 +112,24 @@ class Impact(NamedTuple):
 LOST_COLUMN, IMPULSE_COLUMNS = 4, slice(5, 8)
 
 
-def impacts(rows: Floats) -> tuple[Impact, ...]:
-    """Make impacts from the rows of the core, each with the numbers of one impact."""
+def state_of_phase(
+    four: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
+) -> State:
+    """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
+    height, lift = aloft or (None, None)
+    return state_without_checks(four, None if slip is None else (slip[0], slip[1]), height, lift)
+
+
+def impacts(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Impact, ...]:
+    """Make impacts from the rows of the core, each with the numbers of one impact.
+
+    `state` makes a state from numbers, slip and height. The numbers of both states come last in a row, each
+    with the velocity of the lowest point.
+    """
     found = []
     for time, other, hit, stays, lost, along, across, up, *numbers in rows.tolist():
-        before, after = (
-            state_without_checks(at[:4], (at[4], at[5]), 0.0, at[6]) for at in (numbers[:7], numbers[7:])
-        )
+        half = len(numbers) // 2
+        before, after = (state(at[:-3], at[-3:-1], (0.0, at[-1])) for at in (numbers[:half], numbers[half:]))
         rim, kind, push = RIMS[int(other)], HITS[int(hit)], (along, across, up)
         found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays)))
     return tuple(found)
@@ -168,14 +180,6 @@ _WHY = {
     "mu": "give the coefficient to the contact, as in contact=sc.Coulomb(0.3)",
     "beyond": "the solution cannot continue past the end of such a motion",
 }
-
-
-def state_of_phase(
-    four: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
-) -> State:
-    """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
-    height, lift = aloft or (None, None)
-    return state_without_checks(four, None if slip is None else (slip[0], slip[1]), height, lift)
 
 
 def phases(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Phase, ...]:

@@ -50,6 +50,7 @@ def roll(
     mu: float = np.inf,
     want: Want | Iterable[Want] = (),
     beyond: bool = False,
+    restitution: float | None = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
     table: "Table | None" = None,
@@ -136,12 +137,13 @@ def roll(
         Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
         that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
         other rim or its face lands. With a restitution the motion continues: the body may fly, bounce, lie on
-        both rims, stand on its face and rise again. An initial state in the air (`dropped`) needs a
-        restitution. While the other rim carries the body, theta refers to that rim, and phi is turned by pi:
-        `Motion.rim` tells the rim, and `Motion.axis_up` and `Motion.rests_on` tell heads from tails. With
-        `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks
-        from rim to rim, and so does friction that lifts the body (`Ending.SLIP`): on a real table the contact
-        would slip first.
+        both rims, stand on its face and rise again. An initial state in the air (`dropped`, and for a stone
+        `Ellipsoid.dropped`) needs a restitution. A stone flies, bounces, slips and rolls, until its edge
+        lands (`theta_end`). While the other rim carries the body, theta refers to that rim, and phi is turned
+        by pi: `Motion.rim` tells the rim, and `Motion.axis_up` and `Motion.rests_on` tell heads from tails.
+        With `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only
+        rocks from rim to rim, and so does friction that lifts the body (`Ending.SLIP`): on a real table the
+        contact would slip first.
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
         eighth order, forward in time only. It may end where the body comes to rest (`Ending.STOPS`).

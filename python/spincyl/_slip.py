@@ -68,3 +68,11 @@ def slip_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats, x: Reals, y: 
     at_rest = _core.stone_slip(*numbered(2, *stone._columns(), *components(vertical), *components(w)))
     slip: Floats = at_rest + np.stack(np.broadcast_arrays(x, y, at_rest[..., 0])[:2], axis=-1)
     return slip
+
+
+def rise_of_stone(stone: "Ellipsoid", vertical: Floats, w: Floats) -> Floats:
+    """The upward velocity of the centre of mass of a stone whose lowest point does not rise; (...)."""
+    (a, b, c), (w1, w2, w3) = components(lever_of_stone(stone, vertical)), components(w)
+    n1, n2, n3 = components(vertical)
+    rise: Floats = n1 * (w3 * b - w2 * c) + n2 * (w1 * c - w3 * a) + n3 * (w2 * a - w1 * b)
+    return rise

@@ -102,24 +102,34 @@ class State(Hinting):
         w3: Reals,
         *,
         slip: tuple[Reals, Reals] | None = None,
+        height: Reals | None = None,
+        lift: Reals | None = None,
         scale: "Scale | Body",
     ) -> "State":
-        """State from w1, w2, w3 in rad/s and `slip` in m/s; `scale` is a measured body, or its `Scale`."""
+        """State from w1, w2, w3 in rad/s, `slip` and `lift` in m/s, and `height` in m.
+
+        `scale` is a measured body, or its `Scale`.
+        """
         metre, second, *_ = scale_of(scale)._units
         given = (("w1", w1), ("w2", w2), ("w3", w3))
         w = (reals(name, radians_per_second(name, x)) * second for name, x in given)
         if isinstance(slip, tuple | list):
             slip = tuple(si("slip", x, "metre/second") for x in slip)
-        found = cls(theta, *w, slip=slip)
+        height, lift = si("height", height, "metre"), si("lift", lift, "metre/second")
+        found = cls(theta, *w, slip=slip, height=height, lift=lift)
+        if found.height is not None and found.lift is not None:
+            found = replace(found, height=found.height / metre, lift=found.lift * (second / metre))
         along, across = (x * (second / metre) for x in found._slip)
         return found if slip is None else replace(found, slip=(along, across))
 
     @elementwise
     def in_si(self, scale: "Scale | Body") -> dict[str, Any]:
-        """Return the arguments of `from_si` as a dict: theta (rad), w1, w2, w3 (rad/s), slip (m/s)."""
+        """Return the arguments of `from_si` as a dict: theta, w1, w2, w3; also slip, height, lift."""
         metre, second, *_ = scale_of(scale)._units
         found = {name: getattr(self, name) / second for name in ("w1", "w2", "w3")}
         slip = None if self.slip is None else tuple(x * (metre / second) for x in self.slip)
+        if self.height is not None and self.lift is not None:
+            found |= {"height": self.height * metre, "lift": self.lift * (metre / second)}
         return {"theta": self.theta} | found | ({} if slip is None else {"slip": slip})
 
     @elementwise
@@ -200,7 +210,7 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
     return instance_of("state", state, State)._numbers
 
 
-def refuse_state_in_air(state: State, remedy: str) -> None:
+def refuse_state_in_air(state: Any, remedy: str) -> None:
     """Raise ValueError with a remedy for a state in the air."""
     if state.height is not None:
         raise ValueError(f"state: the body is in the air, height = {repr_of_numbers(state.height)}: {remedy}")

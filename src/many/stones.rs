@@ -13,7 +13,7 @@ use crate::motions::stone::check_stone;
 use crate::motions::stone::known::Recorded;
 use crate::motions::stone::turns::Reversals;
 use crate::motions::walk::two_runs::Followed;
-use crate::motions::{Ask, Ending, Motion, Moving, Start};
+use crate::motions::{Ask, Ending, Kind, Motion, Moving, Phase, Start};
 use core::cell::RefCell;
 use std::sync::OnceLock;
 
@@ -34,6 +34,8 @@ pub struct StoneRow {
     pub losses: Option<Losses>,
     /// The slope of its table, and phi at the start; None for a level table.
     pub slope: Option<[f64; 2]>,
+    /// The height of the lowest point and its vertical velocity at the start; None on the table.
+    pub aloft: Option<[f64; 2]>,
 }
 
 /// The result of one motion of many.
@@ -42,14 +44,15 @@ pub struct StoneSummary {
     /// The status: the code of an [`Ending`].
     pub status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
-    pub numbers: [f64; 14],
+    pub numbers: [f64; 19],
 }
 
 impl StoneSummary {
     /// The names of the numbers: the last vertical and angular velocity, the time of the end, the last spin,
     /// the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
-    /// estimated error, and the time up to which the motion is known.
-    pub const NAMES: [&str; 14] = [
+    /// numbers of impacts and of landings after which the stone stays, the time in the air, the energy lost in
+    /// impacts, the kind of the last phase, the estimated error, and the time up to which the motion is known.
+    pub const NAMES: [&str; 19] = [
         "n1",
         "n2",
         "n3",
@@ -62,12 +65,17 @@ impl StoneSummary {
         "first_reversal",
         "dissipated",
         "work_lost",
+        "impacts",
+        "landings",
+        "air_time",
+        "lost_in_impacts",
+        "last_phase",
         "error",
         "known_until",
     ];
 
     const fn none(status: Ending) -> Self {
-        Self { status: status as u8, numbers: [f64::NAN; 14] }
+        Self { status: status as u8, numbers: [f64::NAN; 19] }
     }
 
     /// The row of a motion that was given up at this time.
@@ -162,7 +170,7 @@ fn one(
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let [slope, heading] = row.slope.unwrap_or_default();
-    let start = Start { slip: row.slip, heading, ..Start::from(state) };
+    let start = Start { slip: row.slip, heading, aloft: row.aloft, ..Start::from(state) };
     let mut ask = ask.with_slope(slope);
     // A walk on a slope has units of its own, in which it sees reversals, too.
     let pace = slope.cos().sqrt();
@@ -194,8 +202,28 @@ fn one(
     let count = turns.as_ref().map_or(f64::NAN, |turns| turns.len() as f64);
     let first = turns.iter().flatten().next().map_or(f64::NAN, |[t, _]| *t / pace);
     let ([a, b, c], [d, e, f]) = (last.vertical, last.w);
-    let Followed { motion: Motion { error, .. }, path: Path { heat, lost, known_until, .. } } = found;
-    let known = known_until.min(end);
-    let numbers = [a, b, c, d, e, f, end, last.spin(), count, first, heat, lost, error, known];
+    let Followed { motion: Motion { error, .. }, path } = &found;
+    let [impacts, landings, air_time, lost_in_impacts, last_phase] = flights(path, end);
+    let known = path.known_until.min(end);
+    #[rustfmt::skip]
+    let numbers = [
+        a, b, c, d, e, f, end, last.spin(), count, first, path.heat, path.lost, impacts, landings, air_time,
+        lost_in_impacts, last_phase, *error, known,
+    ];
     Ok(StoneSummary { status: found.motion.ending() as u8, numbers })
+}
+
+/// The numbers of impacts and of landings after which the stone stays, the time in the air up to the time `end`, the
+/// energy lost in impacts, and the code of the last phase.
+fn flights(path: &Path<StoneState>, end: f64) -> [f64; 5] {
+    let next = path.phases.iter().skip(1).map(|phase| phase.time).chain([end]);
+    let flights = path.phases.iter().zip(next).filter(|(phase, _)| phase.kind == Kind::Flying);
+    let lands = |pair: &&[Phase<StoneState>]| pair[0].kind == Kind::Flying && pair[1].kind != Kind::Flying;
+    [
+        path.impacts.len() as f64,
+        path.phases.windows(2).filter(lands).count() as f64,
+        flights.map(|(phase, next)| next - phase.time).sum(),
+        path.impacts.iter().map(|impact| impact.lost).sum(),
+        path.phases.last().map_or(f64::NAN, |phase| f64::from(phase.kind as u8)),
+    ]
 }

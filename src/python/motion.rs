@@ -75,6 +75,8 @@ type CoupleOfSlip<S> = Box<dyn Fn(&S, [f64; 2]) -> f64>;
 /// A state whose motions can be converted to arrays for Python.
 trait StateArrays: Moving + Sized {
     type Body;
+    /// Whether these bodies have rims, of which two may touch the table.
+    const RIMS: bool;
     /// Adds the arrays of the states, poses and forces.
     fn add_arrays(m: &Motion<Self>, body: &Self::Body, rows: &mut ArrayRows<'_>) -> Result<(), Error>;
     /// The angular velocity about the vertical.
@@ -97,6 +99,7 @@ trait StateArrays: Moving + Sized {
 
 impl StateArrays for State {
     type Body = Body;
+    const RIMS: bool = true;
 
     fn add_arrays(m: &Motion, body: &Body, rows: &mut ArrayRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta))?;
@@ -158,6 +161,7 @@ impl StateArrays for State {
 
 impl StateArrays for StoneState {
     type Body = Ellipsoid;
+    const RIMS: bool = false;
 
     fn add_arrays(m: &Motion<Self>, _: &Ellipsoid, rows: &mut ArrayRows<'_>) -> Result<(), Error> {
         rows.add("theta", 0, &|i, to| to.push(m.states[i].theta()))?;
@@ -173,7 +177,12 @@ impl StateArrays for StoneState {
             let friction = |i: usize| forces[i].x.hypot(forces[i].y);
             rows.add("normal", 0, &|i, to| to.push(forces[i].z))?;
             rows.add("friction", 0, &|i, to| to.push(friction(i)))?;
-            let need = |i: usize| if forces[i].z > 0.0 { friction(i) / forces[i].z } else { f64::INFINITY };
+            let flies = |i: usize| m.path.as_ref().is_some_and(|path| path.kinds[i] == Kind::Flying);
+            let need = |i: usize| match forces[i].z {
+                normal if normal > 0.0 => friction(i) / normal,
+                _ if flies(i) => f64::NAN,
+                _ => f64::INFINITY,
+            };
             rows.add("friction_coefficient", 0, &|i, to| to.push(need(i)))?;
             if m.poses.is_some() {
                 rows.add("contact_force", 3, &|i, to| to.extend(forces[i].iter()))?;
@@ -212,6 +221,11 @@ fn motion_columns<S: StateArrays>(
     {
         rows.add("height", 0, &|i, to| to.push(path.aloft[i][0]))?;
         rows.add("lift", 0, &|i, to| to.push(path.aloft[i][1]))?;
+    }
+    if let Some(path) = &m.path
+        && S::RIMS
+        && !path.aloft.is_empty()
+    {
         rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i][..2]))?;
         if m.forces.is_some() {
             rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i][2]))?;
@@ -325,7 +339,7 @@ pub fn roll<'py>(
         (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
-            let start = Start::from(state).with_slip(start.0).with_time(start.1);
+            let start = Start::from(state).with_slip(start.0).with_time(start.1).with_aloft(asked.aloft);
             let start = start.with_heading(asked.heading).with_place(asked.place);
             if asked.is_custom() {
                 return under_own_laws(py, (&stone, &asked), (&ask, loses), |laws, go_on| {
@@ -485,7 +499,7 @@ fn dictionary<'py, S: StateArrays>(
         Some(circle) => vec![circle; m.times.len()],
         None => m.path.as_ref().map_or(Ok(Vec::new()), |path| copied(&path.rims))?,
     };
-    if !rims.is_empty() {
+    if S::RIMS && !rims.is_empty() {
         extra.set_item("rim", PyArray1::<u8>::from_vec(py, rims))?;
     }
     if let Some(path) = &m.path
@@ -504,16 +518,17 @@ fn dictionary<'py, S: StateArrays>(
             intern!(py, "_phases"),
             PyArray1::from_vec(py, phases).reshape([path.phases.len(), row])?,
         )?;
-        let mut impacts = room(path.impacts.len() * STRIKE)?;
+        let row = 8 + path.impacts.first().map_or(0, |at| 2 * (3 + at.states[0].numbers().as_ref().len()));
+        let mut impacts = room(path.impacts.len() * row)?;
         for at in &path.impacts {
             let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
             impacts.push(at.time);
             impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse));
-            for (state, velocity) in at.states.map(<[f64; 4]>::from).iter().zip(&at.velocities) {
-                impacts.extend(state.iter().chain(velocity));
+            for (state, velocity) in at.states.iter().zip(&at.velocities) {
+                impacts.extend(state.numbers().as_ref().iter().chain(velocity));
             }
         }
-        let impacts = PyArray1::from_vec(py, impacts).reshape([path.impacts.len(), STRIKE])?;
+        let impacts = PyArray1::from_vec(py, impacts).reshape([path.impacts.len(), row])?;
         out.set_item(intern!(py, "_impacts"), impacts)?;
     }
     out.set_item(intern!(py, "_extra"), extra)?;
@@ -537,9 +552,6 @@ pub fn bounds(errors: [f64; 3], size: [f64; 2], most: [f64; 3]) -> BTreeMap<&'st
 
 /// The arrays that the dictionary itself contains; all others are in its `_extra`.
 const FIELDS: [&str; 3] = ["t", "theta", "w"];
-
-/// The numbers of an impact for Python: time, codes, energy, impulse, and both states with their velocities.
-const STRIKE: usize = 22;
 
 /// The largest number of rows that are copied; longer vectors are passed to NumPy.
 const FEW: usize = 64;

@@ -190,6 +190,11 @@ const STONE_LABELS: [[&str; 2]; StoneSummary::NAMES.len()] = [
     ["sqrt(a/g)", "time of the first reversal of the spin"],
     ["M g a", "heat of friction"],
     ["M g a", "energy lost to the losses"],
+    ["1", "number of impacts"],
+    ["1", "number of landings after which the body stays"],
+    ["sqrt(a/g)", "time in the air"],
+    ["M g a", "energy lost in impacts"],
+    ["1", "code of the last phase"],
     ["1", "largest estimated error among the numbers of the state"],
     ["sqrt(a/g)", "time up to which the motion is known"],
 ];
@@ -223,6 +228,7 @@ pub fn stones<'py>(
     let friction = columns.some(["coefficient", "static", "patch"])?;
     let lost = columns.some(core::array::from_fn::<_, COUNT, _>(|i| Law::ALL[i].parameter()))?;
     let slopes = columns.some(["slope", "phi0"])?;
+    let aloft = columns.some(["height", "lift"])?;
     let mut status = code_column(out, "status")?;
     let status = status.as_slice_mut()?;
     let count = status.len();
@@ -234,6 +240,7 @@ pub fn stones<'py>(
         coefficients: friction.map(|pair| pair.map(|column| at(column, i))),
         losses: lost.map(|all| Losses { coefficients: all.map(|column| at(column, i)) }),
         slope: slopes.map(|all| all.map(|column| at(column, i))),
+        aloft: aloft.map(|all| all.map(|column| at(column, i))),
     };
     let (times, ask) = (times.as_slice()?, asked.ask()?);
     let mut watch = Watch::new(progress);

@@ -3,7 +3,8 @@
 An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim takes
 over, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi changes its sign.
 Angles that refer to the first rim throughout are continuous, except where a body stands on its face: there
-only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples.
+only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples. A stone has
+neither rims nor these angles: only its kinks count.
 """
 
 from contextlib import suppress
@@ -20,7 +21,6 @@ from spincyl._swing import swing_on
 from spincyl.studio.shape import rotations
 
 if TYPE_CHECKING:
-    from spincyl._body import Body
     from spincyl._motion import Motion
 
 #: Shares of the time shown: width of a kink, and the distance below which kinks become one. Bounces that die
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _KINK, _NEAR = 1e-9, 1e-6
 #: The nutations of phases shorter than this share are not counted.
 _BRIEF = 1e-3
+# per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
+_EVALUATIONS = 900
 #: A body tumbles in a vertical plane if its other rates are below this share; impacts leave rounding errors.
 _PLANAR = 1e-12
 #: Kinds of phases on one rim, and on both.
@@ -107,6 +109,8 @@ def aloft(m: "Motion", first: float, last: float) -> Aloft:
     # a kink at an end of the motion needs no knots of its own
     edges = np.array([[a - half, b + half] for a, b in _groups(inside, near)]).reshape(-1, 2)
     edges = edges[(first + near < edges[:, 0]) & (edges[:, 1] < last - near)]
+    if not m._nods:
+        return Aloft(edges, np.array(begins), np.empty(0), np.array([(0, 0, 0, 0, 1)]))
     found = Aloft(edges, np.array(begins), *_changes(m, inside, _poles(m, first, last), first, last))
     return _without_turns(m, found) if len(edges) else found
 
@@ -196,12 +200,26 @@ def parts_of_flight(m: "Motion", first: float, last: float) -> list[tuple[float,
         begin, end = max(phase.time, first), min(end, last)
         if begin < end:
             brief = end - begin < _BRIEF * (last - first)
-            found.append((begin, end, 0.0 if brief else _often(m.body, phase), phase))
+            found.append((begin, end, 0.0 if brief else _often(m, phase), phase))
     return found
 
 
-def _often(body: "Body", phase: Phase) -> float:
-    """Nutations per unit of time; in the air, turns of the axis about the constant angular momentum."""
+def pace_of_stone(m: "Motion") -> float:
+    """The mean duration of the rockings of a stone, roughly, from the number of evaluations."""
+    end = float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
+    many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
+    return float(abs(end - m._asked.t0) / max(many, 1e-3))
+
+
+def _often(m: "Motion", phase: Phase) -> float:
+    """Nutations per unit of time; in the air, turns of the axis about the constant angular momentum.
+
+    For a stone its rockings, and in the air its turns.
+    """
+    if not m._nods:
+        turns = float(np.linalg.norm(phase.state.w)) / (2 * np.pi)  # type: ignore[attr-defined]
+        return turns if phase.kind == "flying" else 1 / pace_of_stone(m)
+    body = m.body
     state: State = replace(phase.state, slip=None, height=None, lift=None)
     if phase.kind == "flying":
         w = np.array([state.w1, state.w2, state.w3 * body.i3 / body.i1])

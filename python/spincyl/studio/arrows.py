@@ -72,7 +72,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
         contact[stands] = pressed(centre[1], force)[stands]
     if "force" in drawn:
         (force,) = seen(m, t, "contact_force")
-        if up and m._impacts is not None:  # the arrow stands on one rim
+        if up and m._nods and m._impacts is not None:  # the arrow stands on one rim
             force = force - np.nan_to_num(seen(m, t, "contact_force_other", "contact_force")[0])
         found |= {"normal": force * [0, 0, 1], "friction": force * [1, 1, 0]}
     return Vectors(found, contact, centre[1])

@@ -8,8 +8,8 @@ of one period suffice.
 A stone has no axis of symmetry for such angles: its knots hold the four components of a quaternion, which
 is normalised after interpolation.
 
-For a body that leaves the table, the knots also hold the height of the centre, and each kink has two knots,
-an instant apart, with the slopes before and after it. The angles refer to the first rim throughout.
+For a body or a stone that leaves the table, the knots also hold the height of the centre, and each kink has
+two knots, an instant apart, with the slopes before and after it. Angles refer to the first rim.
 """
 
 from contextlib import suppress
@@ -27,7 +27,7 @@ from spincyl._phases import RIMS, has_friction
 from spincyl._slip import lever_of_stone
 from spincyl._state import State
 from spincyl._swing import swing_on
-from spincyl.studio.aloft import Aloft, aloft, goes_up, parts_of_flight
+from spincyl.studio.aloft import Aloft, aloft, goes_up, pace_of_stone, parts_of_flight
 from spincyl.studio.surface import rotations
 
 if TYPE_CHECKING:
@@ -36,10 +36,10 @@ if TYPE_CHECKING:
 _MOST, _LONGEST, _SAMPLES = 200_000, 3000, 65
 # largest difference between a slope and its prediction that leaves 2e-4 to the others: see `packed`
 _STEEPEST = 8.0
-# per rocking of a stone, with steps within 1e-14; fewer with a larger tolerance, as its -1/10 power
-_EVALUATIONS = 900
 # columns of a stone's quaternion, and of x and y of its centre, which are the same as for a body
 _TURN, _PLACE = [0, 1, 2, 5], [3, 4]
+#: the column of the height of its centre, if it leaves the table
+_HIGH = 6
 
 
 def span(m: "Motion") -> tuple[float, float]:
@@ -88,8 +88,7 @@ def pace(m: "Motion") -> float:
     evaluations.
     """
     if not m._nods:
-        many = m.nfev / _EVALUATIONS * (m._setting / 1e-14) ** 0.1
-        return float(abs(_end(m) - m._asked.t0) / max(many, 1e-3))
+        return pace_of_stone(m)
     if goes_up(m):
         first, last = span(m)
         many = sum((end - begin) * often for begin, end, often, _ in parts_of_flight(m, first, last))
@@ -122,11 +121,6 @@ def _mean_pace(m: "Motion") -> float:
             found[k] = 1 / swing_on(m.body, State(tilt, *turning), contact, int(rims[k])).period
     many = float(np.mean(found))
     return 1 / many if many > 0 else np.inf
-
-
-def _end(m: "Motion") -> float:
-    """The time up to which the motion was computed."""
-    return float(m._asked.times[-1]) if m.event is None or m._asked.beyond else m.event.time
 
 
 class Repeat(NamedTuple):
@@ -172,7 +166,7 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     ndarray, shape (n, 11)
         Rows with ascending times: t; theta, phi, psi, x and y of the centre; the slopes of these five. For a
         stone (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body
-        that leaves the table (n, 13): z of the centre after x and y.
+        that leaves the table (n, 13): z of the centre after x and y; for a stone (n, 15): z at last.
 
     Raises
     ------
@@ -282,7 +276,8 @@ def _distance_of_poses(body: Any, drawn: Floats, true: Floats) -> Floats:
 def _(stone: Ellipsoid, drawn: Floats, true: Floats) -> Floats:
     (q, *at), (p, *there) = _stone_of_numbers(stone, drawn), _stone_of_numbers(stone, true)
     places = [np.abs(a - b).max(axis=1) for a, b in zip(at, there, strict=True)]
-    found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.maximum(*places))
+    places.append(np.abs(drawn[:, _HIGH:] - true[:, _HIGH:]).max(axis=1, initial=0.0))
+    found: Floats = np.maximum(2 * np.linalg.norm(q - p, axis=1), np.max(places, axis=0))
     return found
 
 
@@ -299,7 +294,8 @@ def _places(m: "Motion", t: Floats, up: Aloft | None) -> Floats:
     """The numbers of poses along a last axis, in the order of `knots`."""
     if not m._nods:
         turn, centre = seen(m, t, "orientation", "centre")
-        return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:]], -1)
+        high = centre[..., 2:] if up is not None else centre[..., :0]
+        return np.concatenate([turn[..., :3], centre[..., :2], turn[..., 3:], high], -1)
     theta, phi, psi, centre = seen(m, t, "theta", "phi", "psi", "centre")
     if up is not None:
         return np.concatenate([up.from_first(t, theta, phi, psi), centre], -1)

@@ -9,7 +9,8 @@ bound: a contact point faster than the ringing makes it no louder, and beats fas
 are replaced by their mean.
 
 A body in the air or on its face is silent. An impact excites the same resonances, with a loudness
-proportional to its impulse, and equally loud on all sides.
+proportional to its impulse, and equally loud on all sides. Of a stone only impacts are heard, since its
+contact point runs round no rim.
 """
 
 import math
@@ -26,7 +27,6 @@ from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import FLIES, ON_FACE, goes_up, strikes
 from spincyl.studio.poses import seen, span
-from spincyl.studio.shape import kind
 
 if TYPE_CHECKING:
     from spincyl._motion import Motion
@@ -51,8 +51,6 @@ def sound(
     path = path_of("path", path)
     if path.suffix.lower() != ".wav":
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .wav")
-    if kind(m.body) == "stone":
-        raise TypeError("body: expected a Body, whose contact point runs round a rim, not an Ellipsoid")
     scale, m = scale_of(scale, m.body), m.natural
     if scale is None:
         raise TypeError("scale: expected a Scale, since sound needs seconds; a measured body has its own")
@@ -84,9 +82,12 @@ def _pressure(m: "Motion", first: float, unit: float, lasting: float, rate: int)
     """The pressure at each sample, between -1 and 1, with some ringing after the end."""
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_POSES_PER_SECOND * lasting)))
     heard = [x for x in strikes(m) if x.time <= first + lasting / unit] if goes_up(m) else []
-    phi, speed = _contact(m, first + looks / unit, bool(heard))
+    if m._nods:
+        phi, speed = _contact(m, first + looks / unit, bool(heard))
+    else:
+        phi, speed = np.zeros((2, looks.size))
     if not (speed.max() > _SPEED_ROUNDING or heard):
-        why = "the contact point does not move along the body"
+        why = "the contact point does not move along the body" if m._nods else "the stone strikes nothing"
         raise ValueError(f"motion: there is nothing to hear, since {why}")
     speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
     t = np.arange(math.ceil((lasting + _RINGING_AFTER) * rate)) / rate

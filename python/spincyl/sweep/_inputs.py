@@ -66,6 +66,8 @@ def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Real
     found |= zip((f"start_{name}" for name in _W), components(states.w), strict=True)
     if states.slip is not None:
         found |= zip(("start_slip_x", "start_slip_y"), components(states.slip), strict=True)
+    if states.height is not None:
+        found |= zip(("start_height", "start_lift"), states._aloft, strict=True)
     return found
 
 
@@ -240,7 +242,9 @@ def _stones(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
 
     # broadcast by name, since stones and their states have no named dimensions
     names = [f"body_{name}" for name in _AXES] + [f"start_{name}" for name in (*_NORMAL, *_W)]
-    names += [name for name in ("start_slip_x", "start_slip_y") if name in given]
+    more = [("start_slip_x", "start_slip_y"), ("start_height", "start_lift")]
+    slips, flies = (of[0] in given for of in more)
+    names += [name for of, there in zip(more, (slips, flies), strict=True) if there for name in of]
     lib: Any = optional_library("xarray", "sweep")
     arrays = lib.broadcast(*(lib.DataArray(given.get(name, np.nan)) for name in names))
     columns: list[Floats] = [array.data for array in arrays]
@@ -249,6 +253,7 @@ def _stones(given: dict[str, Any], scale: Scale | None) -> dict[str, Any]:
         inertia[i][j] = inertia[j][i] = x
     tensor = np.stack([np.stack(row, axis=-1) for row in inertia], axis=-2)
     axes, offset, n, w = (np.stack(columns[i : i + 3], axis=-1) for i in (0, 9, 13, 16))
-    slip = np.stack(columns[19:], axis=-1) if len(columns) > 19 else None
+    slip = np.stack(columns[19:21], axis=-1) if slips else None
+    height, lift = columns[-2:] if flies else (None, None)
     stone = Ellipsoid(axes, tensor, offset, columns[12], scale=scale, _doubted=True)
-    return {"bodies": stone, "states": EllipsoidState(n, w, slip)}
+    return {"bodies": stone, "states": EllipsoidState(n, w, slip, height=height, lift=lift)}

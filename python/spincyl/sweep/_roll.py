@@ -240,14 +240,15 @@ def roll(
 
     A stone has no first integrals. The motion of each stone is integrated twice, to estimate its error. For
     stones `t` is a number, at least 0, in sqrt(a/g) with the largest semi-axis a; `step`, `beyond`,
-    `restitution`, `stop_at` and `errors` are not available. The outputs are "spin" (about the vertical, at
-    the end), "reversals" (number of reversals of the spin), "first_reversal" (time of the first one), "end",
+    `stop_at` and `errors` are not available. The outputs are "spin" (about the vertical, at the end),
+    "reversals" (number of reversals of the spin), "first_reversal" (time of the first one), "end",
     "dissipated", "work_lost" (with losses) and "final" (n1, n2, n3, w1, w2, w3). The default is the first
-    three. A reversal counts if the spin passes zero and then reaches a tenth of the initial spin in the other
-    direction. The time of the reversal is the time of the last zero of the spin before that. An initial spin
-    below 1e-12 has no direction, and reversals are not counted. `known_until` is the time up to which the
-    motion is known, as in `EllipsoidMotion`. Reversals are counted only up to this time. If they are wanted,
-    the motion counts as known while its error is at most a tenth of the initial spin.
+    three. With `restitution` also "impacts", "landings", "air_time", "lost_in_impacts" and "last_phase". A
+    reversal counts if the spin passes zero and then reaches a tenth of the initial spin in the other
+    direction, also in the air. The time of the reversal is the time of the last zero of the spin before that.
+    An initial spin below 1e-12 has no direction, and reversals are not counted. `known_until` is the time up
+    to which the motion is known, as in `EllipsoidMotion`. Reversals are counted only up to this time. If they
+    are wanted, the motion counts as known while its error is at most a tenth of the initial spin.
 
     Examples
     --------
@@ -261,10 +262,8 @@ def roll(
     """
     optional_library("xarray", "sweep")
     if is_stone(bodies):
-        from spincyl._ellipsoid_motion import refuse_impacts
         from spincyl.sweep import _stones
 
-        refuse_impacts(restitution)
         if step is not None or beyond or stop_at is not None or not errors:
             raise ValueError(
                 "step, beyond, stop_at, errors: only for bodies of revolution; leave them out for stones"
@@ -277,6 +276,7 @@ def roll(
             contact=contact,
             tol=tol,
             mu=mu,
+            restitution=restitution,
             losses=losses,
             max_nfev=max_nfev,
             table=checked_table(table),

@@ -1,4 +1,4 @@
-"""Many stones at once: their endings, and the reversals of their spin."""
+"""Many stones at once: their endings, their hops, and the reversals of their spin."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -26,6 +26,8 @@ from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
 from spincyl._lossy import losses_of_stone, warn_of_long_arm
 from spincyl._measured import natural_time
+from spincyl._phases import refuse_impacts_on_patch
+from spincyl._state import refuse_state_in_air
 from spincyl._table import Table
 from spincyl.sweep._common import in_memory
 from spincyl.sweep._inputs import kept_contact, kept_stones, kept_table
@@ -36,6 +38,8 @@ from spincyl.sweep._swept import Question
 LABELS = {name: (unit, meaning) for name, unit, meaning in _core.stone_columns()}
 _FINAL = ("n1", "n2", "n3", "w1", "w2", "w3")
 _TOLD = tuple(name for name in LABELS if name not in _FINAL)
+#: The columns of a stone that may leave the table.
+_HOPS = ("impacts", "landings", "air_time", "lost_in_impacts", "last_phase")
 
 
 def question(
@@ -47,6 +51,7 @@ def question(
     contact: AnyContact,
     tol: float,
     mu: float,
+    restitution: float | None,
     losses: Loss | None,
     max_nfev: int | None,
     table: Table | None,
@@ -59,10 +64,18 @@ def question(
         t = natural_time("t", t, scale)
     end = in_range("t", number("t", t), 0.0, 1e15, "sqrt(a/g), from 0 on")
     default = ("spin", "reversals", "first_reversal")
-    wanted = known_words("want", default if want is None else want, ("final", *_TOLD))
+    known = [name for name in _TOLD if restitution is not None or name not in _HOPS]
+    needs = dict.fromkeys(_HOPS, "; this output needs restitution=")
+    given = default if want is None else want
+    wanted = known_words("want", given, ("final", *known), lambda name: needs.get(name, ""))
+    if restitution is None:
+        refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
+    else:
+        number("restitution", restitution)  # its range is known to the core
+    refuse_impacts_on_patch(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         code_of(contact, rubs=True)
-        if states._slips:
+        if states._slips and states.height is None:
             why = f"contact={contact!r} has no law of friction; give contact=sc.Coulomb(mu)"
             raise ValueError(f"states: the stones slip, and {why}")
     names = [name for name in _TOLD if name in (*wanted, "error", "known_until")]
@@ -71,6 +84,8 @@ def question(
     fields = dict(zip(_core.stone_names(), stones._columns(), strict=True))
     parts = states.vertical, states.w, states._pair
     fields |= zip((*_FINAL, *slip), (x for part in parts for x in components(part)), strict=True)
+    if states.height is not None:
+        fields |= zip(("height", "lift"), states._aloft, strict=True)
     if isinstance(contact, Coulomb | Viscous):
         fields |= zip(("coefficient", "static", "patch"), contact._numbers, strict=True)
         contact = contact._natural(scale)
@@ -80,7 +95,7 @@ def question(
     if table is not None:
         fields |= {"slope": table.slope, "phi0": table.phi0}
     asked = Asked(np.array([end]), tol=number("tol", tol), contact=contact, mu=number("mu", mu))
-    asked = asked._replace(max_nfev=checked_max_nfev(max_nfev))
+    asked = asked._replace(restitution=restitution, max_nfev=checked_max_nfev(max_nfev))
     told = kept_stones(stones, states) | kept_contact(contact) | kept_table(table)
     in_memory("contact", contact, fields)
     return Question(fields, names, frozenset(), asked, wanted, scale, seconds, told)

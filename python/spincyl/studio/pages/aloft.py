@@ -15,7 +15,10 @@ _BRIEF = 2e-3
 
 
 def flying(m: Motion) -> dict[str, Any]:
-    """Phases as (time, code, whether the other rim is down), and as described: (time, code, impacts)."""
+    """Phases as (time, code, whether the other rim is down), and as described: (time, code, impacts).
+
+    A stone has no rims.
+    """
     first, last = span(m)
     begins = np.array([phase.time for phase in m.phases])
     ends = np.append(begins[1:], last)
@@ -24,7 +27,7 @@ def flying(m: Motion) -> dict[str, Any]:
     phases = [list(x) for x in zip(begins.tolist(), codes, rims.astype(int).tolist(), strict=True)]
     return {
         "aloft": True,
-        "two": has_two_rims(m.body),
+        "two": m._nods and has_two_rims(m.body),
         "phases": phases,
         "told": _told(m, begins, ends, codes),
     }

@@ -99,6 +99,6 @@ def _height(ax: "Axes", m: "Motion", t: Floats, units: PlotUnits, style: dict[st
 def strikes(m: "Motion") -> Floats:
     """(2, k) positions of the impacts of a motion on the table."""
     there = m.wanting("pose", t=np.unique([x.time for x in m.impacts]))
-    flat = np.sin(there.theta)[:, np.newaxis] < FLAT  # the whole face strikes
+    flat = m._nods & (np.sin(there.theta)[:, np.newaxis] < FLAT)  # the whole face strikes
     found: Floats = np.where(flat, there.centre[:, :2], there.contact_point).T
     return found

@@ -62,9 +62,10 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
       marked, and the times in the air and on both rims are tinted, too.
     - For a body that rolls straight at constant inclination, the distance of its centre from the first
       position is drawn instead of the inclination.
-    - For a stone, the spin about the vertical is drawn together with the inclination. If the stone stays
-      within 60 degrees of upright, the envelopes of both rockings are drawn: the largest angles between its
-      longer and its shorter axis and the horizontal. The unit of length is the largest semi-axis.
+    - For a stone, the spin about the vertical is drawn together with the inclination; for one that leaves the
+      table, the height of its lowest point. If a stone stays on the table and within 60 degrees of upright,
+      the envelopes of both rockings are drawn: the largest angles between its longer and its shorter axis and
+      the horizontal. The unit of length is the largest semi-axis.
 
     Examples
     --------
@@ -113,8 +114,9 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     if m.losses is not None:
         how = f"{how}, {losses_in_words(m.losses, scale)}"
     if not m._nods:
-        _spin(tilt, m, t, scale, thick)
-        if float(m.theta.max()) < np.pi / 3:
+        if not up:
+            _spin(tilt, m, t, scale, thick)
+        if not up and float(m.theta.max()) < np.pi / 3:
             _rockings(tilt, m, t, below)
         tilt.set_title(how)
     else:

@@ -21,11 +21,21 @@ for (const m of motions) if (m.aloft) {
   }
 }
 
+// the numbers of a stone end with the height of its centre
+function ofStoneAloft(m, t, p) {
+  const [[, , , , , , z]] = interpolate(m, t), [, kind] = m.now(t), height = kind === FLIES ? Math.max(0, z - p.centre[2]) : 0;
+  p.centre[2] = p.matrix[14] = p.centre[2] + height;
+  Object.assign(p, { kind, height, top: p.centre[2] + Math.hypot(1, m.ell) });
+  if (kind === FLIES) p.normal = p.friction = [0, 0, 0];
+  return p;
+}
+
 const ofTheLowerRim = pose;
 pose = (m, t) => {
   const p = ofTheLowerRim(m, t), none = [0, 0, 0];
   Object.assign(p, { normal2: none, friction2: none });
   if (!m.aloft) return p;
+  if (m.axes) return ofStoneAloft(m, t, p);
   // theta continues beyond the poles, and refers to the first rim
   const [[theta, , , x, y, z]] = interpolate(m, t), [, kind, other] = m.now(t), ell = m.depth ?? m.ell, round = m.fillet || 0;
   const c = Math.cos(theta), s = Math.abs(Math.sin(theta)), [cp, sp] = [Math.cos(p.phi), Math.sin(p.phi)], side = Math.sin(theta) < 0 ? -1 : 1;
