@@ -139,6 +139,6 @@ def landing(height, end, most, order):
         elif height(t)[1] + most * width < 0:
             node = type("", (), {"at": staticmethod(lambda x: height(x)[0])})
             return root(node, t, x)
-        assert width > end * mpfr("1e-20"), "a rim that grazes the table"
+        assert width > end * mpfr("1e-24"), "a rim that grazes the table"
         todo.append(t + width / 2)
     return mpfr("inf")

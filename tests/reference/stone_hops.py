@@ -88,12 +88,12 @@ def scenes():
     yield Scene("odd stone bounces on a smooth table", ODD, "smooth", 1, (0.3, -0.2, 0.9), (0.8, 0.4, -0.6), 4, 0.3, u=(0.3, -0.2), rows=3)
     yield Scene("skew stone lands on a rolling table", SKEW, "rolling", 0.5, lean, (0.3, -0.2, 0.4), 2, 0.3, u=(0.1, 0.05))
     yield Scene("odd stone leaps as it slips", ODD, "coulomb", 0.5, (0.3, -0.2, 0.9), (4, 1.5, 0.5), 1.6, mu=0.3, u=(0.5, 0.5))
-    yield Scene("odd stone leaps as it rolls", ODD, "rolling", 0.3, (0.3, -0.2, 0.9), (4, 1.5, 0.5), 0.8)
+    yield Scene("odd stone leaps as it rolls", ODD, "rolling", 0.3, (-0.051, -0.241, -0.969), (-2.347, 1.291, 0.966), 1.6)
     yield Scene("skew stone thrown with a large spin", SKEW, "coulomb", 0.5, (0.2, 0.1, 1), (1, 2, 12), 2, 0.2, lift=0.3, mu=0.3, u=(1, 0.4))
     yield Scene("rattleback with static friction", SMALL, "coulomb", 0.3, leaning(0.15, 0.1), (0.3, 0.2, -0.6), 1, 0.1, mu=0.3, static=0.6)
     yield Scene("skew stone on a viscous film", SKEW, "viscous", 0.3, lean, (0.4, -0.3, 0.5), 2, mu=0.5, **pushed)
     yield Scene("ball with spin", BALL, "coulomb", 0.8, (0, 0, 1), (0, -6, 1), 12, 0.5, lift=0.5, mu=0.25, u=(-2, 0.5))
-    yield Scene("stone at rest on its end grips and rocks", SMALL, "coulomb", 0.5, (0.05, 0.1, 0.99), (0.5, 0, -0.3), 1, 0, lift=0.2, mu=0.2)
+    yield Scene("rattleback hops and rocks", SMALL, "coulomb", 0.5, (0.05, 0.1, 0.99), (0.5, 0, -0.3), 1, 0, lift=0.2, mu=0.2)
     # fmt: on
 
 
