@@ -118,9 +118,7 @@ def landing(height, end, most, order):
         t = end * mpfr("1e-9")
         if order == 1:
             t = min(t, height(mpfr(0))[1] * mpfr("1e-3"))
-        while (
-            order > 1 and t < end / 50 and all(height(t * k / 8)[0] > 0 for k in range(1, 17))
-        ):
+        while order > 1 and t < end / 50 and all(height(t * k / 8)[0] > 0 for k in range(1, 17)):
             t *= 2
     (low, _), todo = height(t), [end]
     assert low > 0, "a flight that does not rise"

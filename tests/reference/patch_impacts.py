@@ -41,7 +41,6 @@ from gmpy2 import mpfr
 from phases import first_event, step_size
 from point_impacts import Course
 from series import Tape, precise
-from stone_forms import along
 from stone_hops import BALL, SKEW
 from stone_impacts import LIGHT, answers
 from stones import SMALL
@@ -109,7 +108,9 @@ class Impact:
             watched.slip, watched.size = tape.named["slip"], tape.named["size"]
             lift, work = tape.named["lift"], tape.named["work"]
             h = min(step_size(watched, self.series_order, FINE), mpfr(4))
-            h = min(h, 8 * (abs(lift.c[0]) + abs(work.c[0]) + mpfr("1e-6")) / max(abs(lift.c[1]), mpfr("1e-60")))
+            h = min(
+                h, 8 * (abs(lift.c[0]) + abs(work.c[0]) + mpfr("1e-6")) / max(abs(lift.c[1]), mpfr("1e-60"))
+            )
             place, name = first_event([*course.watched(lift, work), *tape.events], h)
             y = [node.at(h if name is None else place) for node in tape.states]
             course.work = y[4]
@@ -139,12 +140,12 @@ class Impact:
         solve = solver([[self.matrix[i][j] for i in own] for j in own])
         wanted = [self.matrix[i][2] for i in own]
         held = solve(scaled(-1, wanted))
-        along, turn = gmpy2.hypot(held[0], held[1]) / self.mu, abs(held[2]) / (self.mu * self.patch)
-        if along < 1 and turn < self.most(along):
+        pull, turn = gmpy2.hypot(held[0], held[1]) / self.mu, abs(held[2]) / (self.mu * self.patch)
+        if pull < 1 and turn < self.most(pull):
             return [*held[:2], mpfr(1), held[2]], "sticks"
         return self.leaves(own, wanted), "slips on"
 
-    def most(self, along):
+    def most(self, pull):
         """The couple g(k) at the k whose force is f(k)."""
 
         def law(k):
@@ -152,11 +153,11 @@ class Impact:
             return -pushed[0] / self.mu, -pushed[3] / (self.mu * self.patch)
 
         low, high = mpfr(0), mpfr(1)
-        while law(high)[0] < along:
+        while law(high)[0] < pull:
             low, high = high, 2 * high
         for _ in range(gmpy2.get_context().precision):
             k = (low + high) / 2
-            low, high = (k, high) if law(k)[0] < along else (low, k)
+            low, high = (k, high) if law(k)[0] < pull else (low, k)
         return law(low)[1]
 
     def leaves(self, own, wanted):
@@ -249,7 +250,11 @@ def cases():
     """Name, matrix, (u1, u2, u3, w), restitution, mu and the radius of the patch."""
     skew, side = answers(SKEW, (0.36, 0.48, 0.8)), answers(SMALL, (0.7, -1.3, -0.5))
     ball, light = answers(BALL, (0, 0, 1)), answers(LIGHT, (-0.16, 0.84, 0.52))
-    can, coin, round_rim = rim(tube(0.5, 0.0), 0.5), rim(tube(0.0854, 0.0), 0.3), rim(rounded(0.17, 0.05), 0.6)
+    can, coin, round_rim = (
+        rim(tube(0.5, 0.0), 0.5),
+        rim(tube(0.0854, 0.0), 0.3),
+        rim(rounded(0.17, 0.05), 0.6),
+    )
     top = rim((-0.2, 0.4, 0.42, 1.0), 0.4)
     yield "skew stone slips", skew, (0.5, -0.3, -1, 3), 0.6, 0.2, 0.05
     yield "skew stone slips on a small patch", skew, (0.5, -0.3, -1, 3), 0.6, 0.2, 0.001
@@ -295,7 +300,9 @@ def row(name, matrix, y, e, mu, patch):
     apart = max(abs(x - y) / max(1, abs(y)) for x, y in zip(one, other, strict=True))
     print(f"{name}: {kind}, {times}, {float(apart):.1e}", flush=True)
     given = [float(x).hex() for x in (e, mu, patch, *(matrix[i][j] for i, j in PLACES), *y)]
-    return ",".join([name, *given, kind, str(times), *(decimal(x, 1e-35) for x in other), f"{float(apart):.1e}"])
+    return ",".join(
+        [name, *given, kind, str(times), *(decimal(x, 1e-35) for x in other), f"{float(apart):.1e}"]
+    )
 
 
 def main():

@@ -257,7 +257,5 @@ def filmed(course, light, b, a_n, u, c, unit):
             break
         p = fallen
     lost = [-gmpy2.expm1(-f * p) for f in fades]
-    given = [
-        -(c * (r * p + s * g / f)) for r, s, g, f in zip(rest, swing, lost, fades, strict=True)
-    ]
+    given = [-(c * (r * p + s * g / f)) for r, s, g, f in zip(rest, swing, lost, fades, strict=True)]
     return scaled(unit, [*given, p])

@@ -199,7 +199,9 @@ class Body(Hops, stone_forms.Body):
         matrix = rotation(y[10:14])
         r = self.lowest(y[4:7])
         arms = [cross(r, row) for row in matrix]
-        light = [[dot(along(self.free, a), b) + (i == j) for j, b in enumerate(arms)] for i, a in enumerate(arms)]
+        light = [
+            [dot(along(self.free, a), b) + (i == j) for j, b in enumerate(arms)] for i, a in enumerate(arms)
+        ]
         return light, [y[0], y[1], y.lift]
 
     def pushed(self, y, slip, impulse):
@@ -230,6 +232,8 @@ class Flight:
         r = model.lowest(n)
         self.velocity = add([*y[:2], lift], scaled(-1, along(matrix, cross(w, r))))
         self.centre = add([*y[14:16], height], scaled(-1, along(matrix, r)))
+        # by the vertical, which is not exactly that of the quaternion
+        self.velocity[2], self.centre[2] = lift - dot(n, cross(w, r)), height - dot(n, r)
         self.pieces, self.ahead, self.state = [], mpfr(0), y[4:14]
 
     def turned(self, t):
@@ -267,7 +271,8 @@ class Flight:
         u = add(velocity, along(matrix, cross(w, r)))
         arm = along(matrix, r)
         numbers = [*u[:2], y[2], y[3] + t, *n, *w, *q, centre[0] + arm[0], centre[1] + arm[1]]
-        return Air(numbers, u[2], self.height(t)[0])
+        height, lift = self.height(t)
+        return Air(numbers, lift, height)
 
     def lands(self, order):
         m = self.model

@@ -80,16 +80,16 @@ def scenes():
     lean = (0.36, 0.48, 0.8)
     pushed = {"height": 0.4, "lift": 0.2, "u": (0.5, -0.3)}
     # fmt: off
-    yield Scene("skew stone slips through", SKEW, "coulomb", 0.6, lean, (0.4, -0.3, 0.5), 3, mu=0.2, **pushed)
+    yield Scene("skew stone slips through", SKEW, "coulomb", 0.6, lean, (0.4, -0.3, 0.5), 4, mu=0.2, **pushed)
     yield Scene("skew stone sticks", SKEW, "coulomb", 0.6, lean, (0.4, -0.3, 0.5), 3, mu=0.6, **pushed)
     yield Scene("rattleback dropped", SMALL, "coulomb", 0.3, leaning(0.15, 0.1), (0, 0, 0), 1.5, 0.1, mu=0.4, rows=4)
     yield Scene("egg dropped tilted", EGG, "coulomb", 0.4, (0, 0.71735609, 0.69670671), (0.4, 0.3, 0.9), 3, 0.5, mu=0.3, u=(0.5, 0.2))
     yield Scene("odd stone without restitution", ODD, "coulomb", 0, (0.3, -0.2, 0.9), (0.8, 0.4, -0.6), 3, 0.3, mu=0.3, u=(0.3, -0.2))
     yield Scene("odd stone bounces on a smooth table", ODD, "smooth", 1, (0.3, -0.2, 0.9), (0.8, 0.4, -0.6), 4, 0.3, u=(0.3, -0.2), rows=3)
     yield Scene("skew stone lands on a rolling table", SKEW, "rolling", 0.5, lean, (0.3, -0.2, 0.4), 2, 0.3, u=(0.1, 0.05))
-    yield Scene("odd stone leaps as it slips", ODD, "coulomb", 0.5, (0.3, -0.2, 0.9), (4, 1.5, 0.5), 1.6, mu=0.3, u=(0.5, 0.5))
-    yield Scene("odd stone leaps as it rolls", ODD, "rolling", 0.3, (-0.051, -0.241, -0.969), (-2.347, 1.291, 0.966), 1.6)
-    yield Scene("skew stone thrown with a large spin", SKEW, "coulomb", 0.5, (0.2, 0.1, 1), (1, 2, 12), 2, 0.2, lift=0.3, mu=0.3, u=(1, 0.4))
+    yield Scene("odd stone leaps as it slips", ODD, "coulomb", 0.5, (0.3, -0.2, 0.9), (4, 1.5, 0.5), 2.4, mu=0.3, u=(0.5, 0.5))
+    yield Scene("odd stone leaps as it rolls", ODD, "rolling", 0.3, (0.449, 0.141, -0.882), (2.848, 0.762, -0.223), 2)
+    yield Scene("skew stone thrown with a large spin", SKEW, "coulomb", 0.5, (0.2, 0.1, 1), (1, 2, 12), 3, 0.2, lift=0.3, mu=0.3, u=(1, 0.4))
     yield Scene("rattleback with static friction", SMALL, "coulomb", 0.3, leaning(0.15, 0.1), (0.3, 0.2, -0.6), 1, 0.1, mu=0.3, static=0.6)
     yield Scene("skew stone on a viscous film", SKEW, "viscous", 0.3, lean, (0.4, -0.3, 0.5), 2, mu=0.5, **pushed)
     yield Scene("ball with spin", BALL, "coulomb", 0.8, (0, 0, 1), (0, -6, 1), 12, 0.5, lift=0.5, mu=0.25, u=(-2, 0.5))
@@ -106,9 +106,13 @@ def made(scene):
         pairs = zip([a[0], *a[3:]], [b[0], *b[3:]], strict=True)
         agreement = max(agreement, *(abs(x - y) / max(1, abs(y)) for x, y in pairs))
     kinds = [f"{kind} {float(t):.4f}" for t, _, kind, *_ in other.impacts[:6]]
-    print(f"    {len(kinds)} of {len(other.impacts)} impacts: {', '.join(kinds)}; with these {float(agreement):.1e}")
+    print(
+        f"    {', '.join(kinds)} of {len(other.impacts)}; with the impacts {float(agreement):.1e}", flush=True
+    )
     strayed = max(one.strayed, other.strayed)
-    told = [[decimal(t, 1e-30), kind, *(decimal(x, 1e-30) for x in more)] for t, _, kind, *more in other.impacts]
+    told = [
+        [decimal(t, 1e-30), kind, *(decimal(x, 1e-30) for x in more)] for t, _, kind, *more in other.impacts
+    ]
     return scene.inputs() | {
         "agreement": float(f"{float(agreement):.1e}"),
         "strayed": float(f"{float(strayed):.1e}"),

@@ -34,10 +34,7 @@ from vectors import cross, dot, scaled
 
 HERE = pathlib.Path(__file__).parent
 DIGITS = 50
-HEAD = (
-    "name,law,e,mu,static,m11,m12,m22,m13,m23,m33,u1,u2,u3,"
-    "kind,times,p1,p2,p3,v1,v2,v3,lost,agreement"
-)
+HEAD = "name,law,e,mu,static,m11,m12,m22,m13,m23,m33,u1,u2,u3,kind,times,p1,p2,p3,v1,v2,v3,lost,agreement"
 LIGHT = stone((1, 0.8, 0.6), (0.05, 0.08, 0.09), (0.004, 0.005, -0.004), (0.03, -0.02, -0.1))
 
 
@@ -63,7 +60,9 @@ def answers(stone, n):
     frame = pose(n)
     r, free = arm(stone, frame[2]), inverse([[mpfr(x) for x in row] for row in stone[1]])
     turns = [*(cross(r, axis) for axis in frame), frame[2]]
-    matrix = [[dot(along(free, a), b) + (i == j < 3) for j, b in enumerate(turns)] for i, a in enumerate(turns)]
+    matrix = [
+        [dot(along(free, a), b) + (i == j < 3) for j, b in enumerate(turns)] for i, a in enumerate(turns)
+    ]
     return [[float(x) for x in row] for row in matrix]
 
 
@@ -79,20 +78,62 @@ def cases():
     yield "skew stone slips elastically", SKEW, lean, (3, 1, -0.5), coulomb, 1, 0.3
     yield "skew stone lands without slip and sticks", SKEW, lean, (0, 0, -1), coulomb, 0.5, 0.4
     yield "skew stone lands without slip and slips on", SKEW, lean, (0, 0, -1), coulomb, 0.5, 0.3
-    yield "skew stone lands without slip, with static friction", SKEW, lean, (0, 0, -1), coulomb, 0.5, 0.3, 0.4
+    yield (
+        "skew stone lands without slip, with static friction",
+        SKEW,
+        lean,
+        (0, 0, -1),
+        coulomb,
+        0.5,
+        0.3,
+        0.4,
+    )
     yield "skew stone turns round and slips", SKEW, lean, (0.1, 0.05, -1), coulomb, 0.6, 0.3
     yield "rattleback stops and slips on", SMALL, aside, (-0.3, -0.06, -1), coulomb, 0.3, 0.7
-    yield "rattleback stops, static friction holds it", SMALL, aside, (-0.3, -0.06, -1), coulomb, 0.3, 0.7, 0.8
+    yield (
+        "rattleback stops, static friction holds it",
+        SMALL,
+        aside,
+        (-0.3, -0.06, -1),
+        coulomb,
+        0.3,
+        0.7,
+        0.8,
+    )
     yield "rattleback stops late and slips on", SMALL, (-0.8, 1.1, -0.8), (-1, -0.1, -1), coulomb, 0.9, 0.7
-    yield "rattleback stops and slips on without restitution", SMALL, aside, (-0.3, -0.06, -1), coulomb, 0, 0.7
+    yield (
+        "rattleback stops and slips on without restitution",
+        SMALL,
+        aside,
+        (-0.3, -0.06, -1),
+        coulomb,
+        0,
+        0.7,
+    )
     yield "rattleback grazes", SMALL, rattle, (1, -2, -1e-3), coulomb, 0.3, 0.4
     yield "rattleback falls steeply", SMALL, rattle, (1e-3, -2e-3, -5), coulomb, 0.3, 0.4
     yield "flat stone slips across", FLAT, (0.05, -0.03, 1), (0.3, 0.7, -1), coulomb, 0.8, 0.2
     yield "ball slips", BALL, (0.6, 0, 0.8), (0.3, -0.4, -1), coulomb, 0.8, 0.05
     yield "ball grips", BALL, (0.6, 0, 0.8), (0.3, -0.4, -1), coulomb, 0.8, 0.3
-    yield "light stone is pressed in by its friction", LIGHT, (0.49, 0.87, 0.07), (-1, 3, -0.2), coulomb, 0.5, 0.9
+    yield (
+        "light stone is pressed in by its friction",
+        LIGHT,
+        (0.49, 0.87, 0.07),
+        (-1, 3, -0.2),
+        coulomb,
+        0.5,
+        0.9,
+    )
     yield "light stone is pressed in twice", LIGHT, (-0.16, 0.84, 0.52), (7.91, -1.2, -1), coulomb, 0.5, 0.88
-    yield "light stone is pressed in twice again", LIGHT, (-0.43, -0.75, 0.5), (7.27, -3.33, -1), coulomb, 0.8, 1.12
+    yield (
+        "light stone is pressed in twice again",
+        LIGHT,
+        (-0.43, -0.75, 0.5),
+        (7.27, -3.33, -1),
+        coulomb,
+        0.8,
+        1.12,
+    )
     yield "flat stone is pressed in twice", FLAT, (0.54, -0.54, 0.65), (2.96, 0.48, -1), coulomb, 0.8, 1.59
     yield "rattleback is pressed in twice", SMALL, (-0.76, 0.25, 0.6), (7.86, 1.5, -1), coulomb, 0.5, 1.62
     yield "skew stone on a viscous film", SKEW, lean, down, "viscous", 0.6, 0.5
@@ -101,7 +142,16 @@ def cases():
     yield "skew stone on a smooth table", SKEW, lean, down, "smooth", 0.6, 0
     yield "skew stone on a rolling table", SKEW, lean, down, "rolling", 0.6, 0, math.inf
     yield "rattleback on a rolling table", SMALL, rattle, (0.1, -0.05, -1), "rolling", 0.3, 0, math.inf
-    yield "light stone on a rolling table without restitution", LIGHT, (0.49, 0.87, 0.07), down, "rolling", 0, 0, math.inf
+    yield (
+        "light stone on a rolling table without restitution",
+        LIGHT,
+        (0.49, 0.87, 0.07),
+        down,
+        "rolling",
+        0,
+        0,
+        math.inf,
+    )
 
 
 def row(name, stone, n, u, law, e, mu, static=None):
@@ -110,7 +160,8 @@ def row(name, stone, n, u, law, e, mu, static=None):
     exact = [[mpfr(x) for x in line] for line in matrix]
     how = "coulomb" if law == "smooth" else law
     found = [
-        way(exact, [mpfr(x) for x in u], mpfr(e), how, mpfr(mu), mpfr(static)) for way in (components, directions)
+        way(exact, [mpfr(x) for x in u], mpfr(e), how, mpfr(mu), mpfr(static))
+        for way in (components, directions)
     ]
     one, other = ([*x.impulse, *x.after, x.lost] for x in found)
     assert (found[0].kind, found[0].times) == (found[1].kind, found[1].times)
