@@ -57,6 +57,7 @@ mod sticking;
 mod stone;
 mod stone_claims;
 mod stone_hops;
+
 mod sweep;
 mod thin_disk;
 mod throw;

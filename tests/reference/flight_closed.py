@@ -2,9 +2,9 @@
 
 import gmpy2
 import slip_forms
-from flight_forms import Air, Bounce, ended, slid
+from flight_forms import Air, Bounce, ended, landing, slid
 from gmpy2 import mpfr
-from series import Tape, root
+from series import Tape
 from torus import Z
 from vectors import add, cross, dot, scaled
 
@@ -270,33 +270,4 @@ class Flight:
         m = self.model
         most = self.rate**2 * (abs(m.ell) * self.both + m.rim * gmpy2.sin(self.b)) - 1
         end = self.velocity[2] + gmpy2.sqrt(self.velocity[2] ** 2 + 2 * self.centre[2])
-        most = max(most, mpfr("1e-9"))
-        t = mpfr(0)
-        if order:
-            t = end * mpfr("1e-9")
-            if order == 1:
-                t = min(t, self.height(mpfr(0), side)[1] * mpfr("1e-3"))
-            while (
-                order > 1 and t < end / 50 and all(self.height(t * k / 8, side)[0] > 0 for k in range(1, 17))
-            ):
-                t *= 2
-        (low, _), todo = self.height(t, side), [end]
-        assert low > 0, "a flight that does not rise"
-        while todo:
-            x = todo[-1]
-            high, width = self.height(x, side)[0], x - t
-            if high > 0:
-                v = (low - high) / (most * width)
-                least = min(low, high)
-                if abs(v) < width / 2:
-                    least = (low + high) / 2 - most * (width * width / 8 + v * v / 2)
-                if least > 0:
-                    t, low = x, high
-                    todo.pop()
-                    continue
-            elif self.height(t, side)[1] + most * width < 0:
-                node = type("", (), {"at": staticmethod(lambda x: self.height(x, side)[0])})
-                return root(node, t, x)
-            assert width > end * mpfr("1e-20"), "a rim that grazes the table"
-            todo.append(t + width / 2)
-        return mpfr("inf")
+        return landing(lambda t: self.height(t, side), end, most, order)

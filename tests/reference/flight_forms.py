@@ -19,6 +19,7 @@ begins. The first slip runs in nu, dp = |u| dnu.
 import gmpy2
 from gmpy2 import mpfr
 from phases import first_event, step_size
+from series import root
 
 # of series in an impact: relative to the normal velocity
 FINE, ORDER, STOPPED = mpfr("1e-42"), 36, mpfr("1e-44")
@@ -103,3 +104,39 @@ def slid(tape, stop, e, size, lift, work, start):
         if size.at(h) < STOPPED:
             return False, start, pressed
     raise ArithmeticError("an impact without end")
+
+
+def landing(height, end, most, order):
+    """The first time up to `end` at which a height is 0; infinite if there is none.
+
+    The height and its rate are given, and the largest of its second derivative. `order` is that of the height
+    if it is 0 at the start.
+    """
+    most = max(most, mpfr("1e-9"))
+    t = mpfr(0)
+    if order:
+        t = end * mpfr("1e-9")
+        if order == 1:
+            t = min(t, height(mpfr(0))[1] * mpfr("1e-3"))
+        while order > 1 and t < end / 50 and all(height(t * k / 8)[0] > 0 for k in range(1, 17)):
+            t *= 2
+    (low, _), todo = height(t), [end]
+    assert low > 0, "a flight that does not rise"
+    while todo:
+        x = todo[-1]
+        high, width = height(x)[0], x - t
+        if high > 0:
+            v = (low - high) / (most * width)
+            least = min(low, high)
+            if abs(v) < width / 2:
+                least = (low + high) / 2 - most * (width * width / 8 + v * v / 2)
+            if least > 0:
+                t, low = x, high
+                todo.pop()
+                continue
+        elif height(t)[1] + most * width < 0:
+            node = type("", (), {"at": staticmethod(lambda x: height(x)[0])})
+            return root(node, t, x)
+        assert width > end * mpfr("1e-24"), "a rim that grazes the table"
+        todo.append(t + width / 2)
+    return mpfr("inf")

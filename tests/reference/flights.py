@@ -100,8 +100,8 @@ def pressed(model, y, out):
     return kind, y
 
 
-def follow(model, loud=False):
-    """The checkpoints of a scene."""
+def follow(model, loud=False, lift=6):
+    """The checkpoints of a scene; `lift` is the place of the normal velocity in what a model tells."""
     scene, out = model.scene, Flown(model, loud)
     samples = [mpfr(t) for t in scene.samples]
     y = model.start()
@@ -118,7 +118,7 @@ def follow(model, loud=False):
             y, rim = model.fly(y, order, samples, out)
             if y is None:
                 return out
-            falls, told_from = -model.read(y)[6], told_from ^ rim
+            falls, told_from = -model.read(y)[lift], told_from ^ rim
             told = rows > 0 and falls > BRIEF
             if told:
                 out.add("lands", y[3], y)

@@ -96,7 +96,7 @@ class Stone(Formulation):
         size = gmpy2.sqrt(dot(n, [a * x for a, x in zip(self.a2, n, strict=True)]))
         return [-(a * x / size) - d for a, x, d in zip(self.a2, n, self.d, strict=True)]
 
-    def lost(self, tape, w, z):
+    def resisted(self, tape, w, z):
         """The couple of the losses without the normal force, and that per unit of it."""
         none = [tape.constant(0)] * 3
         without, pressed = [none, none], [none, none]
@@ -203,7 +203,7 @@ class Table(Stone):
 
         zero = tape.constant(0)
         units = [[mpfr(i == j) for i in range(3)] for j in range(3)]
-        without, pressed = self.lost(tape, w, units[2])
+        without, pressed = self.resisted(tape, w, units[2])
         turned = self.spin(free, units[2])
         bare = add(without, scaled(-1, cross(w, momentum)))
         known = add(cross(turned(bare)[0], r), cross(w, r_rate))
@@ -284,7 +284,7 @@ class Body(Stone):
         r_rate = [(growth * a - x) / size for a, x in zip(at, dn_rate, strict=True)]
         gyroscopic = scaled(-1, cross(w, along(self.inertia, w)))
         spun = cross(w, r)
-        without, pressed = self.lost(tape, w, n)
+        without, pressed = self.resisted(tape, w, n)
         torque = add(gyroscopic, without)
         if kind == "roll":
             u = [zero] * 3
