@@ -14,7 +14,7 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._input.hints import with_hints
 from spincyl._input.numbers import Floats, Reals, in_range, metres, reals, refuse_bad_value, si
-from spincyl._phases import IMPULSE_COLUMNS, LOST_COLUMN
+from spincyl._phases import COUPLE_COLUMN, IMPULSE_COLUMNS, LOST_COLUMN
 from spincyl._scale import Scale, scale_of, unit_of_output
 
 if TYPE_CHECKING:
@@ -203,6 +203,7 @@ def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> 
     if impacts and scale._is_weighed:
         found[:, IMPULSE_COLUMNS] *= joule * second / metre
         found[:, LOST_COLUMN] *= joule
+        found[:, COUPLE_COLUMN] *= joule * second
     return found
 
 

@@ -27,9 +27,9 @@ Kind: TypeAlias = Literal[
 ]
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = get_args(Kind)
-Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims"]
+Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims", "creeps"]
 #: Behaviour of the contact point in an impact, for each code of the core.
-HITS: tuple[Hit, ...] = ("slips", "sticks", "slips on", "smooth", "both rims")
+HITS: tuple[Hit, ...] = get_args(Hit)
 
 
 Rim: TypeAlias = Literal["first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth"]
@@ -82,7 +82,8 @@ class Impact(NamedTuple):
     kind : str
         What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
         "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
-        lands without a bounce, and both rims touch the table.
+        lands without a bounce, and both rims touch the table. "creeps": on a patch of contact, what would
+        stick at a point follows the drilling.
     impulse : tuple of float
         Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
         touch the table, the sum of their impulses. For a stone along x, y and z of the laboratory, as
@@ -96,6 +97,9 @@ class Impact(NamedTuple):
         State after the impact.
     stays : bool
         Whether the impact ends a sequence of ever smaller bounces, after which the rim stays on the table.
+    couple : float
+        Impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R) or N m s; 0 at a
+        point.
     """
 
     time: float
@@ -106,10 +110,11 @@ class Impact(NamedTuple):
     before: State
     after: State
     stays: bool
+    couple: float = 0.0
 
 
-#: Columns of the lost energy and of the impulse in the rows of impacts.
-LOST_COLUMN, IMPULSE_COLUMNS = 4, slice(5, 8)
+#: Columns of the lost energy, of the impulse and of its couple in the rows of impacts.
+LOST_COLUMN, IMPULSE_COLUMNS, COUPLE_COLUMN = 4, slice(5, 8), 8
 
 
 def state_of_phase(
@@ -127,25 +132,17 @@ def impacts(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[I
     with the velocity of the lowest point.
     """
     found = []
-    for time, other, hit, stays, lost, along, across, up, *numbers in rows.tolist():
+    for time, other, hit, stays, lost, along, across, up, couple, *numbers in rows.tolist():
         half = len(numbers) // 2
         before, after = (state(at[:-3], at[-3:-1], (0.0, at[-1])) for at in (numbers[:half], numbers[half:]))
         rim, kind, push = RIMS[int(other)], HITS[int(hit)], (along, across, up)
-        found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays)))
+        found.append(Impact(time, rim, kind, push, lost, before, after, bool(stays), couple))
     return tuple(found)
 
 
 def has_friction(contact: object) -> bool:
     """Whether a contact has a law of friction."""
     return isinstance(contact, Coulomb | Viscous)
-
-
-def refuse_impacts_on_patch(restitution: object, contact: AnyContact) -> None:
-    """Raise ValueError for impacts on a patch of contact, unless there are several patches."""
-    patch = isinstance(contact, Coulomb) and is_scalar(contact.patch) and contact.patch
-    if restitution is not None and patch:
-        why = "impacts are computed for contact at a point; give the contact without patch="
-        raise ValueError(f"restitution = {restitution!r} cannot be combined with a patch of contact: {why}")
 
 
 def check_contact(state: State, contact: AnyContact, restitution: object, settings: dict[str, Any]) -> None:
@@ -157,7 +154,6 @@ def check_contact(state: State, contact: AnyContact, restitution: object, settin
         refuse_state_in_air(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     else:
         number("restitution", restitution)  # its range is known to the core
-    refuse_impacts_on_patch(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         if state.slip is not None and (restitution is None or state.height is None):
             numbers_without_slip(

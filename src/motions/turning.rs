@@ -92,8 +92,8 @@ fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
 /// in which drilling takes the spin. The result is infinite if the top does not turn over in that time with ten times
 /// the spin of [`jellett_spin`]. The weaker the friction, the longer a top needs; with more time the result may be less.
 ///
-/// The top has turned over when its axis comes within 0.14 rad of the vertical. A motion that ends earlier, for example
-/// by a hop, counts as one without turning over. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
+/// The top has turned over when its axis comes within 0.14 rad of the vertical. A top that leaves the table comes down
+/// again, without a bounce. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
 /// a smaller one does not, and the result is one limit of several. The result is never less than half of the spin with
 /// which the top is stable upside down. Errors: those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1],
 /// a `time` outside (0, 1e6] or coefficients out of range; those of [`roll_with`](super::motion::roll_with); `Undecided`
@@ -248,7 +248,7 @@ fn decide_whether_positive<S: Moving>(
 ) -> Result<Option<bool>, Error> {
     let mut error = f64::INFINITY;
     for tol in DECISION_TOLERANCES {
-        let ask = Ask { method: Method::Tolerance(tol), ..Ask::on(friction) };
+        let ask = Ask { method: Method::Tolerance(tol), restitution: Some(0.0), ..Ask::on(friction) };
         let Some(whole) = roll(times, &ask)?.filter(|m| !m.is_interrupted()) else { return Ok(None) };
         let most = whole.states.iter().map(&room).fold(f64::NEG_INFINITY, f64::max);
         error = whole.error;

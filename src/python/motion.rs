@@ -518,12 +518,12 @@ fn dictionary<'py, S: StateArrays>(
             intern!(py, "_phases"),
             PyArray1::from_vec(py, phases).reshape([path.phases.len(), row])?,
         )?;
-        let row = 8 + path.impacts.first().map_or(0, |at| 2 * (3 + at.states[0].numbers().as_ref().len()));
+        let row = 9 + path.impacts.first().map_or(0, |at| 2 * (3 + at.states[0].numbers().as_ref().len()));
         let mut impacts = room(path.impacts.len() * row)?;
         for at in &path.impacts {
             let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
             impacts.push(at.time);
-            impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse));
+            impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse).chain(&[at.couple]));
             for (state, velocity) in at.states.iter().zip(&at.velocities) {
                 impacts.extend(state.numbers().as_ref().iter().chain(velocity));
             }

@@ -432,3 +432,23 @@ fn a_body_that_does_not_drill_slips_and_rolls_on_a_patch_as_on_a_point() {
         assert!(phases(&point) == phases(&wide) && phases(&wide) > 3);
     }
 }
+
+#[test]
+fn a_top_that_spins_so_fast_that_it_leaves_the_table_comes_down_and_turns_over() {
+    let top = Body::ball(-0.2, 0.4, 0.42).unwrap();
+    let mut flights = 0;
+    for (spin, e) in [(7.0, 0.0), (9.0, 0.0), (9.0, 0.4), (12.0, 0.3)] {
+        let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: spin };
+        let slip = spincyl::contact::slip::centre_velocity(&top, &state, [0.0; 2]).map(|v| -v);
+        let times: Vec<f64> = (0..=200).map(f64::from).collect();
+        let ask = Ask::on(on(0.3, 0.02)).with_restitution(e);
+        let m = roll_with(&top, Start::from(state).with_slip(slip), &times, &ask, || true).unwrap().unwrap();
+        let path = m.path.as_ref().unwrap();
+        let most = m.states.iter().fold(0.0, |most: f64, y| most.max(y.theta));
+        assert!(m.event.is_none() && most > 3.0, "{spin} {e}: {:?}, {most}", m.event);
+        // No impact supplies energy, and each has the couple of its patch.
+        assert!(path.impacts.iter().all(|hit| hit.lost >= 0.0 && hit.couple < 0.0), "{:?}", path.impacts);
+        flights += path.impacts.len();
+    }
+    assert!(flights > 3, "{flights}");
+}

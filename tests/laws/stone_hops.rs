@@ -1,10 +1,11 @@
 //! Stones that fly, land and bounce: what is kept, a stone that is a ball, mirror images, and the way back.
 
 use crate::common::{drawn, wander};
-use crate::stone::turned;
+use crate::stone::{apart, turned};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
+use spincyl::custom::{Custom, roll_stone};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind};
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
@@ -245,4 +246,141 @@ fn a_ball_that_drills_and_bounces_on_a_patch_loses_its_spin_as_if_it_rested_ther
     // On the table it drills on until it has stopped, at 2 I/((3 pi/16) mu eps) in all.
     let last = path.phases.last().unwrap();
     assert!(path.impacts.last().unwrap().stays && last.kind != Kind::Flying && m.error < 1e-10, "{last:?}");
+}
+
+#[test]
+fn a_stone_that_falls_on_the_end_of_an_axis_bounces_straight_up_and_does_not_turn() {
+    // The contact is below the centre, so that nothing couples; e^2 of the height is left each time.
+    for (axis, mu, e) in [(0, 0.3, 0.5), (1, 0.8, 0.9), (2, 0.0, 0.7)] {
+        let stone = Ellipsoid::rattleback([1.0, 0.6, 0.4], Some([0.1, 0.2, 0.25]), 0.3, None).unwrap();
+        let mut vertical = [0.0; 3];
+        vertical[axis] = 1.0;
+        let start = Start::from(StoneState { vertical, w: [0.0; 3] }).with_aloft([0.5, 0.0]);
+        let m = hops(&stone, &start, &Ask::on(Friction::coulomb(mu)).with_restitution(e), &[0.9, 3.0]);
+        let path = m.path.as_ref().unwrap();
+        let (mut time, mut up) = (1.0, 1.0);
+        for hit in path.impacts.iter().take(6) {
+            let off = [hit.time - time, hit.velocities[0][2] + up, hit.velocities[1][2] - e * up];
+            assert!(off.into_iter().all(|x| x.abs() < 1e-13), "{axis}: {off:?}");
+            up *= e;
+            time += 2.0 * up;
+        }
+        let still = StoneState { vertical, w: [0.0; 3] };
+        assert!(m.states.iter().all(|y| apart(y, &still) < 1e-14), "{m:?}");
+    }
+}
+
+#[test]
+fn the_mirror_image_of_a_stone_hops_as_the_mirror_image_of_its_motion() {
+    let mut r = wander(72);
+    for k in 0..drawn(60) {
+        let (axes, mu, e) = ([1.0, 0.3 + 0.5 * r(), 0.3 + 0.3 * r()], 0.1 + 0.6 * r(), 0.8 * r());
+        let stone = |twist: f64| {
+            Ellipsoid::rattleback(axes, Some([0.1, 0.2, 0.25]), twist, Some([0.02, 0.0, -0.05])).unwrap()
+        };
+        let twist = r() - 0.5;
+        let vertical @ [a, b, c] = any_vertical(&mut r);
+        let w @ [p, q, s] = core::array::from_fn(|_| 2.0 * r() - 1.0);
+        let [u, v] = [r() - 0.5, r() - 0.5];
+        let here = Start::from(StoneState { vertical, w }).with_slip([u, v]).with_aloft([r(), 0.0]);
+        let there = Start::from(StoneState { vertical: [a, -b, c], w: [-p, q, -s] }).with_slip([u, -v]);
+        let there = there.with_aloft(here.aloft);
+        let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e);
+        let [x, y] = [(stone(twist), here), (stone(-twist), there)]
+            .map(|(stone, start)| hops(&stone, &start, &ask, &[0.8, 1.6, 2.4]));
+        for (x, y) in x.states.iter().zip(&y.states) {
+            let ([a, b, c], [d, e, f]) = (y.vertical, y.w);
+            let image = StoneState { vertical: [a, -b, c], w: [-d, e, -f] };
+            assert!(apart(x, &image) < 1e-11, "{k}: {:e}", apart(x, &image));
+        }
+        let [x, y] = [x, y].map(|m| m.path.unwrap().impacts.len());
+        assert!(x == y && x > 0, "{k} {x} {y}");
+    }
+}
+
+#[test]
+fn without_friction_and_with_full_restitution_the_reversed_motion_goes_back() {
+    let (mut r, mut back) = (wander(73), 0);
+    for k in 0..drawn(60) {
+        let stone = any_pebble(&mut r);
+        let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
+        let state = StoneState { vertical: any_vertical(&mut r), w };
+        let start = Start::from(state).with_slip([r() - 0.5, r() - 0.5]).with_aloft([0.3 + r(), 0.0]);
+        let ask = Ask::on(Table::Smooth).with_restitution(1.0);
+        let m = hops(&stone, &start, &ask, &[3.0]);
+        let (end, path) = (m.states[0], m.path.as_ref().unwrap());
+        if path.kinds[0] != Kind::Flying || path.impacts.len() > 6 {
+            continue;
+        }
+        // Nothing horizontal changes: the velocity of the centre and L_z stay.
+        let turned = StoneState { vertical: end.vertical, w: end.w.map(|w| -w) };
+        let [height, lift] = path.aloft[0];
+        let there = Start::from(turned).with_slip(path.slip[0].map(|u| -u)).with_aloft([height, -lift]);
+        let n = hops(&stone, &there, &ask, &[3.0]);
+        let home = StoneState { w: n.states[0].w.map(|w| -w), ..n.states[0] };
+        let off =
+            apart(&home, &state).max((n.path.as_ref().unwrap().aloft[0][0] - start.aloft.unwrap()[0]).abs());
+        assert!(off < 1e-9, "{k}: {off:e}");
+        back += 1;
+    }
+    assert!(back > 5, "{back}");
+}
+
+#[test]
+fn friction_without_limit_tends_to_a_table_on_which_a_stone_rolls() {
+    let (mut r, mut both) = (wander(74), 0);
+    for k in 0..drawn(60) {
+        let stone = any_pebble(&mut r);
+        let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
+        let start = Start::from(StoneState { vertical: any_vertical(&mut r), w });
+        let start = start.with_slip([r() - 0.5, r() - 0.5]).with_aloft([0.2 + r(), 0.0]);
+        let landed = |table: Table| {
+            let m = hops(&stone, &start, &Ask::on(table).with_restitution(0.4), &[3.0]);
+            m.path.unwrap().impacts.first().copied()
+        };
+        // Where the slip of a landing cannot be stopped before the normal impulse, there is no such table.
+        let Some(rough) = landed(Table::Rolling { mu: f64::INFINITY }) else { continue };
+        for mu in [1e4, 1e6] {
+            let found = landed(Friction::coulomb(mu).into()).unwrap();
+            let off = (0..3).map(|i| (found.states[1].w[i] - rough.states[1].w[i]).abs());
+            let off = off.fold((found.velocities[1][2] - rough.velocities[1][2]).abs(), f64::max);
+            assert!(off < 100.0 / mu && found.hit == Hit::Sticks, "{k} {mu}: {off:e}");
+        }
+        both += 1;
+    }
+    assert!(both > 10, "{both}");
+}
+
+#[test]
+fn a_stone_that_spins_fast_leaves_the_table_from_its_slip_as_the_cube_of_the_time_and_comes_down() {
+    let stone = Ellipsoid::egg(0.7, 1.0, 0.1).unwrap();
+    // An egg that spins on its side with much energy rises so fast that it jumps (Shimomura et al. 2006).
+    let start = Start::from(stone.spinning(7.0, 1.3, 0.0)).with_slip([0.4, 0.0]);
+    let ask = Ask::on(Friction::coulomb(0.4)).with_restitution(0.3);
+    let m = hops(&stone, &start, &ask, &[20.0]);
+    let phases = &m.path.as_ref().unwrap().phases;
+    let Some(jump) = phases.iter().zip(phases.iter().skip(1)).find(|(before, at)| {
+        before.kind == Kind::Slipping && at.kind == Kind::Flying && at.aloft == [0.0; 2]
+    }) else {
+        panic!("{phases:?}")
+    };
+    let after = [1e-3, 2e-3].map(|t| jump.1.time + t);
+    let m = hops(&stone, &start, &ask, &after);
+    let [[low, _], [high, _]] = [0, 1].map(|i| m.path.as_ref().unwrap().aloft[i]);
+    assert!(low > 0.0 && (high / low - 8.0).abs() < 0.1, "{low:e} {high:e}");
+}
+
+#[test]
+fn a_law_of_friction_of_the_user_that_is_constant_is_coulombs() {
+    let (stone, start) = any_drop(&mut wander(75));
+    let start = start.with_aloft([0.4, 0.0]);
+    let times = [0.5, 1.5, 2.5];
+    let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
+    let own = Custom::default().with_friction(&|_: f64| 0.3);
+    let m = hops(&stone, &start, &ask, &times);
+    let n = roll_stone(&stone, start, &times, &ask, own, || true).unwrap().unwrap();
+    for (a, b) in m.states.iter().zip(&n.states) {
+        assert!(apart(a, b) < 1e-8, "{:e}", apart(a, b));
+    }
+    assert_eq!(m.path.unwrap().impacts.len(), n.path.unwrap().impacts.len());
 }

@@ -40,7 +40,7 @@ from spincyl._input.threads import has_large_stack
 from spincyl._loss import LAWS, Loss, checked_law
 from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
-from spincyl._phases import has_friction, refuse_impacts_on_patch
+from spincyl._phases import has_friction
 from spincyl._roll import is_stone
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl._table import Table
@@ -356,7 +356,6 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
         number("restitution", asked.restitution)  # its range is known to the core
-    refuse_impacts_on_patch(asked.restitution, contact)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
     if has_friction(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:

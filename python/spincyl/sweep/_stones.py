@@ -26,7 +26,6 @@ from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
 from spincyl._lossy import losses_of_stone, warn_of_long_arm
 from spincyl._measured import natural_time
-from spincyl._phases import refuse_impacts_on_patch
 from spincyl._state import refuse_state_in_air
 from spincyl._table import Table
 from spincyl.sweep._common import in_memory
@@ -72,7 +71,6 @@ def question(
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     else:
         number("restitution", restitution)  # its range is known to the core
-    refuse_impacts_on_patch(restitution, contact)
     if not isinstance(contact, Coulomb | Viscous):
         code_of(contact, rubs=True)
         if states._slips and states.height is None:
