@@ -263,7 +263,7 @@ impl PointImpact {
     ) -> Option<Along> {
         let (light, rubs) = (&self.light, flow.rubs);
         let mut begin = [0.0; SLIDING];
-        [begin[0], begin[1], begin[DRILLING]] = [slip[0], slip[1], flow.patch.map_or(0.0, |p| p.drilling)];
+        [begin[0], begin[1], begin[DRILLING]] = [slip[0], slip[1], flow.patch().map_or(0.0, |p| p.drilling)];
         let rubbing = flow.rubbing(&begin);
         let moves = rubbing > STOPPED * (1.0 + rubbing) && (rubs.law.is_some() || rubs.mu > 0.0);
         if moves {
@@ -272,7 +272,7 @@ impl PointImpact {
                 return Some(if flow.creeps(&y) { Along::Creep } else { Along::Slip });
             }
         }
-        if let Some(patch) = &flow.patch {
+        if let Some(patch) = &flow.patch() {
             let (forces @ [x, y, couple], holds) = flow.after_rest(patch, fixed)?;
             let rises = light.normal + light.lifts([x, y]) + patch.row[2] * couple;
             course.straight(rises, forces, f64::INFINITY);

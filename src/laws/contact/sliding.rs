@@ -18,7 +18,7 @@ use super::delassus::{Delassus, speed};
 use super::patch::{self, Rubbing, rubs};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::search::crossing;
-use crate::methods::{radau, rk8};
+use crate::methods::{SHORT_CODE, radau, rk8};
 use crate::numbers::Dual;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector3};
@@ -127,9 +127,15 @@ pub(super) struct Straight {
 }
 
 impl ImpactSlip<'_> {
+    /// The patch; None for a point. The code for web pages has no patches.
+    #[inline(always)]
+    pub fn patch(&self) -> Option<PatchedPoint> {
+        if SHORT_CODE { None } else { self.patch }
+    }
+
     /// The longest stable explicit step of the normal impulse, where friction that is proportional to the slip stops it.
     fn stable_push<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let radius = self.patch.map_or(0.0, |patch| patch.radius);
+        let radius = self.patch().map_or(0.0, |patch| patch.radius);
         let [share, ..] = rubs(speed([y[0], y[1]]), y[DRILLING], radius);
         STABLE_STEP / (self.eased() * share)
     }
@@ -137,7 +143,7 @@ impl ImpactSlip<'_> {
     /// The direction that this slip keeps; None if it turns, or has stopped.
     pub fn keeps(&self, slip: [f64; 2]) -> Option<Straight> {
         let sigma = speed(slip);
-        if self.rubs.law.is_some() || self.patch.is_some() || sigma < STOPPED {
+        if self.rubs.law.is_some() || self.patch().is_some() || sigma < STOPPED {
             return None;
         }
         let way @ [x, y] = slip.map(|u| u / sigma);
@@ -158,7 +164,7 @@ impl ImpactSlip<'_> {
 
     /// The speed of the rubbing: of the slip, and on a patch also of its rim by the drilling.
     pub fn rubbing<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        speed([y[0], y[1]]) + self.patch.map_or(0.0, |patch| patch.radius * y[DRILLING].abs())
+        speed([y[0], y[1]]) + self.patch().map_or(0.0, |patch| patch.radius * y[DRILLING].abs())
     }
 
     /// Whether the steps end at these numbers.
@@ -168,7 +174,7 @@ impl ImpactSlip<'_> {
 
     /// Whether the slip of a patch is no more than that which follows its drilling.
     pub fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
-        let Some(PatchedPoint { radius, .. }) = self.patch else { return false };
+        let Some(PatchedPoint { radius, .. }) = self.patch() else { return false };
         let k = patch::slip_for((speed(self.light.pushes(self.light.couples)) / self.rubs.mu).min(1.0));
         k.is_finite() && speed([y[0], y[1]]) <= (1.01 * k + 1e-6) * radius * y[DRILLING].abs()
     }
@@ -290,7 +296,7 @@ impl Flow<2> for ImpactSlip<'_> {
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         let sigma = (y[0] * y[0] + y[1] * y[1]).sqrt().max(f64::MIN_POSITIVE);
         let (light, [b_1, b_2]) = (&self.light, self.light.couples);
-        if let Some(PatchedPoint { radius, row: [m_1, m_2, m_n], about, .. }) = self.patch {
+        if let Some(PatchedPoint { radius, row: [m_1, m_2, m_n], about, .. }) = self.patch() {
             let ([x, z], couple) = self.pulls([y[0], y[1]], y[DRILLING], radius);
             let rubbing = self.rubbing(y).max(f64::MIN_POSITIVE);
             let per = rubbing / (rubbing + self.eased());
@@ -345,7 +351,7 @@ impl Flow<2> for ImpactSlip<'_> {
         // The error is relative to a fast slip, and so small for a slow slip that its direction stays.
         let per_slip = if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
         let per = |i: usize| match i {
-            1 if self.patch.is_none() && self.light.is_lean() && aside > STRAIGHT_ON * sigma => {
+            1 if self.patch().is_none() && self.light.is_lean() && aside > STRAIGHT_ON * sigma => {
                 per_slip.max(1.0 / (DIES * aside).max(self.tol.min(DYING * aside)))
             }
             0 | 1 => per_slip,
@@ -369,16 +375,16 @@ impl Flow<2> for ImpactSlip<'_> {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let Some(PatchedPoint { radius, .. }) = self.patch else { return f64::INFINITY };
+        let Some(PatchedPoint { radius, .. }) = self.patch() else { return f64::INFINITY };
         let number = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let radius = Dual { value: radius, slope: 0.0 };
         Rubbing::of([number(0), number(1)], number(DRILLING), radius).longest(self.tol)
     }
 
-    const MAY_BE_STIFF: bool = true;
+    const MAY_BE_STIFF: bool = !SHORT_CODE;
 
     fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.patch.is_some() && MANY_STEPS * self.stable_push(&place.y) * self.light.normal < 1.0
+        self.patch().is_some() && MANY_STEPS * self.stable_push(&place.y) * self.light.normal < 1.0
     }
 
     fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
