@@ -524,6 +524,22 @@ def test_a_page_of_a_stone_that_hops_has_its_flights(hops):
         assert m["aloft"] and not m["two"] and m["phases"][0][1] == 2 and len(m["low"]) == 8
 
 
+def test_a_page_draws_a_stone_where_it_flies_and_no_force_in_the_air(hops, shown):
+    page = shown(sc.view(hops), "#t=0.2", viewport={"width": 160, "height": 120})
+    t = np.linspace(*span(hops), 301)[1:]
+    told = "t => JSON.stringify(t.map(t => window.spincyl.pose(0, t)))"
+    poses = json.loads(page.evaluate(told, t.tolist()))
+    there = hops.wanting("pose", "force", t=t)
+    matrix = np.array([pose["matrix"] for pose in poses]).reshape(-1, 4, 4).transpose(0, 2, 1)
+    assert np.abs(matrix[:, :3, 3] - there.centre).max() < 0.01
+    assert np.abs(matrix[:, :3, :3] - Rotation.from_quat(there.orientation).as_matrix()).max() < 6e-3
+    assert np.abs(np.array([pose["height"] for pose in poses]) - there.height).max() < 0.01
+    flies = there.phase == 2
+    for force in ("normal", "friction"):
+        assert not np.linalg.norm([pose[force] for pose in poses], axis=1)[flies].any()
+    assert "high" in page.inner_text("body").replace("\xa0", " ") and page.complaints == []
+
+
 def test_a_figure_of_a_stone_has_its_height_and_its_impacts(hops):
     tilt, path, force = sc.plot.motion(hops)
     labels = [ax.get_ylabel() for ax in tilt.figure.axes]
