@@ -159,8 +159,8 @@ def rolled_stone(body: Ellipsoid, state: EllipsoidState, asked: Asked) -> Ellips
         raise ValueError("state: expected a single state; use spincyl.sweep.roll for a family")
     start, own = [*n.tolist(), *w.tolist()], None if state.slip is None else slip.tolist()
     aloft = None if state.height is None else [float(x) for x in state._aloft]
-    options = options_for_core(asked, own, aloft)
-    found: dict[str, Any] = _core.roll(body._numbers, start, asked.times, options)
+    numbers, times = body._numbers, asked.times
+    found: dict[str, Any] = _core.roll(numbers, start, times, options_for_core(asked, own, aloft))
     status = ENDINGS[found["status"]]
     event = None
     if "event" in found:

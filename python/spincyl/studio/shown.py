@@ -63,8 +63,8 @@ def shown(m: Motion, times: Floats, upper: Letter, drawn: tuple[str, ...] = ()) 
     body = max(size(m.body), farthest(m.body))
     reach, top = math.hypot(*(high - low)) / 2 + body, 2 * float(way[:, 2].max())
     if up:
-        high = tops(seen(m, along, "theta")[0], way[:, 2], body) if m._nods else way[:, 2] + body
-        top = float(high.max())
+        peaks = tops(seen(m, along, "theta")[0], way[:, 2], body) if m._nods else way[:, 2] + body
+        top = float(peaks.max())
     return Shown(
         motion=m,
         centre=centre,
