@@ -92,11 +92,7 @@ def test_what_an_output_needs_is_advised_where_it_helps_and_only_there(chosen, k
         if said is True or "only for bodies of revolution" in said:
             continue
         advice = re.search(r"give (\w+=.*?)(?:, or take m.wanting.*)? to roll(?:, without (.*))?", said)
-        if advice is None:
-            assert "a motion" in said and "has none" in said, said
-            with pytest.raises(ValueError, match="restitution|patch"):
-                rolled(body, state, kind | {"restitution": 0.0})
-            continue
+        assert advice is not None, said
         words = {"sc": sc, "mu": 0.3, "eps": 0.01, "delta": 0.01, "body": body, "function": OWN.function}
         given = eval(f"dict({advice[1]})", words)
         if name.endswith("_other"):  # forces, too
@@ -140,10 +136,6 @@ DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
             "theta = 1.3.*: expected at most theta_end = 0.55.*, where another part lands$",
         ),
         (
-            lambda: rolled(MEASURED, MEASURED.steady(0.5), PATCH),
-            "restitution = 0.5 cannot be combined with a patch of contact: ",
-        ),
-        (
             lambda: DRIFT.theta(Labelled()),
             "t: expected numbers or a NumPy array, not Labelled; give its values",
         ),
@@ -162,9 +154,6 @@ DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
 def test_a_message_names_the_argument_and_what_would_be_right(call, said):
     with pytest.raises((TypeError, ValueError), match=f"^{said}"):
         call()
-
-
-PATCH = {"contact": sc.Coulomb.from_si(0.3, patch="0.3mm", scale=MEASURED), "restitution": 0.5}
 
 
 class Labelled:

@@ -402,7 +402,6 @@ def test_on_a_slope_a_stone_that_is_dropped_falls_downhill():
         ({}, "^state: the body is in the air, height = 0.5: give restitution="),
         ({"restitution": 1.5}, "^restitution = 1.5: expected"),
         ({"restitution": -0.1}, "^restitution = -0.1: expected"),
-        ({"restitution": 0.5, "contact": sc.Coulomb(0.3, patch=0.05)}, "^restitution = 0.5 cannot be combined with a patch"),
         ({"restitution": 0.5, "contact": "rolling", "beyond": True}, "^beyond = True cannot be combined with restitution="),
         ({"restitution": 0.5, "step": 0.1}, "^step, method: only for bodies of revolution"),
         ({"restitution": 0.5, "state": sc.EllipsoidState(TILTED.vertical, TILTED.w, height=-0.5)}, "^height = -0.5: expected 0 to 1e6"),
@@ -489,8 +488,6 @@ def test_what_a_sweep_of_stones_on_the_table_has_not_is_named():
         sc.sweep.roll(EGG, EGG.spinning(1.0), 1.0, want="impacts")
     with pytest.raises(ValueError, match="^state: the body is in the air"):
         sc.sweep.roll(EGG, EGG.dropped(EGG.spinning(1.0), 0.5), 1.0, contact=GRIP)
-    with pytest.raises(ValueError, match="cannot be combined with a patch"):
-        sc.sweep.roll(EGG, EGG.spinning(1.0), 1.0, contact=sc.Coulomb(0.3, patch=0.05), restitution=0.5)
     with pytest.raises(ValueError, match="^restitution = 2.0: expected"):
         sc.sweep.roll(EGG, EGG.spinning(1.0), 1.0, contact=GRIP, restitution=2.0)
 

@@ -56,8 +56,8 @@ def test_errors_are_a_flag_and_stones_have_them_always():
         ),
         (
             sc.Coulomb(0.3, patch=[0.0, 0.01]),
-            {"restitution": 0.5},
-            "^1 of 2 motions are invalid .*; motion 1, .*: patch = 0.01: expected 0 together with a restitution",
+            {"losses": sc.loss.Drilling(1e-3)},
+            "^1 of 2 motions are invalid .*; motion 1, .*: patch = 0.01: expected 0 together with drilling",
         ),
     ],
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from spincyl._body import Body
-from spincyl._contact import Coulomb, contact_in_words
+from spincyl._contact import contact_in_words
 from spincyl._ending import Held, held
 from spincyl._input.numbers import Floats
 
@@ -21,7 +21,7 @@ FACE = "face"
 #: Settings of `roll` that another argument excludes.
 _EXCLUDES = {
     FRICTION: ("step", "method", "mu", "beyond"),
-    PATCH: ("step", "method", "mu", "beyond", "restitution"),
+    PATCH: ("step", "method", "mu", "beyond"),
     ALOFT: ("step", "method", "beyond"),
     LOSSES: ("step", "method"),
 }
@@ -60,8 +60,6 @@ def _how_to_get(m: "Motion", needs: str) -> str:
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     measured, stone, more = m.scale is not None, not isinstance(m.body, Body), ""
     if needs == ALOFT:
-        if isinstance(m.contact, Coulomb) and m.contact.patch:
-            return "a motion on a patch of contact has none; it ends where the body leaves the table"
         why, how = "restitution=; this motion ends where it leaves the table", "restitution=0.0"
     elif needs == LOSSES:
         law, amount = ("RollingResistance", "delta") if stone else ("DryContour", "eps")

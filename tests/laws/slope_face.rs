@@ -457,7 +457,7 @@ fn the_side_from_which_a_body_on_its_face_is_told_changes_nothing_that_it_does()
 fn a_tall_body_ends_where_its_slide_becomes_as_fast_as_its_spin_whatever_else_acts() {
     // There the lowest point of its ring has no slip, so that no law says how the motion goes on.
     let (mut next, mut met) = (wander(29), 0);
-    for k in 0..60 {
+    for k in 0..24 {
         let mut within = |low: f64, high: f64| low + (high - low) * next();
         let body = Body::tube(within(2.8, 5.0), within(0.0, 1.0)).unwrap();
         let mu = within(2.0, 2.5) * body.rim() / body.ell();
@@ -492,5 +492,5 @@ fn a_tall_body_ends_where_its_slide_becomes_as_fast_as_its_spin_whatever_else_ac
             assert!(off.abs() < 1e-11 + 10.0 * m.error, "{off:e} {:e} at {}", m.error, m.times[i]);
         }
     }
-    assert!(met > 15, "{met}");
+    assert!(met > 5, "{met}");
 }

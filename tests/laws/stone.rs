@@ -392,7 +392,7 @@ fn what_is_no_stone_or_no_start_is_refused_by_name() {
     refused(StoneState { w: [0.0, f64::INFINITY, 0.0], ..upright }.into(), ask, "w2");
     refused(Start::from(upright).with_slip([0.1, 0.0]), ask, "slip");
     refused(upright.into(), ask.with_method(Method::Step(0.1)), "step");
-    refused(upright.into(), ask.with_restitution(0.0), "restitution");
+    refused(upright.into(), ask.with_restitution(1.5), "restitution");
     let tilted = Ellipsoid::new([1.0, 0.5, 0.4], turned([0.1, 0.2, 0.25], [0.3, 0.2]), [0.0; 3]).unwrap();
     assert!(tilted.rocking(1.0).unwrap_err().to_string().contains("principal axis"));
 }

@@ -1,20 +1,24 @@
-//! Impact of a rim on the table: the impulses at one point, and the share of the normal velocity that is restored.
+//! Impact of a body on the table: the impulses at one point, and the share of the normal velocity that is restored.
 //!
 //! ```text
-//! M = [[a_h, 0, b], [0, a_2, 0], [b, 0, a_n]]        change of the contact point's velocity (e_h, e2, z) per impulse
+//! M = [[A, b], [b, a_n]]                             change of the contact point's velocity per impulse ([`Delassus`])
+//! rim: A = diag(a_h, a_2),   b = (b, 0)              along e_h, e2 and z
 //! a_h = 1 + h^2/I1,  a_2 = 1 + L^2/I1 + A^2/I3,  a_n = 1 + g^2/I1,  b = h g/I1
 //! w1' - w1 = L P_2/I1,   w2' - w2 = -(h P_h + g P_n)/I1,   w3' - w3 = -A P_2/I3
 //! along the impact, p the normal impulse so far:   du/dp = M (-mu cos, -mu sin, 1),   u = sigma (cos, sin)
 //! compression ends at u_n = 0 with the work W_c < 0 of the normal force, the impact ends where W = (1 - e^2) W_c
+//! film   along the principal axes of A:   u_i = b_i/(c a_i) + (u_i0 - b_i/(c a_i)) exp(-c a_i p)
 //! ```
 //! Restitution is energetic (Stronge, Proc. R. Soc. A 431, 169 (1990)), so that no impact gains energy. It equals the
 //! ratio of the normal velocities where the direction of the slip stays. Friction along the impact is Coulomb's (Routh
-//! 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |b| <= mu_s a_h, otherwise it slips on
-//! along e_h. For every mu and every body the impact has one outcome. A slip jams if its friction presses the rim into
+//! 1860; Keller, J. Appl. Mech. 53, 1 (1986)): where a slip stops, it sticks if |A^-1 b| <= mu_s, otherwise it slips on
+//! along the one way out. For every mu and every body the impact has one outcome. A slip jams if its friction presses the rim into
 //! the table faster than the impulse slows it, so that no contact force exists (Painleve): an impact that begins with
 //! u_n = 0 stops the slip (Genot and Brogliato, Eur. J. Mech. A 18, 653 (1999)). The motion is straight, and the
 //! formulas are closed, except for a first slip whose direction turns; a viscous film is linear. Under a coefficient that
-//! depends on the speed the same equations hold with the coefficient at the current speed, and steps follow them.
+//! depends on the speed the same equations hold with the coefficient at the current speed, and steps follow them. Where
+//! friction presses the point down once more before restitution ends, W_c is the lowest work so far, so that a second
+//! compression is not given back whole. A patch of contact also drills ([`sliding`](super::sliding)).
 //!
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
 

@@ -14,6 +14,7 @@ use crate::laws::contact::{Face, Table};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
+use crate::methods::SHORT_CODE;
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -64,7 +65,8 @@ pub struct Ask {
     /// Whether the motion continues past events other than a landing of the face; with a law of friction it never does.
     pub beyond: bool,
     /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
-    /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims.
+    /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims. A stone
+    /// ends at its edge, and a body on a patch of contact where a face or its other rim lands.
     pub restitution: Option<f64>,
     /// How the table presses on a face on which the body stands.
     pub face: Face,
@@ -394,6 +396,10 @@ pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
     let patch = ask.table.friction().patch();
     if patch > 0.0 && ask.losses.coefficients[Law::Drilling as usize] > 0.0 {
         let expected = "0 together with drilling friction, which gives the same couple";
+        return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    if SHORT_CODE && patch > 0.0 && ask.restitution.is_some() {
+        let expected = "0 together with a restitution on a page";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Motions of stones that roll and slip.
+//! Motions of stones that roll, slip and hop.
 
 mod creeps;
 mod flow;

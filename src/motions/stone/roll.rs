@@ -1,4 +1,4 @@
-//! The motion of a stone, through phases of rolling and of slipping.
+//! The motion of a stone, through phases of rolling, of slipping, and in the air.
 //!
 //! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip when
 //! rolling needs more friction than mu_s N. When a slip ends, the contact point sticks if rolling needs no more
@@ -26,8 +26,9 @@ use core::cell::RefCell;
 /// `start` is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
 /// length 1. The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the
 /// laboratory frame in which the stone is turned from upright by the smallest angle. `ask` has
-/// the contact, the losses, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim
-/// that could land. The `heading` of a start turns that laboratory about the vertical, and its `place` is that of the
+/// the contact, the losses, the restitution, the tolerance, `beyond` and the outputs; a stone has no fixed step and no
+/// second rim that could land. With a restitution it may start in the air, and goes on where it leaves the table; the edge
+/// of a half ellipsoid ends the motion where it lands. The `heading` of a start turns that laboratory about the vertical, and its `place` is that of the
 /// first contact point; on a slope x points downhill. `go_on` and the limits of the work are as for a body ([`roll_with`](crate::motion::roll_with)).
 /// Errors: `OutOfRange`, which names the argument; `Painleve` for an initial state without a unique contact force.
 ///
