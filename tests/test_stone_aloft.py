@@ -291,9 +291,9 @@ def test_a_ball_that_is_dropped_comes_to_rest_after_the_sum_of_its_bounces():
 @pytest.mark.parametrize("contact", [GRIP, sc.Viscous(0.5), "smooth"], ids=repr)
 def test_a_ball_as_a_stone_and_as_a_body_of_revolution_has_one_motion(contact):
     theta, w = 1.0, (0.3, -0.4, 2.0)
-    body = sc.State(theta, *w, slip=(0.5, -0.2), height=0.6, lift=0.1)
+    body = sc.State(theta, *w, slip=(0.5, -0.2), height=0.6, lift=0.11)
     # e_h of the body is x, and e2 is y
-    stone = sc.EllipsoidState((np.sin(theta), 0.0, np.cos(theta)), w, (0.5, -0.2), height=0.6, lift=0.1)
+    stone = sc.EllipsoidState((np.sin(theta), 0.0, np.cos(theta)), w, (0.5, -0.2), height=0.6, lift=0.11)
     t = np.linspace(0, 6, 61)
     how = {"contact": contact, "restitution": 0.6, "want": "pose"}
     a, b = sc.roll(BODY, body, t, **how), sc.roll(BALL, stone, t, **how)
@@ -381,7 +381,10 @@ def test_a_law_of_your_own_that_is_constant_is_coulombs_in_impacts_too():
     t = np.linspace(0, 3, 31)
     own = sc.custom.Friction(lambda speed: 0.3)
     a, b = (sc.roll(PEBBLE, FALLING, t, contact=c, restitution=0.5) for c in (own, GRIP))
-    assert len(a.impacts) == len(b.impacts) and np.abs(a.y - b.y).max() < 1e-8
+    # the last of a sum of bounces depends on rounding
+    assert min(len(a.impacts), len(b.impacts)) > 10 and np.abs(a.y - b.y).max() < 1e-8
+    for one, other in zip(a.impacts[:10], b.impacts[:10], strict=True):
+        assert one.kind == other.kind and one.time == pytest.approx(other.time, abs=1e-9)
 
 
 def test_on_a_slope_a_stone_that_is_dropped_falls_downhill():

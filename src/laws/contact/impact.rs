@@ -608,4 +608,75 @@ mod tests {
         }
         assert!(hits[Hit::Sticks as usize] > 20 && hits[Hit::SlipsOn as usize] > 20, "{hits:?}");
     }
+
+    /// The rows of a table of references, by the names of their columns.
+    fn rows(text: &str) -> Vec<std::collections::HashMap<&str, &str>> {
+        let mut lines = text.lines().map(|line| line.split(','));
+        let names: Vec<&str> = lines.next().unwrap().collect();
+        lines.map(|row| names.iter().copied().zip(row).collect()).collect()
+    }
+
+    /// A number in decimals, or an exact double in hexadecimals.
+    fn number(text: &str) -> f64 {
+        let (sign, digits) = text.strip_prefix('-').map_or((1.0, text), |digits| (-1.0, digits));
+        let Some(digits) = digits.strip_prefix("0x") else { return text.parse().unwrap() };
+        let (digits, power) = digits.split_once('p').unwrap();
+        let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+        let mantissa = u64::from_str_radix(&format!("{whole}{part}"), 16).unwrap() as f64;
+        sign * mantissa * 2f64.powi(power.parse::<i32>().unwrap() - 4 * part.len() as i32)
+    }
+
+    #[test]
+    fn impacts_of_stones_at_a_point_and_on_a_patch_are_those_of_an_independent_model() {
+        let tables = [
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/stone_impacts.csv")),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/patch_impacts.csv")),
+        ];
+        let (mut worst, mut count) = (0f64, 0);
+        for row in tables.into_iter().flat_map(rows) {
+            let is = |name: &str| number(row[name]);
+            let level = [[is("m11"), is("m12")], [is("m12"), is("m22")]];
+            let light = Delassus { level, couples: [is("m13"), is("m23")], normal: is("m33") };
+            let radius = row.get("patch").map(|x| number(x)).filter(|radius| *radius > 0.0);
+            let patch = radius.map(|radius| PatchedPoint {
+                radius,
+                drilling: is("w"),
+                row: [is("m14"), is("m24"), is("m34")],
+                about: is("m44"),
+            });
+            let table = match *row.get("law").unwrap_or(&"coulomb") {
+                "coulomb" => Friction::Coulomb {
+                    mu: is("mu"),
+                    fixed: row.get("static").map_or(is("mu"), |x| number(x)),
+                    patch: radius.unwrap_or(0.0),
+                }
+                .into(),
+                "viscous" => Friction::Viscous { c: is("mu") }.into(),
+                "rolling" => Table::Rolling { mu: f64::INFINITY },
+                _ => Table::Smooth,
+            };
+            let slip = [is("u1"), is("u2")];
+            let impact = PointImpact { slip, lift: is("u3"), light, patch, tol: 3e-14, longer: 1.0 };
+            let found = impact.on(&table, is("e"), &()).unwrap();
+            let [p, q, n] = found.impulse;
+            let pairs = [
+                (p, "p1"),
+                (q, "p2"),
+                (n, "p3"),
+                (found.slip[0], "v1"),
+                (found.slip[1], "v2"),
+                (found.lift, "v3"),
+                (found.lost, "lost"),
+                (found.couple, "c"),
+            ];
+            let size = is("u3").abs().max(speed(slip)).max(1.0);
+            for (value, name) in pairs {
+                let off = (value - row.get(name).map_or(value, |x| number(x))).abs() / size;
+                assert!(off < 1e-11, "{}, {name}: {off:e}", row["name"]);
+                worst = worst.max(off);
+            }
+            count += 1;
+        }
+        assert!(count > 50 && worst < 1e-11, "{count} {worst:e}");
+    }
 }
