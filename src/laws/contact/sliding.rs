@@ -46,6 +46,8 @@ pub(super) const FIRST: f64 = 0.3;
 
 /// The longest stable explicit step, in units of the impulse in which friction would stop a slow slip.
 const STABLE_STEP: f64 = 5.5;
+/// The longest step of a point, in units of that in which its direction would reach the one that attracts it.
+const DECAYING_STEP: f64 = 3.0;
 /// Where so many stable steps are too few for the impact, steps are implicit.
 const MANY_STEPS: f64 = 60.0;
 
@@ -375,7 +377,12 @@ impl Flow<2> for ImpactSlip<'_> {
     }
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        let Some(PatchedPoint { radius, .. }) = self.patch() else { return f64::INFINITY };
+        let Some(PatchedPoint { radius, .. }) = self.patch() else {
+            // A direction that attracts is found to rounding by steps in which what is off it decays.
+            let (sigma, slip) = (self.rubbing(&place.y), [place.y[0], place.y[1]]);
+            let [_, bends, _] = self.light.turning(slip.map(|u| u / sigma), self.rubs.mu);
+            return if bends < 0.0 { DECAYING_STEP * (1.0 + sigma) / -bends } else { f64::INFINITY };
+        };
         let number = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
         let radius = Dual { value: radius, slope: 0.0 };
         Rubbing::of([number(0), number(1)], number(DRILLING), radius).longest(self.tol)
