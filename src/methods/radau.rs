@@ -19,8 +19,6 @@ use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 /// The cost of a step in evaluations of the rates, if it converges fast; and that of J and its factors.
 pub(crate) const COST: u64 = 36;
 const JACOBIAN_COST: u64 = 20;
-/// Share of the size of a number over which a slope is computed.
-const DIFFERENCE: f64 = 1e-5;
 /// The number of stages.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
@@ -113,22 +111,6 @@ fn extrapolation(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
             others.fold(x / PLACES[j], |product, i| product * (x - PLACES[i]) / (PLACES[j] - PLACES[i]))
         })
     })
-}
-
-/// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.
-pub(crate) fn slopes<const N: usize, const M: usize>(
-    y: &[f64; N],
-    sizes: &[f64; M],
-    rates: impl Fn(&[f64; N]) -> [f64; N],
-) -> SMatrix<f64, M, M> {
-    let mut slopes = SMatrix::zeros();
-    for j in 0..M {
-        let (mut more, mut less) = (*y, *y);
-        (more[j], less[j]) = (y[j] + DIFFERENCE * sizes[j], y[j] - DIFFERENCE * sizes[j]);
-        let [above, below] = [rates(&more), rates(&less)];
-        (0..M).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
-    }
-    slopes
 }
 
 /// The numbers in the middle of a step, as far as they are known: their derivatives there are those of the whole step.

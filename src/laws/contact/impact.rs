@@ -339,6 +339,11 @@ impl PointImpact {
         }
         let [u, v, _, _, p_1, p_2, couple, p, _] = y;
         (course.impulse, course.couple) = ([p_1, p_2, p], couple);
+        if let Some((forces @ [x, z, couple], most)) = flow.stays(&y).filter(|_| !done) {
+            let driven = flow.patch().map_or(0.0, |patch| patch.row[2] * couple);
+            let ended = course.straight(self.light.normal + self.light.lifts([x, z]) + driven, forces, most);
+            return Some((y, ended));
+        }
         let Some(kept) = flow.keeps([u, v]).filter(|_| !done) else { return Some((y, done)) };
         let ([x, z], sigma, mu) = (kept.way, speed([u, v]), flow.rubs.mu);
         let slow = -self.light.growth(kept.way, mu);

@@ -8,8 +8,8 @@
 //! ```
 //! [`Delassus`] has A, b and a_n, [`PatchedPoint`] m, i and the radius eps. All velocities are in units of the first normal
 //! velocity, or of the slip where that is zero. The time of this flow is p. The coefficient mu is constant, with k = 1, or
-//! a function of the speed, with k = mu, since mu may vanish with the speed; k = mu tr A on a patch. A small patch creeps
-//! behind the impulse, in implicit steps. (F, C') is minus the gradient of a convex function of (u, w_n), so that
+//! a function of the speed, with k = mu, since mu may vanish with the speed; k = mu tr A on a patch. Where slip and
+//! drilling keep their ratio, as in a creep, both change linearly in p. (F, C') is minus the gradient of a convex function of (u, w_n), so that
 //! they are unique for every mu and every body (Moreau 1988).
 //!
 //! Error: the tolerance of the steps.
@@ -18,7 +18,7 @@ use super::delassus::{Delassus, speed};
 use super::patch::{self, Rubbing, rubs};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::search::crossing;
-use crate::methods::{SHORT_CODE, radau, rk8};
+use crate::methods::{SHORT_CODE, rk8};
 use crate::numbers::Dual;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector3};
@@ -37,6 +37,8 @@ const DYING: f64 = 1e-3;
 const BARELY_DOWN: f64 = 1e-9;
 /// Step of an angle over which a derivative is computed.
 const ANGLE_STEP: f64 = 1e-5;
+/// A direction of slip and drilling stays that would change the slip by less than this.
+const STAYS: f64 = 1e-14;
 /// Largest number of Newton's steps to the way in which a patch at rest begins to move, and the angle by which one of them
 /// may turn it.
 const MOST_NEWTON: usize = 2000;
@@ -44,12 +46,8 @@ const FARTHEST_TURN: f64 = 0.7;
 /// The first step along an impact.
 pub(super) const FIRST: f64 = 0.3;
 
-/// The longest stable explicit step, in units of the impulse in which friction would stop a slow slip.
-const STABLE_STEP: f64 = 5.5;
-/// The longest step of a point, in units of that in which its direction would reach the one that attracts it.
+/// The longest step, in units of that in which a direction would reach the one that attracts it.
 const DECAYING_STEP: f64 = 3.0;
-/// Where so many stable steps are too few for the impact, steps are implicit.
-const MANY_STEPS: f64 = 60.0;
 
 /// The places of the numbers of the slip after u: the drilling, the normal velocity, the impulse so far, and the work of the
 /// normal force.
@@ -60,9 +58,8 @@ const P_2: usize = 5;
 const COUPLE: usize = 6;
 const PUSHED: usize = 7;
 pub(super) const WORK: usize = 8;
-/// The number of these numbers, and of those that react to each other.
+/// The number of these numbers.
 pub(super) const SLIDING: usize = 9;
-const REACTING: usize = 4;
 
 /// A patch that drills: its radius, the drilling, how an impulse along the two horizontal axes and along the normal changes
 /// the drilling, and how a couple about the normal does. The same numbers tell how that couple changes the velocities.
@@ -135,13 +132,6 @@ impl ImpactSlip<'_> {
         if SHORT_CODE { None } else { self.patch }
     }
 
-    /// The longest stable explicit step of the normal impulse, where friction that is proportional to the slip stops it.
-    fn stable_push<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        let radius = self.patch().map_or(0.0, |patch| patch.radius);
-        let [share, ..] = rubs(speed([y[0], y[1]]), y[DRILLING], radius);
-        STABLE_STEP / (self.eased() * share)
-    }
-
     /// The direction that this slip keeps; None if it turns, or has stopped.
     pub fn keeps(&self, slip: [f64; 2]) -> Option<Straight> {
         let sigma = speed(slip);
@@ -171,7 +161,23 @@ impl ImpactSlip<'_> {
 
     /// Whether the steps end at these numbers.
     pub fn is_over<const N: usize>(&self, y: &[f64; N]) -> bool {
-        self.rubbing(y) < STOPPED || self.keeps([y[0], y[1]]).is_some()
+        self.rubbing(y) < STOPPED || self.keeps([y[0], y[1]]).is_some() || self.stays(y).is_some()
+    }
+
+    /// Friction and couple per normal impulse of a patch whose slip and drilling grow or fall together, and the normal
+    /// impulse in which they stop: as in every creep, since along an impact nothing else changes.
+    pub fn stays<const N: usize>(&self, y: &[f64; N]) -> Option<([f64; 3], f64)> {
+        let PatchedPoint { radius, row: [m_1, m_2, m_n], about, .. } = self.patch()?;
+        let ([x, z], couple) = self.pulls([y[0], y[1]], y[DRILLING], radius);
+        let ([faster, aside], [b_1, b_2]) = (self.light.level([x, z]), self.light.couples);
+        let drills = radius * (m_1 * x + m_2 * z + m_n + about * couple);
+        let rate = Vector3::new(b_1 + faster + m_1 * couple, b_2 + aside + m_2 * couple, drills);
+        let way = Vector3::new(y[0], y[1], radius * y[DRILLING]);
+        let grows = way.dot(&rate) / way.norm_squared();
+        let most = if grows < 0.0 { -1.0 / grows } else { f64::INFINITY };
+        // What is off the way turns the impulse for as long as it lasts.
+        let off = (rate - way * grows).norm() * most.min(1.0);
+        (off < STAYS).then_some(([x, z, couple], most))
     }
 
     /// Whether the slip of a patch is no more than that which follows its drilling.
@@ -357,6 +363,11 @@ impl Flow<2> for ImpactSlip<'_> {
                 per_slip.max(1.0 / (DIES * aside).max(self.tol.min(DYING * aside)))
             }
             0 | 1 => per_slip,
+            // A drilling that dies out keeps the direction of the rubbing, too.
+            DRILLING => {
+                let radius = self.patch().map_or(0.0, |patch| patch.radius);
+                (1.0 / (self.tol * y[i].abs().max(1.0))).max(1e3 * radius / sigma)
+            }
             // A jam makes impulses that are large compared with the fall.
             _ => 1.0 / (self.tol * y[i].abs().max(1.0)),
         };
@@ -384,31 +395,10 @@ impl Flow<2> for ImpactSlip<'_> {
             return if bends < 0.0 { DECAYING_STEP * (1.0 + sigma) / -bends } else { f64::INFINITY };
         };
         let number = |i: usize| Dual { value: place.y[i], slope: place.rate[i] };
+        let [share, ..] = rubs(speed([place.y[0], place.y[1]]), place.y[DRILLING], radius);
+        let decays = DECAYING_STEP / (self.eased() * share * place.rate[PUSHED]);
         let radius = Dual { value: radius, slope: 0.0 };
-        Rubbing::of([number(0), number(1)], number(DRILLING), radius).longest(self.tol)
-    }
-
-    const MAY_BE_STIFF: bool = !SHORT_CODE;
-
-    fn is_stiff<const N: usize>(&self, place: &FlowPlace<N>) -> bool {
-        self.patch().is_some() && MANY_STEPS * self.stable_push(&place.y) * self.light.normal < 1.0
-    }
-
-    fn stable<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
-        self.stable_push(&place.y) / place.rate[PUSHED]
-    }
-
-    #[inline(never)]
-    fn implicit_step<const N: usize>(
-        &self,
-        from: &FlowPlace<N>,
-        h: f64,
-        guess: radau::Guess<N>,
-    ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
-        let (y, size) = (&from.y, self.rubbing(&from.y));
-        let sizes: [f64; REACTING] = [size, size, y[DRILLING].abs().max(1e-3), y[LIFT].abs().max(1e-3)];
-        let slopes = radau::slopes(&radau::middle(y, &guess), &sizes, |y| self.rates(y));
-        radau::step(|y, all| self.write_rates(y, all), y, &slopes, &sizes, (h, 0.01 * self.tol), guess)
+        Rubbing::of([number(0), number(1)], number(DRILLING), radius).longest(self.tol).min(decays)
     }
 
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(SlipEnd, [f64; N])> {

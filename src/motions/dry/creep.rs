@@ -250,3 +250,19 @@ pub(crate) fn derivatives<const R: usize, const N: usize>(
     }
     all
 }
+
+/// The derivatives of the first M rates by the first M numbers, of these sizes, as differences.
+pub(crate) fn slopes<const N: usize, const M: usize>(
+    y: &[f64; N],
+    sizes: &[f64; M],
+    rates: impl Fn(&[f64; N]) -> [f64; N],
+) -> SMatrix<f64, M, M> {
+    let mut slopes = SMatrix::zeros();
+    for j in 0..M {
+        let (mut more, mut less) = (*y, *y);
+        (more[j], less[j]) = (y[j] + ASIDE * sizes[j], y[j] - ASIDE * sizes[j]);
+        let [above, below] = [rates(&more), rates(&less)];
+        (0..M).for_each(|i| slopes[(i, j)] = (above[i] - below[i]) / (more[j] - less[j]));
+    }
+    slopes
+}

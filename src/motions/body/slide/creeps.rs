@@ -12,9 +12,8 @@ use crate::laws::body::Shape;
 use crate::laws::contact::slip::SlipResponse;
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace};
-use crate::methods::radau::slopes;
 use crate::motions::body::roll::lossy::REST;
-use crate::motions::dry::creep::{Creeps, derivatives};
+use crate::motions::dry::creep::{Creeps, derivatives, slopes};
 use crate::motions::walk::numbers::{
     BodyNumbers, HEAT, Halt, MARGINS, SIN, U2, UH, W1, W2, W3, loses, poses, pull,
 };
