@@ -83,8 +83,6 @@ REASONS = [
            "The friction of a patch already resists drilling; the law would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
            "A couple of your own is a function of the inclination of an axis, and a stone has none."),
-    Reason("E", r"^restitution = .* cannot be combined with a patch of contact", False,
-           "Impacts on a patch are not computed yet."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"
