@@ -74,6 +74,9 @@ def picture() -> None:
 if __name__ == "__main__":
     for turns in (28.0, 37.0, TURNS, 49.0):
         motion = turned(turns)
-        print(f"{turns:g} turns a second: turned over after {over(motion):.2f} s,", end=" ")
+        print(
+            f"{turns:g} turns a second: turned over after {over(motion):.2f} s,",
+            end=" ",
+        )
         print(f"{hops(motion)} hops", end=" ")
         print(f"of up to {1000 * scale.metres(motion.height.max()):.2f} mm.")
