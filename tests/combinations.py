@@ -221,11 +221,14 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     by_physics = {x.letter for x in REASONS if x.physics}
     refused = [letter for letter in of.values() if letter not in ("", "*")]
     excluded = sum(letter in by_physics for letter in refused)
-    total = (
-        f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused:"
-        f" {excluded:,} because physics does not define them,\n{len(refused) - excluded:,} because two parts of the"
-        " library do not know each other yet."
-    )
+    total = f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+    if excluded == len(refused):
+        total += ", because physics does not\ndefine them."
+    else:
+        total += (
+            f": {excluded:,} because physics does not define them,\n{len(refused) - excluded:,} because two parts of"
+            " the library do not know each other yet."
+        )
     return "\n".join([total, "", *lines, ""])
 
 

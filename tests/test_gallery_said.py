@@ -2,7 +2,7 @@
 
 import pathlib
 import re
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import billiard
 import blocks
@@ -137,7 +137,7 @@ def test_a_dropped_egg_tumbles_bounces_unevenly_and_rocks_to_rest_and_impacts_ta
     assert dropped_egg.stays(m) == pytest.approx(0.5, abs=0.05)
     # the highest points of its centre in the first flights do not just fall
     hits = [x.time for x in m.impacts]
-    tops = [m.centre[(m.t > a) & (m.t < b), 2].max() for a, b in zip(hits[:2], hits[1:3], strict=True)]
+    tops = [m.centre[(m.t > a) & (m.t < b), 2].max() for a, b in pairwise(hits[:3])]
     assert tops[1] > tops[0]
     # then it goes round, end over end, and the slip comes late
     assert np.linalg.norm(m.impacts[0].after.w) > 1.0 > np.linalg.norm(m.impacts[0].before.w)
