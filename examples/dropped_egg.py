@@ -42,7 +42,7 @@ def stays(motion: sc.EllipsoidMotion) -> float:
 
 
 def shares(motion: sc.EllipsoidMotion) -> dict[str, Floats]:
-    """The energy that the egg loses and where it has gone, in per cent, at each time."""
+    """The energy that the egg loses, and where it has gone, in per cent."""
     per_cent = 100.0 / (motion.energy[0] - motion.energy[-1])
     return {
         "taken by impacts": per_cent * motion.lost_in_impacts,

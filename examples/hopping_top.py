@@ -1,4 +1,4 @@
-"""A tippe top that spins so fast that it hops over the table turns over all the same."""
+"""A tippe top that spins so fast that it hops turns over all the same."""
 
 from itertools import groupby
 
