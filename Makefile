@@ -132,6 +132,9 @@ long: $(VENV)/.tested wheel core
 	$(BIN)/python benches/slowest.py --count 20000
 	$(BIN)/python benches/profiles.py --count 10000
 	$(BIN)/python benches/aloft.py --count 20000
+	$(BIN)/python benches/stone_hops.py --count 3334
+	$(BIN)/python benches/stone_hops.py --count 3334 --patch
+	$(BIN)/python benches/stone_hops.py --count 4000 --errors
 	$(BIN)/python benches/faces.py --count 20000
 	$(BIN)/python benches/claims.py --of hops --count 5000
 	$(BIN)/python benches/random_scenes.py --count 500

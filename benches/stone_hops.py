@@ -4,6 +4,7 @@
     python benches/stone_hops.py --count 3334     10,000 motions, the figures of docs/hard-cases.md
     python benches/stone_hops.py --patch          the same on patches of contact of radius 1e-4 to 0.05
     python benches/stone_hops.py --only 17 0.3    one of them, with its phases
+    python benches/stone_hops.py --errors         true over estimated errors of the same drops within tolerances
     python benches/stone_hops.py --speed          the time of an impact, of a bounce, and of a map beside one without hops
 
 Pebbles, eggs, rattlebacks and stones of any inertia, dropped from up to four of their semi-axes or thrown, turning or
@@ -104,7 +105,31 @@ def follows_all(count, patch):
                 print(f"{number} {restitution}, {kind}: {lasts:.2f} s, {m.status.name}", flush=True)
         share, median = 100 * good / total, 1e3 * np.median(costs)
         print(f"e = {restitution}: {share:.2f} % of {total} followed, {off} off, {slow} above 0.5 s;")
-        print(f"    median {median:.1f} ms, all {sum(costs):.0f} s; {dict(ends)}", flush=True)
+        print(f"    median {median:.1f} ms, longest {max(costs):.1f} s, all {sum(costs):.0f} s; {dict(ends)}", flush=True)
+
+
+def tells_errors(count, patch):
+    """Print how the true errors of drops within tolerances compare with their estimates."""
+    ratios, many = [], 0
+    for number in range(count):
+        _, stone, state, contact = drawn(number, patch)
+        rng = np.random.default_rng([1, number])
+        tol, restitution = 10 ** rng.uniform(-11, -6), rng.choice([0.0, 0.3, 0.9])
+        how = {"contact": contact, "restitution": restitution}
+        try:
+            best, rough = (sc.roll(stone, state, TIMES, tol=x, **how) for x in (1e-14, tol))
+        except ValueError:
+            continue
+        last = min(best.t.size, rough.t.size)
+        y, z = best.y[:, :last], rough.y[:, :last]
+        off = float((np.abs(y - z) / np.maximum(1.0, np.abs(y))).max(initial=0.0))
+        many += 1
+        if np.isfinite(best.error) and off > 3 * best.error:
+            ratios.append(off / rough.error)
+    ratios = np.array(ratios)
+    print(f"{many} drops, {ratios.size} depend on the tolerance by more than the error of the comparison;")
+    print(f"    true over estimated error: median {np.median(ratios):.2g}, at most {ratios.max():.2g},", end=" ")
+    print(f"above 1 in {(ratios > 1).sum()}, above 2 in {(ratios > 2).sum()}")
 
 
 def fastest(repeats, call, *of, **how):
@@ -150,18 +175,21 @@ def main():
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--patch", action="store_true")
     parser.add_argument("--only", nargs=2)
+    parser.add_argument("--errors", action="store_true")
     parser.add_argument("--speed", action="store_true")
     asked = parser.parse_args()
     warnings.simplefilter("ignore")
     if asked.speed:
         tells_speed()
+    elif asked.errors:
+        tells_errors(asked.count, asked.patch)
     elif asked.only:
         number, restitution = int(asked.only[0]), float(asked.only[1])
         kind, stone, state, contact = drawn(number, asked.patch)
         m, lasts, beyond = followed(stone, state, contact, restitution)
         print(kind, stone, state, contact, f"{lasts:.3f} s, off {beyond:.2g}", m, sep="\n")
         if not isinstance(m, str):
-            print(f"error {m.error:.1e}, {len(m.impacts)} impacts, {m._evaluations} evaluations")
+            print(f"error {m.error:.1e}, {len(m.impacts)} impacts, {m.nfev} evaluations")
             for phase in m.phases[-12:]:
                 print("   ", phase)
     else:

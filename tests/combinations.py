@@ -83,8 +83,6 @@ REASONS = [
            "The friction of a patch already resists drilling; the law would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
            "A couple of your own is a function of the inclination of an axis, and a stone has none."),
-    Reason("E", r"^restitution = .* cannot be combined with a patch of contact", False,
-           "Impacts on a patch are not computed yet."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"
@@ -223,11 +221,14 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     by_physics = {x.letter for x in REASONS if x.physics}
     refused = [letter for letter in of.values() if letter not in ("", "*")]
     excluded = sum(letter in by_physics for letter in refused)
-    total = (
-        f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused:"
-        f" {excluded:,} because physics does not define them,\n{len(refused) - excluded:,} because two parts of the"
-        " library do not know each other yet."
-    )
+    total = f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+    if excluded == len(refused):
+        total += ", because physics does not\ndefine them."
+    else:
+        total += (
+            f": {excluded:,} because physics does not define them,\n{len(refused) - excluded:,} because two parts of"
+            " the library do not know each other yet."
+        )
     return "\n".join([total, "", *lines, ""])
 
 

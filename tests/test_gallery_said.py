@@ -2,15 +2,17 @@
 
 import pathlib
 import re
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import billiard
 import blocks
 import dropped_coin
+import dropped_egg
 import eulers_disk_stops
 import falling_pencil
 import flicked_tube
 import gallery
+import hopping_top
 import hopping_tube
 import hula_hoop
 import hurricane_balls
@@ -27,6 +29,7 @@ import sliding_puck
 import tippe_top_turns
 import tipped_bottle
 import turntable
+from scipy.signal import find_peaks
 
 import spincyl as sc
 
@@ -114,6 +117,56 @@ def test_a_dropped_coin_whirrs_to_rest_within_four_seconds_and_stays_on_its_edge
         assert (lean > 89) == (bounces == 0) and (bounces == 0 or lean < 1)
     first = dropped_coin.scale.metres(m.height[0])
     assert first == pytest.approx(0.05, abs=1e-9)
+
+
+def test_a_dropped_egg_tumbles_bounces_unevenly_and_rocks_to_rest_and_impacts_take_most_of_its_energy():
+    says(
+        dropped_egg, "falls from 10 cm, leaning by 35 degrees", "makes it tumble", "higher and lower by turns",
+        "After half a second it rolls away end over end, slips as it rocks to rest", "almost two metres",
+        "take most of its energy, however well it bounces",
+    )  # fmt: skip
+    for bounces in (0.0, 0.3, dropped_egg.RESTITUTION):
+        m = dropped_egg.fallen(bounces)
+        assert m.status == sc.Ending.STOPS and m.height[0] == pytest.approx(0.10)
+        assert np.degrees(m.theta[0]) == pytest.approx(35)
+        assert (
+            0.5 < m.lost_in_impacts[-1] / (m.energy[0] - m.energy[-1]) < 0.8 and 1.5 < m.centre[-1, 0] < 2.0
+        )
+        whole = m.energy + m.dissipated + m.work_lost + m.lost_in_impacts
+        assert np.ptp(whole) < 1e-9 * whole[0]
+    assert dropped_egg.stays(m) == pytest.approx(0.5, abs=0.05)
+    # the highest points of its centre in the first flights do not just fall
+    hits = [x.time for x in m.impacts]
+    tops = [m.centre[(m.t > a) & (m.t < b), 2].max() for a, b in pairwise(hits[:3])]
+    assert tops[1] > tops[0]
+    # then it goes round, end over end, and the slip comes late
+    assert np.linalg.norm(m.impacts[0].after.w) > 1.0 > np.linalg.norm(m.impacts[0].before.w)
+    late = m.t[np.argmax(m.dissipated > 0.2 * m.dissipated[-1])]
+    assert late > 0.6 * m.event.time
+
+
+def test_a_tippe_top_that_hops_near_the_top_of_every_nod_turns_over_later():
+    says(
+        hopping_top, "near the top of every nod it is thrown up, by less than half a millimetre",
+        "bounces once or twice, and slips on", "turns over all the same, only later", "every top above the least spin",
+    )  # fmt: skip
+    scene, late = hopping_top, []
+    for turns in (28.0, 37.0, scene.TURNS, 49.0):
+        m = scene.turned(turns)
+        assert m.status == sc.Ending.DONE and m.theta[-1] > 3.0
+        assert scene.scale.metres(m.height.max()) < 0.5e-3
+        late.append(scene.over(m))
+        if turns == scene.TURNS:
+            row = [(kind, next(of).time) for kind, of in groupby(m.phases, lambda phase: phase.kind)]
+            starts = np.array([time for kind, time in row if kind == "flying"])
+            near = (m.t > starts[0] - 0.5) & (m.t < starts[-1] + 0.5)
+            found, _ = find_peaks(np.degrees(m.theta[near]), prominence=2)
+            tops = m.t[near][found]
+            apart = starts[:, None] - tops
+            apart = np.take_along_axis(apart, np.abs(apart).argmin(axis=1)[:, None], axis=1)
+            assert scene.hops(m) == tops.size > 30, "one hop in each nod"
+            assert np.abs(apart).max() < 0.2 * np.diff(tops).mean(), "near its top"
+    assert scene.hops(scene.turned(28.0)) == 0 and late == sorted(late)
 
 
 def test_eulers_disk_stops_at_one_time_under_three_laws_and_the_whirr_tells_them_apart():

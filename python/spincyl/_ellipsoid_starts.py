@@ -122,7 +122,7 @@ class StoneStarts(Sized):
         >>> start = egg.dropped(egg.spinning(0.0, pitch=np.pi / 2), 0.01)
         >>> m = sc.roll(egg, start, 0.1, contact=sc.Coulomb(0.3), restitution=0.4)
         >>> m.phases[0].kind, round(m.impacts[0].time, 6), round((2 * 0.01 / 9.80665) ** 0.5, 6)
-        ('flying', 0.045161, 0.045161)
+        ('flying', 0.04516, 0.04516)
         """
         instance_of("state", state, EllipsoidState)
         if not isinstance(velocity, tuple | list) or len(velocity) != 3:

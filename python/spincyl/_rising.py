@@ -40,8 +40,9 @@ def rising_spin(
         makes the egg stable on an end, or if at every spin something on the way to that end is stable. The
         result of a search is inf if ten times the estimate does not raise the egg within `t` with this
         contact. Error of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`;
-        each motion is computed with smaller tolerances until its estimated error lets it decide. The search
-        begins at half of the estimate and finds no smaller spin.
+        each motion is computed with smaller tolerances until its estimated error lets it decide. An egg that
+        leaves the table comes down again, without a bounce, and rises on. The search begins at half of the
+        estimate and finds no smaller spin.
 
     Raises
     ------
@@ -62,7 +63,8 @@ def rising_spin(
 
         J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1 rho)).
 
-    In the search an egg has risen if its axis comes within 0.2 rad of the vertical.
+    In the search an egg has risen if its axis comes within 0.2 rad of the vertical. An egg that touches a
+    rough table at a point may hop on the way.
 
     Examples
     --------

@@ -42,10 +42,11 @@ def turning_spin(
         result of a search is inf if ten times the estimate does not turn the top over within `t` with this
         contact. With a contact point (`patch=0`) the top turns over only if the table is very slippery. Error
         of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`; each motion is
-        computed with smaller tolerances until its estimated error lets it decide. If friction is large, the
-        boundary is ragged: a larger spin may fail where a smaller one succeeds, and the result is one point
-        of the boundary. The search begins at half of the spin that keeps the top upside down, and finds no
-        smaller spin.
+        computed with smaller tolerances until its estimated error lets it decide. A top that leaves the table
+        comes down again, without a bounce, and may turn over later. If friction is large, the boundary is
+        ragged: within a few hundredths above the least spin a larger spin may fail where a smaller one
+        succeeds, and the result is one point of the boundary. The search begins at half of the spin that
+        keeps the top upside down, and finds no smaller spin.
 
     Raises
     ------
@@ -69,8 +70,8 @@ def turning_spin(
 
     On a patch of contact the couple of drilling reduces J. A smaller patch does not help: it reduces J more
     slowly, but the top also rises more slowly. A top needs 1.25 times the estimate at mu = 0.1, 1.7 times at
-    0.3, 2.1 times at 0.6. In the search a top has turned over if its axis comes within 0.14 rad of the
-    vertical.
+    0.3, 2.1 times at 0.6. A top that spins much faster still hops while it turns over. In
+    the search a top has turned over if its axis comes within 0.14 rad of the vertical.
 
     Examples
     --------
