@@ -45,6 +45,8 @@ class Number(property):
 def output_in_units(m: "Motion", name: str, needs: str) -> Floats:
     """Return an output of a motion in its units, or raise AttributeError that says how to compute it."""
     if name not in m._extra:
+        if name.endswith("_other") and not isinstance(m.body, Body):
+            raise AttributeError(f"{name}: only for bodies of revolution; a stone has no other rim")
         raise missing_output(m, name, needs)
     return m._told(name, m._extra[name])
 

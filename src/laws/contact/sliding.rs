@@ -276,7 +276,7 @@ impl ImpactSlip<'_> {
                 let step = Matrix3::from_columns(&columns).lu().solve(&off(tried, next))?;
                 let turns = step[0].abs().max(step[1].abs());
                 // A step that turns far, or is no number, is too long.
-                if !(turns < FARTHEST_TURN) {
+                if turns.is_nan() || turns >= FARTHEST_TURN {
                     break false;
                 }
                 tried = core::array::from_fn(|i| tried[i] - step[i]);

@@ -194,7 +194,7 @@ impl StandingFlow {
 
     /// The way from these numbers to where slide and spin become as fast as each other, at the shares 0 to 1 of its time; None if
     /// they do not.
-    pub fn to_point<const N: usize>(&self, y: &[f64; N]) -> Option<impl Fn(f64) -> [f64; N] + use<N>> {
+    pub fn way_to_point<const N: usize>(&self, y: &[f64; N]) -> Option<impl Fn(f64) -> [f64; N] + use<N>> {
         if !self.ends_at_point() {
             return None;
         }

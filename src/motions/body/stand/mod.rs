@@ -337,7 +337,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn topples(&mut self, flow: &StandingFlow, friction: &Friction) -> Next {
         let (shape, up) = (self.of.slide.law.shape, self.up());
         let (a, z) = (shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle()));
-        if let Some(there) = flow.to_point(&self.at) {
+        if let Some(there) = flow.way_to_point(&self.at) {
             let (begin, end) = (self.at, there(1.0));
             let whole = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT] + lost(y);
             let [v_h, v_2] = flow.velocity(&end);
