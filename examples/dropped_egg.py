@@ -74,13 +74,15 @@ def picture() -> None:
     above.set_title("a flash every 40 ms")
     colours = "#0072B2", "#D55E00", "#009E73", "0.85"
     below.stackplot(motion.t, *shares(motion).values(), colors=colours, lw=0)
+    line = {"arrowstyle": "-", "color": "w"}
+    how = {"color": "w", "size": "small", "ha": "center", "va": "center"}
     for time, high, words, ink in (
         (2.3, 36, "taken by impacts", "w"),
-        (3.85, 76.5, "by sliding", "w"),
         (3.85, 90, "by rolling resistance", "w"),
         (1.3, 91, "still in the egg", "k"),
     ):
-        below.text(time, high, words, color=ink, size="small", ha="center", va="center")
+        below.text(time, high, words, **{**how, "color": ink})
+    below.annotate("by sliding", (3.7, 77), (3.7, 50), arrowprops=line, **how)
     below.set(xlim=(0, motion.t[-1]), ylim=(0, 100))
     below.set(xlabel="time (s)", ylabel="energy (%)")
 
