@@ -11,8 +11,9 @@ Floats = NDArray[np.float64]
 
 # 57 mm long, 44 mm wide, 60 g
 body = sc.Ellipsoid.egg(0.022, 0.0285).in_metres(0.06)
+scale = sc.Scale(radius=0.0285, mass=0.06)
 table = sc.Coulomb(0.1)
-losses = sc.loss.RollingResistance.from_si(0.5e-3, scale=body)
+losses = sc.loss.RollingResistance.from_si(0.5e-3, scale=scale)
 RESTITUTION = 0.6
 # from 10 cm, its axis 35 degrees from the vertical, at 0.8 m/s
 leaning = body.spinning(0.0, pitch=np.radians(35.0))
@@ -59,7 +60,7 @@ def picture() -> None:
     # it turns in the plane x, z, by this angle
     turned = np.degrees(np.arctan2(-motion.vertical[:, 0], motion.vertical[:, 2]))
     x, _, z = 100 * motion.centre.T
-    wide, _, long = 200 * body.scale.metres(body.axes)
+    wide, _, long = 200 * scale.metres(body.axes)
     for i in np.flatnonzero(x < 56.0)[::40]:
         colour = COLOURS[int(motion.phase[i])]
         at = {"angle": -turned[i], "zorder": 2 + i / len(t)}
