@@ -76,8 +76,10 @@ def followed(stone, state, contact, restitution):
 
 
 def is_followed(m):
-    return not isinstance(m, str) and m._limit is None and m.status in (
-        sc.Ending.DONE, sc.Ending.STOPS, sc.Ending.FACE
+    return (
+        not isinstance(m, str)
+        and m._limit is None
+        and m.status in (sc.Ending.DONE, sc.Ending.STOPS, sc.Ending.FACE)
     )
 
 
@@ -105,7 +107,10 @@ def follows_all(count, patch):
                 print(f"{number} {restitution}, {kind}: {lasts:.2f} s, {m.status.name}", flush=True)
         share, median = 100 * good / total, 1e3 * np.median(costs)
         print(f"e = {restitution}: {share:.2f} % of {total} followed, {off} off, {slow} above 0.5 s;")
-        print(f"    median {median:.1f} ms, longest {max(costs):.1f} s, all {sum(costs):.0f} s; {dict(ends)}", flush=True)
+        print(
+            f"    median {median:.1f} ms, longest {max(costs):.1f} s, all {sum(costs):.0f} s; {dict(ends)}",
+            flush=True,
+        )
 
 
 def tells_errors(count, patch):
@@ -128,7 +133,9 @@ def tells_errors(count, patch):
             ratios.append(off / rough.error)
     ratios = np.array(ratios)
     print(f"{many} drops, {ratios.size} depend on the tolerance by more than the error of the comparison;")
-    print(f"    true over estimated error: median {np.median(ratios):.2g}, at most {ratios.max():.2g},", end=" ")
+    print(
+        f"    true over estimated error: median {np.median(ratios):.2g}, at most {ratios.max():.2g},", end=" "
+    )
     print(f"above 1 in {(ratios > 1).sum()}, above 2 in {(ratios > 2).sum()}")
 
 
@@ -144,8 +151,11 @@ def fastest(repeats, call, *of, **how):
 
 def tells_speed():
     """Prints what an impact, a bounce and a sweep of stones cost."""
-    skew = sc.Ellipsoid((1, 0.8, 0.6), [[0.2, 0.01, 0.02], [0.01, 0.3, -0.015], [0.02, -0.015, 0.35]],
-                        offset=(0.03, -0.02, -0.1))
+    skew = sc.Ellipsoid(
+        (1, 0.8, 0.6),
+        [[0.2, 0.01, 0.02], [0.01, 0.3, -0.015], [0.02, -0.015, 0.35]],
+        offset=(0.03, -0.02, -0.1),
+    )
     for name, contact in (
         ("a point that slips", sc.Coulomb(0.2)),
         ("a point that sticks", sc.Coulomb(0.6)),

@@ -221,7 +221,9 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     by_physics = {x.letter for x in REASONS if x.physics}
     refused = [letter for letter in of.values() if letter not in ("", "*")]
     excluded = sum(letter in by_physics for letter in refused)
-    total = f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+    total = (
+        f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+    )
     if excluded == len(refused):
         total += ", because physics does not\ndefine them."
     else:

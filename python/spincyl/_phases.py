@@ -8,7 +8,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._circles import lowest_point_of
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import Floats, is_scalar, number
+from spincyl._input.numbers import Floats, number
 from spincyl._slip import told_of_lowest
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air, state_without_checks
 

@@ -19,7 +19,7 @@ use crate::laws::loss::{Law, Losses};
 use crate::laws::stone::law::{StoneLaw, laboratory, turning};
 use crate::methods::falling::first_zero_of_powers;
 use crate::methods::flow::Exhausted;
-use crate::motions::walk::hops::{HARDLY, Leaves};
+use crate::motions::walk::hops::{HARDLY, Leaves, terms_until};
 use crate::motions::walk::numbers::{TIME, loses, lost};
 use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot, plus};
@@ -32,21 +32,17 @@ const CUT: f64 = 1e-17;
 const LONGEST_PIECE: f64 = 10.0;
 /// The circle in which S has no zero, from a start on the table, and the share of it for which its series is used.
 const CIRCLE_SHARE: f64 = 1.0 / 3.0;
-/// A bounce that is over before this share of the piece has fewer terms, of which the last is below exp(-DIGITS).
-const EARLY: f64 = 0.5;
-const NARROWS: f64 = 3.0;
-const DIGITS: f64 = 36.0;
 
 /// A height above this negative number is that of a stone that touches.
 const TOUCHES: f64 = 1e-12;
 
-type Powers<const K: usize> = [[f64; K]; AIR_TERMS];
+type MotionPowers<const K: usize> = [[f64; K]; AIR_TERMS];
 
 /// A piece of a flight, as powers of the time since its beginning.
-pub(super) struct Piece {
+pub(super) struct AirPiece {
     terms: usize,
-    quaternion: Powers<4>,
-    w: Powers<3>,
+    quaternion: MotionPowers<4>,
+    w: MotionPowers<3>,
     height: [f64; AIR_TERMS],
     lost: [f64; AIR_TERMS],
     /// The time at which it begins, since the start of the flight, and its length.
@@ -98,11 +94,11 @@ fn root_of(k: usize, square: f64, root: &[f64; AIR_TERMS]) -> f64 {
     (square - known) / (2.0 * root[0])
 }
 
-fn sum<const K: usize>(a: [f64; K], b: [f64; K]) -> [f64; K] {
+fn added<const K: usize>(a: [f64; K], b: [f64; K]) -> [f64; K] {
     core::array::from_fn(|i| a[i] + b[i])
 }
 
-fn value<const K: usize>(of: &[[f64; K]], t: f64) -> [f64; K] {
+fn at_time<const K: usize>(of: &[[f64; K]], t: f64) -> [f64; K] {
     of.iter().rev().fold([0.0; K], |all, c| core::array::from_fn(|i| all[i] * t + c[i]))
 }
 
@@ -147,7 +143,7 @@ impl StoneFlight {
 
     /// The piece from the numbers at the time `from` since the start; `leaves` is the power of time with which the lowest
     /// point leaves the table.
-    pub fn piece<const N: usize>(&self, from: f64, at: &StoneAloft<N>, leaves: Leaves) -> Piece {
+    pub fn piece<const N: usize>(&self, from: f64, at: &StoneAloft<N>, leaves: Leaves) -> AirPiece {
         let w = at.y.omega();
         let fastest = self.fastest(w);
         let air = (self.air[0] + self.air[1] * fastest) * fastest / self.least;
@@ -162,20 +158,19 @@ impl StoneFlight {
         let near = CIRCLE_SHARE * 3f64.sqrt() * (1.0 - room.powf(-1.0 / 3f64.sqrt())) / fastest;
         let first = piece(order + 2);
         let early = -(2.0 * first.height[order] / first.height[order + 1]);
-        if early > 0.0 && early < EARLY * near {
-            let terms = order + 2 + (DIGITS / (NARROWS * near / early).ln()) as usize;
-            let short = Piece { length: early, ..piece(terms.min(AIR_TERMS)) };
+        if let Some(terms) = terms_until(early / near, order) {
+            let short = AirPiece { length: early, ..piece(terms.min(AIR_TERMS)) };
             if short.lands(Some(order), early).is_ok_and(|found| found.is_some()) {
                 return short;
             }
         }
         let whole = piece(AIR_TERMS);
-        Piece { length: whole.length.min(near), ..whole }
+        AirPiece { length: whole.length.min(near), ..whole }
     }
 
-    fn powers<const N: usize>(&self, from: f64, at: &StoneAloft<N>, bend: f64, terms: usize) -> Piece {
+    fn powers<const N: usize>(&self, from: f64, at: &StoneAloft<N>, bend: f64, terms: usize) -> AirPiece {
         let (law, [b, b2]) = (&self.law, self.air);
-        let mut all = Piece {
+        let mut all = AirPiece {
             terms,
             quaternion: [[0.0; 4]; AIR_TERMS],
             w: [[0.0; 3]; AIR_TERMS],
@@ -202,17 +197,17 @@ impl StoneFlight {
                 break;
             }
             let (per, w, q) = (1.0 / (k + 1) as f64, &all.w, &all.quaternion);
-            let mut turn = product(k, &m, w, cross, sum);
+            let mut turn = product(k, &m, w, cross, added);
             if resists {
                 square[k] = product(k, w, w, dot, add);
                 speed[k] = root_of(k, square[k], &speed);
                 drag[k] = b2 * speed[k] + if k == 0 { b } else { 0.0 };
-                turn = plus(turn, -1.0, product(k, &drag, w, |a, w| w.map(|x| a * x), sum));
+                turn = plus(turn, -1.0, product(k, &drag, w, |a, w| w.map(|x| a * x), added));
                 all.lost[k + 1] = per * product(k, &drag, &square, |a, b| a * b, add);
             }
             m[k + 1] = turn.map(|x| x * per);
-            n[k + 1] = product(k, &n, w, cross, sum).map(|x| x * per);
-            all.quaternion[k + 1] = product(k, q, w, turning, sum).map(|x| x * per);
+            n[k + 1] = product(k, &n, w, cross, added).map(|x| x * per);
+            all.quaternion[k + 1] = product(k, q, w, turning, added).map(|x| x * per);
             all.w[k + 1] = law.inverse.times(m[k + 1]);
         }
         for k in 0..terms {
@@ -233,7 +228,7 @@ impl StoneFlight {
     }
 }
 
-impl Piece {
+impl AirPiece {
     /// The first landing up to a time since the beginning of the piece.
     pub fn lands(&self, leaves: Leaves, to: f64) -> Result<Option<f64>, Exhausted> {
         // A normal force that has just become negative is hardly larger than the errors of the numbers.
@@ -250,9 +245,9 @@ impl Piece {
     /// The stone at a time since the beginning of the piece; `start` has its numbers at the start of the flight.
     pub fn at<const N: usize>(&self, flight: &StoneFlight, start: &[f64; N], t: f64) -> StoneAloft<N> {
         let (mut y, since, terms) = (*start, self.from + t, self.terms);
-        let q = value(&self.quaternion[..terms], t);
+        let q = at_time(&self.quaternion[..terms], t);
         let long = q.iter().fold(0.0, |sum, x| x.mul_add(*x, sum)).sqrt();
-        let w = value(&self.w[..terms], t);
+        let w = at_time(&self.w[..terms], t);
         y[..4].copy_from_slice(&q.map(|x| x / long));
         y[4..7].copy_from_slice(&w);
         y[TIME] += since;
@@ -283,13 +278,13 @@ impl Piece {
 
     /// The spin at a time since the beginning of the piece, of a flight that began at the time `now`.
     pub fn spot(&self, now: f64, t: f64) -> Spot {
-        let (q, w) = (value(&self.quaternion[..self.terms], t), value(&self.w[..self.terms], t));
+        let (q, w) = (at_time(&self.quaternion[..self.terms], t), at_time(&self.w[..self.terms], t));
         let n = laboratory(q)[2];
-        let ahead: Powers<3> = core::array::from_fn(|k| {
+        let ahead: MotionPowers<3> = core::array::from_fn(|k| {
             let next = if k + 1 < self.terms { self.w[k + 1] } else { [0.0; 3] };
             next.map(|x| (k + 1) as f64 * x)
         });
-        let spin = Dual { value: dot(n, w), slope: dot(n, value(&ahead, t)) };
+        let spin = Dual { value: dot(n, w), slope: dot(n, at_time(&ahead, t)) };
         Spot { t: now + self.from + t, spin }
     }
 }

@@ -94,7 +94,7 @@ fn settled(
     recorded: &RefCell<Recorded>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Followed<StoneState>, Error> {
-    let (ask, start) = &without_friction(stone, ask, start);
+    let (ask, start) = &on_ice(stone, ask, start);
     let mut run = |tol: f64, times: &[f64], recorded| {
         let of = (stone, start);
         if ask.losses.is_none() {
@@ -121,7 +121,7 @@ fn settled(
 
 /// The question and the start of a motion on a smooth table with impacts: the centre is at rest until an impact, and the
 /// stone slips without friction.
-fn without_friction(stone: &Ellipsoid, ask: &Ask, start: &Start<StoneState>) -> (Ask, Start<StoneState>) {
+fn on_ice(stone: &Ellipsoid, ask: &Ask, start: &Start<StoneState>) -> (Ask, Start<StoneState>) {
     let (mut ask, mut start) = (*ask, *start);
     if ask.table == Table::Smooth && ask.restitution.is_some() {
         ask.table = Friction::coulomb(0.0).into();

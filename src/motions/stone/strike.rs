@@ -14,7 +14,7 @@ use crate::laws::stone::law::{Touching, across, laboratory};
 use crate::methods::flow::Exhausted;
 use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::Next;
-use crate::motions::walk::hops::{Bounce, JAM_TAKES, ROUNDED, Takeoff};
+use crate::motions::walk::hops::{Bounce, JAM_TAKES, ROUNDED, SHORT_BOUNCE, Takeoff};
 use crate::motions::walk::numbers::{TIME, lost};
 use crate::motions::{Ending, Kind, Strike};
 use crate::numbers::vector::{cross, dot, plus};
@@ -23,11 +23,9 @@ use crate::numbers::vector::{cross, dot, plus};
 const PIECE_COSTS: u64 = 30;
 /// Number of pieces between two calls of `go_on`.
 const PIECES_PER_CALL: u64 = 64;
-/// A bounce in which the stone turns by less than this angle is short; its landing is that of a power series.
-const SHORT_BOUNCE: f64 = 0.1;
 
 /// A contact of a stone: the axes of the laboratory, the point, and what an impulse there does.
-struct Contact {
+struct StoneContact {
     lab: [[f64; 3]; 3],
     at: Touching<f64>,
     light: Delassus,
@@ -48,7 +46,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
     }
 
     /// The contact at these numbers. Nothing is held that is in the air.
-    fn contact_at(&self, y: &[f64; N]) -> Contact {
+    fn contact_at(&self, y: &[f64; N]) -> StoneContact {
         let (law, w) = (&self.of.flow.law, y.omega());
         let lab = laboratory(y.quaternion());
         let at = law.losing(law.meeting(&lab, w), &lab, w);
@@ -64,12 +62,12 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
                 about: dot(lab[2], law.inverse.times(lab[2])),
             }
         });
-        Contact { lab, at, light, patch }
+        StoneContact { lab, at, light, patch }
     }
 
     /// N0, the normal force without friction, and the size of its terms.
     fn pressed(&self, y: &[f64; N]) -> [f64; 2] {
-        let (Contact { at, light, .. }, w) = (self.contact_at(y), y.omega());
+        let (StoneContact { at, light, .. }, w) = (self.contact_at(y), y.omega());
         let to = self.of.flow.law.pulled(&at, w, [0.0; 3]);
         let size = 1.0 + 2.0 * dot(w, w) * dot(at.r, at.r).sqrt();
         [dot(to.force, at.n), size / light.normal]
@@ -194,7 +192,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The impact of the lowest point; None for a rolling contact without a solution.
     fn impact(&self, from: &StoneAloft<N>, e: f64) -> Option<Struck> {
-        let (Contact { light, patch, .. }, own) = (self.contact_at(&from.y), self.of.flow.own);
+        let (StoneContact { light, patch, .. }, own) = (self.contact_at(&from.y), self.of.flow.own);
         self.point_impact((slip_of(&from.y), from.lift), (light, patch), &own).on(&self.ask.table, e, &own)
     }
 
@@ -237,7 +235,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed.
     fn bounces(&mut self, after: &StoneAloft<N>, struck: &Struck, e: f64) -> Option<f64> {
-        let (Contact { lab, at, light, patch }, w, law) =
+        let (StoneContact { lab, at, light, patch }, w, law) =
             (self.contact_at(&after.y), after.y.omega(), self.of.flow.law);
         let [force, _] = self.pressed(&after.y);
         let bounce = Bounce { struck, light: &light, patch, force, loses: !self.ask.losses.is_none() };
@@ -255,7 +253,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
 
     /// The numbers after an impact.
     fn after(&self, from: &StoneAloft<N>, struck: &Struck) -> StoneAloft<N> {
-        let Contact { lab, at, .. } = self.contact_at(&from.y);
+        let StoneContact { lab, at, .. } = self.contact_at(&from.y);
         let [x, y, z] = struck.impulse;
         let push = plus(across(&lab, [x, y]), z, lab[2]);
         let turn = plus(cross(at.r, push), struck.couple, lab[2]);

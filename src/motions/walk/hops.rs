@@ -40,6 +40,13 @@ pub(crate) const LONGER: f64 = 3.0;
 pub(crate) const ROUNDED: f64 = 1e-12;
 /// A term of the second order of a height that is smaller than this, in units of the fall, may be an error of the numbers.
 pub(crate) const HARDLY: f64 = 1e-8;
+/// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
+pub(crate) const SHORT_BOUNCE: f64 = 0.1;
+/// Within its radius the terms of a series fall by this factor; a landing before this share of it is sought with fewer
+/// terms, of which the last is below exp(-DIGITS).
+const NARROWS: f64 = 3.0;
+const EARLY: f64 = 0.5;
+const DIGITS: f64 = 36.0;
 /// A jam needs a larger impulse than this share of the slip.
 pub(crate) const JAM_TAKES: f64 = 1e-9;
 
@@ -67,6 +74,12 @@ pub(crate) struct Hops {
     energy: Option<f64>,
     /// The step errors by which a rougher run has been perturbed.
     shown: f64,
+}
+
+/// The number of terms that a series needs up to a landing as early as this share of its radius, where the height leaves the
+/// table as a power of time of this order; None if it needs all of them.
+pub(crate) fn terms_until(early: f64, order: usize) -> Option<usize> {
+    (early > 0.0 && early < EARLY).then(|| order + 2 + (DIGITS / (NARROWS / early).ln()) as usize)
 }
 
 /// A bounce, and what acts on the body after it.

@@ -18,7 +18,7 @@ use crate::motions::body::body_walk::{BodyPhases, BodyWalk};
 use crate::motions::body::fly::{Aloft, Flies, Flight};
 use crate::motions::body::own::Own;
 use crate::motions::body::strike::RATTLED;
-use crate::motions::walk::hops::{LONGER, ROUNDED, Takeoff};
+use crate::motions::walk::hops::{LONGER, ROUNDED, SHORT_BOUNCE, Takeoff};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
 use crate::motions::walk::{Next, Phases};
 use crate::motions::{Ending, Kind};
@@ -32,9 +32,6 @@ pub(crate) fn pose_from(at: &Aloft, rims: &[Rim<f64>; 2], over: bool, pose: [f64
     }
     other
 }
-
-/// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
-const SHORT_BOUNCE: f64 = 0.1;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn has_two_rims(&self) -> bool {

@@ -19,15 +19,10 @@ use super::{Aloft, FirstLanding, Flies, Flight};
 use crate::laws::body::{MOST_CIRCLES, Rim};
 use crate::methods::falling::{Falling, first_zero_of_powers};
 use crate::methods::flow::{Exhausted, Steps};
-use crate::motions::walk::hops::{HARDLY, Leaves};
+use crate::motions::walk::hops::{HARDLY, Leaves, terms_until};
 
 /// Number of terms of the series at the start.
 pub(super) const RIM_TERMS: usize = 30;
-/// Within `near` the terms of the series fall by this factor; a landing before this share of `near` is sought with
-/// fewer terms, of which the last is below exp(-DIGITS).
-const NARROWS: f64 = 3.0;
-const EARLY: f64 = 0.5;
-const DIGITS: f64 = 36.0;
 /// An angle from a smooth joint that counts as none: there the heights of both circles agree to its square.
 const JOINED: f64 = 1e-6;
 pub(crate) const TOUCH: f64 = 1e-15;
@@ -136,8 +131,7 @@ impl Flight {
         // A bounce that is over much earlier needs few terms, up to twice the time that the first two give.
         let first = self.heights(k, near, &swung(near, order + 2));
         let early = -(2.0 * first[order] / first[order + 1]);
-        if early > 0.0 && early < EARLY {
-            let terms = order + 2 + (DIGITS / (NARROWS / early).ln()) as usize;
+        if let Some(terms) = terms_until(early, order) {
             let found = self.lands_near(k, order, early * near, (terms, swung))?;
             if found.is_some() {
                 return Ok(found);
