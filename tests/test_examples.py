@@ -29,8 +29,8 @@ def rolled(scene, **how):
     return sc.roll(scene.body, scene.start, scene.t, **how)
 
 
-def test_there_are_twenty_four_scenes():
-    assert len(SCENES) == 24
+def test_there_are_twenty_five_scenes():
+    assert len(SCENES) == 25
 
 
 @pytest.mark.parametrize("name", SCENES)

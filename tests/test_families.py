@@ -212,6 +212,6 @@ def test_a_lazy_family_is_that_in_memory():
 def test_every_number_of_a_stone_s_motion_has_a_label_and_is_filled():
     names = [name for name, _, _ in _core.stone_columns()]
     want = ("final", *(name for name in names if not re.fullmatch(r"[nw]\d|error|known_until", name)))
-    found = sc.sweep.roll(*stones(np.array([0.5])), 2.0, contact=sc.Coulomb(0.3), want=want)
+    found = sc.sweep.roll(*stones(np.array([0.5])), 2.0, contact=sc.Coulomb(0.3), restitution=0.5, want=want)
     assert {*found.data_vars} == {*names, "status"}
     assert all(np.isfinite(found[name]).all() for name in names if name != "first_reversal")

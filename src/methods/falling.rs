@@ -85,6 +85,9 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
 
 /// The first zero in [0, `to`] of a polynomial that is positive at 0, whose second derivative is at most `bend`.
 pub(crate) fn first_zero_of_powers(series: &[f64], to: f64, bend: f64) -> Result<Option<f64>, Exhausted> {
+    if to <= 0.0 {
+        return Ok(None);
+    }
     let power = |x: f64| {
         let value = series.iter().rev().fold(0.0, |sum, c| sum * x + c);
         let rate = (1..series.len()).rev().fold(0.0, |sum, k| sum * x + k as f64 * series[k]);

@@ -566,8 +566,21 @@ impl Flow<MARGINS> for StandingFlow {
         1e-15
     }
 
-    fn longest<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
-        if self.in_tau() { LONGEST } else { f64::INFINITY }
+    fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
+        let (y, rate) = (&place.y, &place.rate);
+        // Where slide and spin are as fast as each other a point of the ring rests: friction there goes as x log x.
+        let [gap, falls] = match self.course {
+            Braking::Rubs => {
+                let (sin, cos) = y[SHARE].sin_cos();
+                [cos - sin, (sin + cos) * rate[SHARE]]
+            }
+            Braking::Pulled => {
+                let (v, s) = (y[UH].hypot(y[U2]), y[SHARE]);
+                [v - s.abs(), (y[UH] * rate[UH] + y[U2] * rate[U2]) / v - s.signum() * rate[SHARE]]
+            }
+            _ => return f64::INFINITY,
+        };
+        LONGEST.min((0.5 * gap.abs()).max(self.tol.sqrt()) / falls.abs())
     }
 
     fn stopped<const N: usize>(&self, _: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
