@@ -303,3 +303,22 @@ def test_the_error_of_a_uniform_ball_covers_the_little_slip_that_its_rougher_run
         fine, found = (sc.roll(ball, start, [0.0, 300.0], contact=table, tol=tol) for tol in (1e-14, 1e-10))
         off = max(abs(fine.theta[1] - found.theta[1]), *abs(fine.w[1] - found.w[1]))
         assert off <= fine.error + found.error
+
+
+@pytest.mark.parametrize("e", [0.0, 0.4])
+def test_many_tops_that_hop_on_patches_are_those_that_are_followed_one_by_one(e):
+    rng, count = np.random.default_rng(70), 16
+    body, (w1, w2) = sc.Body.ball(-0.2, 0.40, 0.42), rng.uniform(-1, 1, (2, count))
+    theta, w3, mu = rng.uniform(0.1, 3.0, count), rng.uniform(-12, 12, count), rng.uniform(0.1, 0.8, count)
+    patch, height = 10 ** rng.uniform(-4, -1, count), rng.choice([0.0, 1e-300, 0.1], count)
+    w1[:4], w2[:4], w3[:2], lift = 0.0, 0.0, 1e-300, rng.choice([0.0, 1e-12, -0.1], count)
+    state = sc.State(theta, w1, w2, w3, slip=(w2, w1), height=height, lift=lift)
+    how = {"restitution": e, "tol": 1e-11}
+    found = sc.sweep.roll(body, state, 3.0, contact=sc.Coulomb(mu, patch=patch), want=("final", "end"), **how)
+    for i in range(count):
+        start = sc.State(theta[i], w1[i], w2[i], w3[i], slip=(w2[i], w1[i]), height=height[i], lift=lift[i])
+        m = sc.roll(body, start, 3.0, contact=sc.Coulomb(mu[i], patch=patch[i]), **how)
+        assert int(found.status[i]) == m.status == sc.Ending.DONE
+        last = [float(found[name][i]) for name in ("theta", "w1", "w2", "w3")]
+        apart = np.abs(np.array(last) - [np.ravel(x)[0] for x in (m.theta, *m.w.T)]).max()
+        assert apart < 1e-10 + 4 * (m.error + float(found.error[i])), i

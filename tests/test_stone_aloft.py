@@ -421,7 +421,10 @@ def test_a_flight_that_makes_no_sense_is_refused_by_name(how, why):
 # sweeps
 
 
-@pytest.mark.parametrize("contact", [GRIP, sc.Viscous(0.5), "smooth"], ids=repr)
+LAWS = [GRIP, sc.Coulomb(0.2, static=0.4), sc.Coulomb(0.3, patch=0.02), sc.Viscous(0.5), "smooth"]
+
+
+@pytest.mark.parametrize("contact", LAWS, ids=repr)
 @pytest.mark.parametrize("e", [0.0, 0.6])
 def test_many_stones_are_those_that_are_followed_one_by_one(contact, e):
     rng, count = np.random.default_rng(7), 12

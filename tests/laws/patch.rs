@@ -452,3 +452,57 @@ fn a_top_that_spins_so_fast_that_it_leaves_the_table_comes_down_and_turns_over()
     }
     assert!(flights > 3, "{flights}");
 }
+
+#[test]
+fn energy_heat_and_what_impacts_take_are_constant_on_patches_too_and_a_face_ends_the_motion() {
+    let (mut r, mut hits, mut ends) = (wander(76), [0; 6], 0);
+    for k in 0..drawn(240) {
+        let body = match (4.0 * r()) as u8 {
+            0 => Body::ball(0.6 * (r() - 0.5), 0.3 + 0.2 * r(), 0.3 + 0.2 * r()),
+            1 => Body::solid(0.1 + 2.0 * r()),
+            2 => Body::rounded_tube(0.4 + 2.0 * r(), 0.0, 0.05 + 0.3 * r()),
+            _ => Body::tube(0.5 + 2.0 * r(), r()),
+        };
+        let body = body.unwrap();
+        let odd = k % 3 == 0;
+        let mut speed =
+            || if odd { [0.0, 1e-300, 1e-16, 0.1, -1.0][(5.0 * r()) as usize] } else { 4.0 * (r() - 0.5) };
+        let [w1, w2, w3, u, v, lift] = core::array::from_fn(|_| speed());
+        let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
+        let start =
+            Start::from(state).with_slip([u, v]).with_aloft([if r() < 0.3 { 0.0 } else { r() }, lift]);
+        let mu = 0.05 + 0.9 * r();
+        let ask = Ask::on(on(mu, 10f64.powf(-1.0 - 4.0 * r()))).with_restitution(0.9 * r());
+        let times: Vec<f64> = (0..40).map(|k| 0.1 * f64::from(k)).collect();
+        let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
+        let path = m.path.as_ref().unwrap();
+        let whole = |i: usize| {
+            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
+            crate::flight::energy(&body, &m.states[i], [u, v, lift], height)
+                + path.dissipated[i]
+                + before.map(|hit| hit.lost).sum::<f64>()
+        };
+        for i in 0..m.states.len() {
+            let off = (whole(i) - whole(0)).abs();
+            assert!(
+                off < 1e-12 * (1.0 + whole(0)) + 10.0 * m.error,
+                "{k} {body:?} {start:?} {ask:?}: {off:e} {:e}",
+                m.error
+            );
+        }
+        for hit in &path.impacts {
+            let [p, q, n] = hit.impulse;
+            assert!(p.hypot(q) <= mu * n * (1.0 + 1e-9) + 1e-14 && hit.lost > -1e-14, "{k} {hit:?}");
+            hits[hit.hit as usize] += 1;
+        }
+        let ending = m.event.map(|event| event.ending);
+        ends += usize::from(matches!(ending, Some(Ending::Face | Ending::Side)));
+        assert!(
+            !matches!(ending, Some(Ending::LiftOff | Ending::Bounded | Ending::Slip)),
+            "{k} {ending:?} {:?}",
+            m.limit
+        );
+    }
+    assert!(hits[0] > 30 && hits[5] > 5 && ends > 5, "{hits:?} {ends}");
+}

@@ -634,8 +634,8 @@ mod tests {
     #[test]
     fn impacts_of_stones_at_a_point_and_on_a_patch_are_those_of_an_independent_model() {
         let tables = [
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/stone_impacts.csv")),
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/patch_impacts.csv")),
+            include_str!("../../../tests/reference/stone_impacts.csv"),
+            include_str!("../../../tests/reference/patch_impacts.csv"),
         ];
         let (mut worst, mut count) = (0f64, 0);
         for row in tables.into_iter().flat_map(rows) {

@@ -193,10 +193,9 @@ impl ImpactSlip<'_> {
         self.rubs.mu * (a + b)
     }
 
-    /// Friction and its couple per normal force, on a patch.
+    /// Friction and its couple per normal force, on a patch, which no law of the user has.
     fn pulls(&self, [u, v]: [f64; 2], drilling: f64, radius: f64) -> ([f64; 2], f64) {
-        let (sigma, mu) = (speed([u, v]), self.rubs.at(speed([u, v])));
-        let [share, couple, _] = rubs(sigma, drilling, radius);
+        let (mu, [share, couple, _]) = (self.rubs.mu, rubs(speed([u, v]), drilling, radius));
         ([-mu * share * u, -mu * share * v], mu * couple)
     }
 
@@ -231,7 +230,7 @@ impl ImpactSlip<'_> {
     /// is unique. F and C depend on its direction alone, by the angles of (u, eps w) across the table and from it, which
     /// are sought with the speed.
     fn leaves(&self, patch: &PatchedPoint) -> Option<[f64; 3]> {
-        let ([b_1, b_2], radius, mu) = (self.light.couples, patch.radius, self.rubs.at(0.0));
+        let ([b_1, b_2], radius, mu) = (self.light.couples, patch.radius, self.rubs.mu);
         let ways = Vector3::new(1.0, 1.0, 1.0 / radius);
         let heavy = self.inertia(patch).try_inverse()?;
         let driven = heavy * Vector3::new(b_1, b_2, patch.row[2]);
@@ -389,6 +388,9 @@ impl Flow<2> for ImpactSlip<'_> {
 
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let Some(PatchedPoint { radius, .. }) = self.patch() else {
+            if self.rubs.law.is_some() {
+                return f64::INFINITY;
+            }
             // A direction that attracts is found to rounding by steps in which what is off it decays.
             let (sigma, slip) = (self.rubbing(&place.y), [place.y[0], place.y[1]]);
             let [_, bends, _] = self.light.turning(slip.map(|u| u / sigma), self.rubs.mu);

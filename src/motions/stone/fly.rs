@@ -59,7 +59,7 @@ pub(super) struct StoneFlight {
     air: [f64; 2],
     /// The smallest moment of inertia, and the largest distance of a point from the centre.
     least: f64,
-    pub reach: f64,
+    reach: f64,
     /// Position and velocity of the centre at the start.
     centre: [f64; 3],
     velocity: [f64; 3],
@@ -108,7 +108,7 @@ impl StoneFlight {
         law: &StoneLaw<f64>,
         from: &StoneAloft<N>,
         losses: &Losses,
-        (axes, least): ([f64; 3], f64),
+        least: f64,
     ) -> Self {
         let (y, w) = (&from.y, from.y.omega());
         let lab = laboratory(y.quaternion());
@@ -121,8 +121,7 @@ impl StoneFlight {
             law: *law,
             air: [Law::AirLinear, Law::AirQuadratic].map(|law| losses.coefficient(law)),
             least,
-            reach: axes.into_iter().fold(0.0, f64::max)
-                + law.offset.into_iter().fold(0.0, |d: f64, x| d.hypot(x)),
+            reach: law.squares.into_iter().fold(0.0, f64::max).sqrt() + dot(law.offset, law.offset).sqrt(),
             centre: [y[STONE_X] - x, y[STONE_Y] - y_r, from.height - z],
             velocity: [slip[0] - u, slip[1] - v, from.lift - up],
             tilt: law.tilt.unwrap_or(0.0),

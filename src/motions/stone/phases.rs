@@ -54,8 +54,8 @@ pub(super) struct StonePhases<'n> {
     known: Option<(Resting, bool)>,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
-    /// The semi-axes, and the smallest moment of inertia.
-    pub thick: ([f64; 3], f64),
+    /// The smallest moment of inertia.
+    pub least: f64,
 }
 
 impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
@@ -99,8 +99,8 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         at[SLID_Y] = cos * slip[1] + sin * slip[0];
         at[STONE_X..=STONE_Y].copy_from_slice(&start.place);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
-        let thick = (stone.axes, stone.moments()[0]);
-        let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y], thick };
+        let least = stone.moments()[0];
+        let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y], least };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(match start.aloft {
             Some(aloft) => walk.starts_in_air(aloft),

@@ -5,9 +5,9 @@ use super::flow::{
 };
 use super::fly::{StoneAloft, StoneFlight};
 use super::phases::StoneWalk;
+use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::Struck;
 use crate::laws::contact::sliding::PatchedPoint;
-use crate::laws::contact::{Table, delassus::Delassus};
 use crate::laws::loss::Holds;
 use crate::laws::stone::StonePose;
 use crate::laws::stone::law::{Touching, across, laboratory};
@@ -84,14 +84,8 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         let Some(e) = self.ask.restitution else { return Next::Ends(ending) };
         match ending {
             Ending::LiftOff => {
-                let [free, size] = self.pressed(&self.at);
-                if matches!(self.ask.table, Table::Rolling { .. }) && free > ROUNDED * size {
-                    // Friction lifts the stone, and on a real table the contact point would slip first.
-                    return Next::Ends(Ending::Slip);
-                }
-                let leaves = if free < -ROUNDED * size { 2 } else { 3 };
-                self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
-                Next::Own(Kind::Flying)
+                let pressed = self.pressed(&self.at);
+                self.lifts_off(pressed)
             }
             Ending::Painleve => self.jams(e).unwrap_or(Next::Ends(ending)),
             ending => Next::Ends(ending),
@@ -121,7 +115,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
     #[inline(never)]
     pub(super) fn flies(&mut self, go_on: &mut dyn FnMut() -> bool) {
         let (start, law) = (self.aloft(), self.of.flow.law);
-        let flight = StoneFlight::new(&law, &start, &self.ask.losses, self.of.thick);
+        let flight = StoneFlight::new(&law, &start, &self.ask.losses, self.of.least);
         let (now, last) = (self.at[TIME], self.since.last().copied().unwrap_or(0.0));
         let (left, mut toil) = (last - now, self.toil());
         let (mut from, mut since, mut leaves) = (start, 0.0, self.hops.takeoff.leaves);
@@ -247,7 +241,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
             let [free, pressed] = [lost.free, lost.pressed].map(|m| dot(m, m).sqrt());
             free + pressed * force
         });
-        self.claims(left * couple / self.of.thick.1);
+        self.claims(left * couple / self.of.least);
         Some(left)
     }
 

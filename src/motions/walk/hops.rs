@@ -11,12 +11,13 @@
 use super::numbers::lost;
 use super::two_runs::CHANCE;
 use super::{Next, Phases, Walk};
+use crate::laws::contact::Table;
 use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::{Hit, PointImpact, Struck};
 use crate::laws::contact::landing::REVERSES;
 use crate::laws::contact::sliding::PatchedPoint;
 use crate::laws::custom::SpeedLaw;
-use crate::motions::{Ending, Method, Moving};
+use crate::motions::{Ending, Kind, Method, Moving};
 
 /// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
 /// limits.
@@ -215,6 +216,17 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         let whole = energy + self.at[P::HEAT] + self.hops.struck + last + lost(&self.at);
         let first = *self.hops.energy.get_or_insert(whole);
         self.claims((whole - first).abs() / fastest);
+    }
+
+    /// The flight of a body that leaves the table, where N0 and the size of its terms are these.
+    pub fn lifts_off(&mut self, [free, size]: [f64; 2]) -> Next {
+        if matches!(self.ask.table, Table::Rolling { .. }) && free > ROUNDED * size {
+            // Friction lifts the body, and on a real table the contact point would slip first.
+            return Next::Ends(Ending::Slip);
+        }
+        let leaves = if free < -ROUNDED * size { 2 } else { 3 };
+        self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
+        Next::Own(Kind::Flying)
     }
 
     /// The contact that begins where the normal velocity is zero.

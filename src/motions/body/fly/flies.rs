@@ -172,15 +172,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Ending::Face if self.of.body.rim() > 0.0 => self.settles_on_face(),
             // Another part of a body, which may land first, has no known shape.
             Ending::LiftOff if self.of.body.lands_on_rims() => {
-                let [free, size] = self.pressed(&self.aloft());
-                let rolls = matches!(self.ask.table, Table::Rolling { .. });
-                if rolls && free > ROUNDED * size {
-                    // Friction lifts the body, and on a real table the contact point would slip first.
-                    return Next::Ends(Ending::Slip);
-                }
-                let leaves = if free < -ROUNDED * size { 2 } else { 3 };
-                self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
-                Next::Own(Kind::Flying)
+                let pressed = self.pressed(&self.aloft());
+                self.lifts_off(pressed)
             }
             Ending::Side if self.has_two_rims() && self.of.state.theta == self.of.body.theta_end() => {
                 (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
