@@ -225,6 +225,13 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
                 p.dissipated[i] - q.dissipated[i],
             ];
             let off = off.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let [at, there] = [
+                a.poses.as_ref().unwrap()[i].centre,
+                b.samples().nth(i).unwrap().centre(&body).unwrap().into(),
+            ];
+            let moved = (0..3).fold(0.0, |most: f64, k| most.max((at[k] - there[k]).abs()));
+            let places = 1e-11 + 10.0 * (a.pose_error + b.pose_error);
+            assert!(moved < places, "{k} {ask:?}: centre off by {moved:e}, {places:e} at {}", a.times[i]);
             assert!(off < claim, "{k} {body:?} {there:?} {ask:?}: {off:e}, {claim:e} at {}", a.times[i]);
         }
         assert_eq!(a.event.map(|e| e.ending), b.event.map(|e| e.ending), "{k}");

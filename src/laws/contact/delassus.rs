@@ -116,3 +116,44 @@ fn solved([[a, ab], [_, b]]: [[f64; 2]; 2], [u, v]: [f64; 2]) -> [f64; 2] {
     let y = (v - ab / a * u) / (b - ab / a * ab);
     [(u - ab * y) / a, y]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_that_friction_stops_first_lifts_the_point_where_its_way_by_small_steps_does() {
+        let mut found = [0; 2];
+        for k in 0..4000 {
+            let part = |i: usize| {
+                (f64::from(k) * [2.0f64, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0][i - 1].sqrt()).fract() - 0.5
+            };
+            // The principal values differ much, so that the way is bent.
+            let (a, b, angle) = (1.0 + part(1), 6.0 + 8.0 * part(2), 6.0 * part(3));
+            let (sin, cos) = angle.sin_cos();
+            let mixed = sin * cos * (a - b);
+            let level = [[a * cos * cos + b * sin * sin, mixed], [mixed, a * sin * sin + b * cos * cos]];
+            let light = Delassus { level, couples: [2.0 * part(4), 2.0 * part(5)], normal: 2.0 };
+            let (begin, lift) = ([8.0 * part(6), 8.0 * part(7)], -0.3 + 0.2 * part(8));
+            // The impulse is against the slip at each moment, and as long as it takes to stop it.
+            let (mut slip, mut push) = (begin, [0.0; 2]);
+            let mut most = lift;
+            for _ in 0..20_000 {
+                let size = 2e-3 * speed(slip);
+                let step = slip.map(|u| -size * u / speed(slip).max(f64::MIN_POSITIVE));
+                let [p, q] = light.level(step);
+                (slip, push) = ([slip[0] + p, slip[1] + q], [push[0] + step[0], push[1] + step[1]]);
+                most = most.max(lift + light.lifts(push));
+                if speed(slip) < 1e-6 {
+                    break;
+                }
+            }
+            let end = lift + light.lifts(light.pushes(begin.map(|u| -u)));
+            if end < 0.0 && most.abs() > 5e-3 {
+                assert_eq!(light.lifts_on_the_way(begin, lift), most > 0.0, "{k} {most}");
+                found[usize::from(most > 0.0)] += 1;
+            }
+        }
+        assert!(found.iter().all(|count| *count > 20), "{found:?}");
+    }
+}

@@ -589,7 +589,7 @@ mod tests {
     fn slip_and_drilling_that_have_stopped_are_held_or_leave_along_the_one_way_out() {
         let mut hits = [0; 6];
         for k in 0..300 {
-            let part = |i: u32| (0.61803398875 * f64::from(k * 11 + i)).fract();
+            let part = |i: usize| (f64::from(k) * [2.0f64, 3.0, 5.0, 7.0, 11.0, 13.0][i - 1].sqrt()).fract();
             let (mu, radius) = (0.02 + 0.5 * part(1), [0.3, 0.03, 1e-4][k as usize % 3]);
             // A drilling that the normal impulse drives itself, as of a stone that lands on a twisted side.
             let row = [2.0 * part(2) - 1.0, 2.0 * part(3) - 1.0, 0.6 * part(4) - 0.3];
