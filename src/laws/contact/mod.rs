@@ -12,6 +12,7 @@
 
 pub(crate) mod delassus;
 pub(crate) mod face;
+mod film;
 pub(crate) mod impact;
 pub mod landing;
 pub mod lossy;
