@@ -30,6 +30,7 @@ from spincyl._laws import Region
 from spincyl._measured import measured
 from spincyl._motion import Motion
 from spincyl._phases import Impact, Phase
+from spincyl._restitution import GainWarning, Newton, Poisson, Walton
 from spincyl._roll import StepWarning, roll
 from spincyl._scale import Scale
 from spincyl._stand import spun, tripped
@@ -68,11 +69,14 @@ __all__ = [
     "Ending",
     "ErrorWarning",
     "Event",
+    "GainWarning",
     "Held",
     "Impact",
     "Motion",
+    "Newton",
     "Phase",
     "Play",
+    "Poisson",
     "Region",
     "RestsOn",
     "Rocking",
@@ -84,6 +88,7 @@ __all__ = [
     "Table",
     "View",
     "Viscous",
+    "Walton",
     "assembled",
     "custom",
     "data",

@@ -20,6 +20,7 @@ from spincyl._input.numbers import (
     whole,
 )
 from spincyl._phases import check_contact, has_friction
+from spincyl._restitution import Restitution, restitution_for_core
 from spincyl._state import State
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Asked(NamedTuple):
     mu: float = math.inf
     beyond: bool = False
     want: frozenset[Want] = NO_OUTPUTS
-    restitution: float | None = None
+    restitution: Restitution | None = None
     losses: "Loss | None" = None
     stop_at: Literal["rolling"] | None = None
     max_nfev: int | None = None
@@ -106,7 +107,7 @@ def options_for_core(
         if own is not None:
             options["couple"] = own
     if asked.restitution is not None:
-        options["restitution"] = float(asked.restitution)
+        options |= restitution_for_core(asked.restitution)
     if asked.stop_at:
         options["stop_at_rolling"] = True
     if asked.max_nfev is not None:
@@ -165,7 +166,7 @@ def ask(
     mu: float,
     beyond: bool,
     want: Want | Iterable[Want],
-    restitution: float | None,
+    restitution: Restitution | None,
     losses: "Loss | None",
     max_nfev: int | None,
     table: "Table | None" = None,

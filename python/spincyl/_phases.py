@@ -8,7 +8,8 @@ import numpy as np
 from spincyl import _core
 from spincyl._circles import lowest_point_of
 from spincyl._contact import AnyContact, Coulomb, Viscous
-from spincyl._input.numbers import Floats, number
+from spincyl._input.numbers import Floats
+from spincyl._restitution import check_restitution
 from spincyl._slip import told_of_lowest
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air, state_without_checks
 
@@ -27,7 +28,7 @@ Kind: TypeAlias = Literal[
 ]
 #: Kind of phase for each code in `Motion.phase`.
 KINDS: tuple[Kind, ...] = get_args(Kind)
-Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims", "creeps"]
+Hit: TypeAlias = Literal["slips", "sticks", "slips on", "smooth", "both rims", "creeps", "turns back"]
 #: Behaviour of the contact point in an impact, for each code of the core.
 HITS: tuple[Hit, ...] = get_args(Hit)
 
@@ -83,13 +84,14 @@ class Impact(NamedTuple):
         What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
         "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
         lands without a bounce, and both rims touch the table. "creeps": on a patch of contact, what would
-        stick at a point follows the drilling.
+        stick at a point follows the drilling. "turns back": the slip of a ball, by tangential restitution.
     impulse : tuple of float
         Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
         touch the table, the sum of their impulses. For a stone along x, y and z of the laboratory, as
         `Motion.contact_force`.
     lost : float
-        Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
+        Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed. Negative
+        for an impact that has gained energy, which only the laws `Newton` and `Poisson` allow.
     before : State or EllipsoidState
         State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands; for a
         body of several circles always to its lower end.
@@ -111,6 +113,11 @@ class Impact(NamedTuple):
     after: State
     stays: bool
     couple: float = 0.0
+
+    @property
+    def gained(self) -> float:
+        """Energy gained in the impact, in M g R or J: 0 under Stronge's law."""
+        return max(-self.lost, 0.0)
 
 
 #: Columns of the lost energy, of the impulse and of its couple in the rows of impacts.
@@ -153,7 +160,7 @@ def check_contact(state: State, contact: AnyContact, restitution: object, settin
     if restitution is None:
         refuse_state_in_air(state, "give restitution=, the coefficient of restitution of impacts, 0 to 1")
     else:
-        number("restitution", restitution)  # its range is known to the core
+        check_restitution(restitution)
     if not isinstance(contact, Coulomb | Viscous):
         if state.slip is not None and (restitution is None or state.height is None):
             numbers_without_slip(

@@ -13,6 +13,7 @@ from spincyl._input.hints import with_hints
 from spincyl._input.numbers import Reals, number, si, warn
 from spincyl._measured import errors_in_seconds, in_si, natural_time
 from spincyl._motion import Motion, rolled
+from spincyl._restitution import GainWarning, Newton, Poisson
 from spincyl._state import State
 from spincyl._swing import numbers_of_one
 from spincyl._told import given_up
@@ -22,7 +23,12 @@ if TYPE_CHECKING:
     from spincyl._ellipsoid_motion import EllipsoidMotion
     from spincyl._ellipsoid_state import EllipsoidState
     from spincyl._loss import Loss
+    from spincyl._restitution import Restitution
     from spincyl._table import Table
+
+
+#: An impact gains less by rounding errors, in M g R or J.
+_GAINED = 1e-12
 
 
 class StepWarning(UserWarning):
@@ -50,7 +56,7 @@ def roll(
     mu: float = np.inf,
     want: Want | Iterable[Want] = (),
     beyond: bool = False,
-    restitution: float | None = None,
+    restitution: "Restitution | None" = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
     table: "Table | None" = None,
@@ -69,7 +75,7 @@ def roll(
     mu: float = np.inf,
     want: Want | Iterable[Want] = (),
     beyond: bool = False,
-    restitution: float | None = None,
+    restitution: "Restitution | None" = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
     table: "Table | None" = None,
@@ -88,7 +94,7 @@ def roll(
     mu: float = np.inf,
     want: Want | Iterable[Want] = (),
     beyond: bool = False,
-    restitution: float | None = None,
+    restitution: "Restitution | None" = None,
     losses: "Loss | None" = None,
     max_nfev: int | None = None,
     table: "Table | None" = None,
@@ -133,8 +139,8 @@ def roll(
     beyond : bool
         If true, continue the solution past the event, although it no longer describes the real body.
         `Motion.event` is still set. The solution cannot continue past a landing of the face.
-    restitution : float, optional
-        Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
+    restitution : float or Newton or Poisson or Walton, optional
+        Coefficient of restitution of impacts, 0 to 1, or another law of restitution. Its square is the fraction of the work of compression
         that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
         other rim or its face lands. With a restitution the motion continues: the body may fly, bounce, lie on
         both rims, stand on its face and rise again. An initial state in the air (`dropped`, and for a stone
@@ -283,6 +289,9 @@ def roll(
     if stone and m._doubt:
         why = f"after that its estimated error reaches {m.error:.2g}"
         warn(f"the motion is {m._doubt} (known_until); {why}", ErrorWarning)
+    if isinstance(restitution, Newton | Poisson) and (gained := sum(hit.gained for hit in m.impacts)) > _GAINED:
+        why = "which this law allows (Impact.gained tells how much in each)"
+        warn(f"{restitution!r}: impacts have gained {gained:.2g} of energy in all, {why}", GainWarning)
     if m.status == Ending.BOUNDED:
         warn(f"{given_up(m)} (Ending.BOUNDED)", RuntimeWarning)
     if m.rk4 is not None and m.rk4.coarse:

@@ -1,7 +1,7 @@
 //! The options of a motion, as Python gives them.
 
 use super::pointer::{GivenLaw, PointedLaws};
-use crate::laws::contact::{Contact, Face, TableKind};
+use crate::laws::contact::{Contact, Face, ImpactLaw, TableKind};
 use crate::laws::loss::{COUNT, Losses};
 use crate::motions::{Ask, Method};
 use pyo3::exceptions::PyValueError;
@@ -67,6 +67,8 @@ options! {
         tol: Option<f64> = None,
         beyond: bool = false,
         restitution: Option<f64> = None,
+        /// The name of another law of restitution than Stronge's, and the coefficient of tangential restitution.
+        impact_law: Option<(String, f64)> = None,
         /// The height and the vertical velocity of an initial state in the air.
         aloft: Option<[f64; 2]> = None,
         /// The slope of the table, phi and the place of the contact point at the start.
@@ -92,6 +94,16 @@ options! {
 #[pyfunction]
 pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
     MotionAsked::NAMES
+}
+
+/// The law of restitution of this name.
+fn impact_law_of((name, tangential): &(String, f64)) -> PyResult<ImpactLaw> {
+    Ok(match name.as_str() {
+        "Newton" => ImpactLaw::Newton,
+        "Poisson" => ImpactLaw::Poisson,
+        "Walton" => ImpactLaw::Walton { tangential: *tangential },
+        other => return Err(PyValueError::new_err(format!("impact_law: no law of the name {other:?}"))),
+    })
 }
 
 impl MotionAsked {
@@ -122,6 +134,7 @@ impl MotionAsked {
             },
             beyond: self.beyond,
             restitution: self.restitution,
+            impact_law: self.impact_law.as_ref().map_or(Ok(ImpactLaw::Stronge), impact_law_of)?,
             face: Face::from_code(self.face).ok_or_else(|| PyValueError::new_err("face: an unknown kind"))?,
             slope: self.slope,
             turning: self.turning,

@@ -42,6 +42,7 @@ mod public;
 mod random_cups;
 mod references;
 mod resting;
+mod restitution;
 mod rounded_motions;
 mod several_held;
 mod slip;

@@ -20,6 +20,7 @@ from spincyl._input.numbers import Floats
 from spincyl._loss import LAWS
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, has_two_rims
+from spincyl._restitution import restitution_as_words
 from spincyl._scale import Scale
 from spincyl.studio.shape import kind, landing, reach, rotations, skin, tensor
 
@@ -33,6 +34,16 @@ _SYMBOLS = (
     " sign(0), and t/norm(t) of t = 0, is what keeps it 0, of at most the size 1."
 )
 _SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
+_RESTITUTION_IS = dict.fromkeys(
+    ("NoneType", "float", "int"),
+    "its square is the share of the work of compression that the normal force gives back (Stronge); null:"
+    " nothing strikes the table",
+) | {
+    "Newton": "the normal velocity after an impact is minus this times that before (Newton)",
+    "Poisson": "the normal impulse after compression is this times that of compression (Poisson)",
+    "Walton": "the normal velocity of the ball after an impact is minus this times that before, its slip minus"
+    " `tangential` times that before if that takes at most mu times the normal impulse (Walton)",
+}
 _ROLLS = "what keeps the contact point at rest; any coefficient from `needed` on does"
 _PATCH = (
     "-mu p(r) (u + (w.n) n x r)/|u + (w.n) n x r| per area of a disk of radius `patch`, and its moment"
@@ -214,9 +225,9 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         "point": [0.0, 0.0, 0.0],
         "normal": [0.0, 0.0, 1.0],
         "friction": friction,
-        "restitution": m._asked.restitution,
-        "restitution_is": "its square is the share of the work of compression that the normal force gives"
-        " back (Stronge); null: nothing strikes the table",
+        "restitution": None,
+        **restitution_as_words(m._asked.restitution),
+        "restitution_is": _RESTITUTION_IS.get(type(m._asked.restitution).__name__, _RESTITUTION_IS["float"]),
         "losses": losses,
         "symbols": _SYMBOLS,
     }

@@ -10,6 +10,7 @@ from spincyl._circles import CIRCLE_COLUMNS, FIELDS, columns_of_circles
 from spincyl._contact import AnyContact, Coulomb, Viscous
 from spincyl._input.numbers import Floats, Reals, components, floats, instance_of, optional_library
 from spincyl._loss import LAWS, Loss, Sum, marked_as_si
+from spincyl._restitution import restitution_from_words
 from spincyl._scale import Scale
 from spincyl._state import State
 from spincyl._table import Table
@@ -197,7 +198,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     known: Any = True if scale is None else scale
     found = _stones(given, scale) if stones else _body_and_start(given, scale)
     found |= {"t": rows["t"].to_numpy() if "t" in rows.coords else at["t"], "tol": at["tol"]}
-    found |= {name: at[name] for name in ("mu", "step", "restitution", "stop_at", "max_nfev") if name in at}
+    found |= {name: at[name] for name in ("mu", "step", "stop_at", "max_nfev") if name in at}
+    found |= {"restitution": restitution_from_words(at)} if "restitution" in at else {}
     found |= {name: bool(at[name]) for name in ("beyond", "errors") if name in at}
     if "contact_c" in given:
         found["contact"] = Viscous(given["contact_c"])._known(known)

@@ -41,6 +41,7 @@ from spincyl._loss import LAWS, Loss, checked_law
 from spincyl._lossy import warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction
+from spincyl._restitution import Restitution, check_restitution
 from spincyl._roll import is_stone
 from spincyl._state import State, numbers_without_slip, refuse_state_in_air
 from spincyl._table import Table
@@ -102,7 +103,7 @@ def roll(
     step: float | None = None,
     mu: float = np.inf,
     beyond: bool = False,
-    restitution: float | None = None,
+    restitution: Restitution | None = None,
     stop_at: Literal["rolling"] | None = None,
     losses: Loss | None = None,
     max_nfev: int | None = None,
@@ -355,7 +356,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
     if not has_friction(contact) and asked.stop_at is not None:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:
-        number("restitution", asked.restitution)  # its range is known to the core
+        check_restitution(asked.restitution)
     one_of("stop_at", asked.stop_at, (None, "rolling"))
     if has_friction(contact) or losses is not None or asked.restitution is not None:
         if asked.times[-1] < 0:

@@ -26,6 +26,7 @@ from spincyl._input.progress import Progress
 from spincyl._loss import LAWS, Loss
 from spincyl._lossy import losses_of_stone, warn_of_long_arm
 from spincyl._measured import natural_time
+from spincyl._restitution import Restitution, check_restitution
 from spincyl._state import refuse_state_in_air
 from spincyl._table import Table
 from spincyl.sweep._common import in_memory
@@ -50,7 +51,7 @@ def question(
     contact: AnyContact,
     tol: float,
     mu: float,
-    restitution: float | None,
+    restitution: Restitution | None,
     losses: Loss | None,
     max_nfev: int | None,
     table: Table | None,
@@ -70,7 +71,7 @@ def question(
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     else:
-        number("restitution", restitution)  # its range is known to the core
+        check_restitution(restitution)
     if not isinstance(contact, Coulomb | Viscous):
         code_of(contact, rubs=True)
         if states._slips and states.height is None:

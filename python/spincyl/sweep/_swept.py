@@ -14,6 +14,7 @@ from spincyl._input.progress import Progress, reporting_progress
 from spincyl._input.threads import thread_count
 from spincyl._measured import errors_in_seconds
 from spincyl._phases import has_friction
+from spincyl._restitution import restitution_as_words
 from spincyl._scale import Scale
 from spincyl.sweep._common import in_si, is_lazy, signature, sizes, to_si
 from spincyl.sweep._inputs import plain_inputs, with_inputs
@@ -69,7 +70,8 @@ def swept(
         attrs["face"] = asked.contact.face
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
     attrs |= {} if asked.errors else {"errors": 0}
-    more = {"restitution": asked.restitution, "stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
+    attrs |= restitution_as_words(asked.restitution)
+    more = {"stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
     attrs |= {name: x for name, x in more.items() if x is not None}
     told, unit = at, f"sqrt({length}/g)"
     if scale is not None:  # the times as the caller gave them

@@ -9,6 +9,7 @@
 
 use super::delassus::Delassus;
 use super::impact::ImpactCourse;
+use super::restitution::ImpactLaw;
 use crate::methods::search::crossing;
 
 impl ImpactCourse {
@@ -47,7 +48,16 @@ impl ImpactCourse {
         let stops = zeros(&lift, &turns);
         let e = self.e;
         let mut p = stops[0];
-        if e > 0.0 {
+        if self.law == ImpactLaw::Poisson {
+            p *= 1.0 + e;
+            if stops.len() == 3 && p > stops[1] {
+                p = (1.0 + e) * stops[2];
+            }
+        } else if self.law == ImpactLaw::Newton {
+            turns.retain(|&turn| turn > p);
+            turns.insert(0, p);
+            p = zeros(&|p: f64| lift(p) + e * first, &turns).first().copied().unwrap_or(p);
+        } else if e > 0.0 {
             let left = (1.0 - e) * (1.0 + e);
             let off = |p: f64, lowest: f64| work(p) - left * lowest;
             let first = work(stops[0]);

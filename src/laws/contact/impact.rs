@@ -18,12 +18,15 @@
 //! depends on the speed the same equations hold with the coefficient at the current speed, and steps follow them. Where
 //! friction presses the point down once more before restitution ends, W_c is the lowest work so far, so that a second
 //! compression is not given back whole. A patch of contact also drills ([`sliding`](super::sliding)).
+//! Other laws of [restitution](super::restitution) end the same impact elsewhere.
 //!
 //! Error: 1e-13 of the largest velocity; a test of `laws` compares with integration in the laboratory's axes.
 
 use super::delassus::{Delassus, speed};
+use super::restitution::ImpactLaw;
 use super::sliding::{
-    DRILLING, FIRST, ImpactSlip, LIFT, PatchedPoint, Roughness, SLIDING, STOPPED, SlipEnd, WORK,
+    DRILLING, FIRST, ImpactSlip, LIFT, PUSHED, PatchedPoint, Restored, Roughness, SLIDING, STOPPED, SlipEnd,
+    WORK,
 };
 use super::slip::Friction;
 use super::table::Table;
@@ -47,6 +50,8 @@ coded! {
         BothRims = 4,
         /// Its slip follows the drilling of the patch of contact.
         Creeps = 5,
+        /// The slip of a ball turns back, by tangential restitution.
+        TurnsBack = 6,
     }
 }
 
@@ -59,6 +64,8 @@ pub(crate) struct PointImpact {
     pub light: Delassus,
     /// The patch of contact; None for a point.
     pub patch: Option<PatchedPoint>,
+    /// The law of restitution.
+    pub law: ImpactLaw,
     /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and the factor by which the first step is
     /// longer.
     pub tol: f64,
@@ -118,22 +125,37 @@ pub(super) struct ImpactCourse {
     pub lift: f64,
     /// The work of the normal force in compression, or since its end.
     pub work: f64,
-    /// The work that restitution does from the end of compression on; None in compression.
-    restores: Option<f64>,
+    /// The end of restitution; None in compression.
+    restores: Option<Restored>,
+    /// The normal velocity before.
+    first: f64,
     pub e: f64,
+    pub law: ImpactLaw,
 }
 
 impl ImpactCourse {
     /// Ends compression.
     fn turns_round(&mut self) {
-        self.restores = Some(self.e * self.e * -self.work);
+        self.restores = Some(match self.law {
+            ImpactLaw::Newton => Restored::at(LIFT, self.e * -self.first),
+            ImpactLaw::Poisson => Restored::at(PUSHED, (1.0 + self.e) * self.impulse[2]),
+            _ => Restored::at(WORK, self.e * self.e * -self.work),
+        });
         (self.lift, self.work) = (0.0, 0.0);
     }
 
-    /// Ends another compression, with this work since the end of the first one: the lowest work so far counts.
+    /// Ends another compression, with this work since the end of the first one: the lowest work so far counts, or the whole
+    /// impulse.
     fn lowers(&mut self, work: f64) {
         let left = (1.0 - self.e) * (1.0 + self.e);
-        self.restores = self.restores.map(|restores| restores + left * work.min(0.0));
+        self.restores = self.restores.map(|Restored { number, value }| {
+            let value = match number {
+                WORK => value + left * work.min(0.0),
+                PUSHED => (1.0 + self.e) * self.impulse[2],
+                _ => value,
+            };
+            Restored { number, value }
+        });
     }
 
     /// Continues in a constant direction, in which the normal velocity grows at the rate `k`, for at most the normal
@@ -150,12 +172,23 @@ impl ImpactCourse {
             most -= end;
         }
         if self.lift < 0.0 && k > 0.0 && -self.lift <= k * most {
-            self.lowers(self.work - 0.5 * self.lift * self.lift / k);
+            let again = -self.lift / k;
+            self.moves(k, push, again);
+            most -= again;
+            self.lowers(self.work);
+            self.lift = 0.0;
         }
-        let left = self.restores.map_or(0.0, |work| work - self.work);
+        let Some(Restored { number, value }) = self.restores else { return false };
+        let left = value - self.work;
         let square = self.lift * self.lift + 2.0 * k * left;
         // Friction may press the body down again before the work is done.
-        let end = if square < 0.0 && most < f64::INFINITY {
+        let end = if number == PUSHED {
+            value - self.impulse[2]
+        } else if number == LIFT && (k > 0.0 || most < f64::INFINITY) {
+            if k > 0.0 { (value - self.lift) / k } else { f64::INFINITY }
+        } else if number == LIFT {
+            -self.lift / k
+        } else if square < 0.0 && most < f64::INFINITY {
             f64::INFINITY
         } else if self.lift > 0.0 {
             2.0 * left / (self.lift + square.max(0.0).sqrt())
@@ -164,6 +197,17 @@ impl ImpactCourse {
         };
         self.moves(k, push, end.min(most));
         end <= most
+    }
+
+    /// The whole impact of a ball whose slip turns back where friction grips it, by an impulse of at most mu times the normal
+    /// one.
+    fn ball(&mut self, slip: [f64; 2], light: &Delassus, mu: f64) -> Along {
+        let (p, [a, _]) = (-(1.0 + self.e) * self.lift / light.normal, light.level[0]);
+        let wanted = (1.0 + self.law.tangential()) / a;
+        let most = mu * p / speed(slip);
+        let push = slip.map(|u| -wanted.min(most) * u);
+        (self.impulse, self.lift) = ([push[0], push[1], p], -self.e * self.lift);
+        if wanted <= most { Along::Back } else { Along::Slip }
     }
 
     /// Adds the normal impulse `p` in a constant direction.
@@ -183,8 +227,21 @@ impl PointImpact {
     pub fn on(&self, table: &Table, e: f64, own: &impl SpeedLaw) -> Option<Struck> {
         let big = if self.lift < 0.0 { -self.lift } else { speed(self.slip) };
         let (lift, slip) = (self.lift / big, self.slip.map(|u| u / big));
-        let mut course = ImpactCourse { impulse: [0.0; 3], couple: 0.0, lift, work: 0.0, restores: None, e };
+        let law = self.law;
+        let mut course = ImpactCourse {
+            impulse: [0.0; 3],
+            couple: 0.0,
+            lift,
+            work: 0.0,
+            restores: None,
+            first: lift,
+            e,
+            law,
+        };
         let along = match *table {
+            Table::Rubs(Friction::Coulomb { mu, .. }) if law.turns_back() && speed(slip) > 0.0 => {
+                course.ball(slip, &self.light, mu)
+            }
             Table::Rolling { .. } => {
                 // The slip is stopped before the normal impulse begins.
                 let stops = self.light.pushes(slip.map(|u| -u));
@@ -243,6 +300,7 @@ impl PointImpact {
             Along::Slip => ([u, v], Hit::Slips),
             Along::Creep => ([u, v], Hit::Creeps),
             Along::Rest | Along::Held => ([0.0; 2], Hit::Sticks),
+            Along::Back => (self.slip.map(|u| 0.0 - law.tangential() * u), Hit::TurnsBack),
             // A slip that has stopped has no direction left but this one.
             Along::On([x, y]) => ([x, y].map(|to| to * (x * u + y * v)), Hit::SlipsOn),
             Along::Off => ([u, v], Hit::SlipsOn),
@@ -319,7 +377,7 @@ impl PointImpact {
             };
             let flown = flow.run(flow.place(y), steps, &[f64::INFINITY], &mut |_| (), &mut || true);
             (y, first) = (flown.y, flown.step);
-            [course.lift, course.work] = [y[LIFT], y[WORK]];
+            [course.lift, course.work, course.impulse[2]] = [y[LIFT], y[WORK], y[PUSHED]];
             match flown.halt {
                 SlipEnd::Over if flow.restores.is_some() => done = true,
                 SlipEnd::Over if again.take().is_some() => {
@@ -328,7 +386,8 @@ impl PointImpact {
                 }
                 SlipEnd::Over => {
                     course.turns_round();
-                    (flow.restores, y[LIFT], y[WORK], done) = (course.restores, 0.0, 0.0, course.e == 0.0);
+                    (flow.restores, y[LIFT], y[WORK]) = (course.restores, 0.0, 0.0);
+                    done = flow.restores.is_some_and(|restored| restored.left(&y) <= 0.0);
                 }
                 SlipEnd::Falls => again = flow.restores.take(),
                 SlipEnd::Straight => {}
@@ -370,6 +429,8 @@ enum Along {
     Held,
     /// They have stopped, and friction cannot hold both.
     Off,
+    /// The slip of a ball that is gripped turns back.
+    Back,
     /// It slips on along this direction.
     On([f64; 2]),
 }
@@ -387,7 +448,15 @@ mod tests {
     };
 
     fn struck(light: Delassus, slip: [f64; 2], mu: f64, e: f64) -> Struck {
-        let impact = PointImpact { slip, lift: -1.0, light, patch: None, tol: 3e-14, longer: 1.0 };
+        let impact = PointImpact {
+            slip,
+            lift: -1.0,
+            light,
+            patch: None,
+            law: ImpactLaw::Stronge,
+            tol: 3e-14,
+            longer: 1.0,
+        };
         impact.on(&Friction::coulomb(mu).into(), e, &()).unwrap()
     }
 
@@ -448,7 +517,15 @@ mod tests {
     };
 
     fn on_patch(light: Delassus, patch: PatchedPoint, slip: [f64; 2], mu: f64, e: f64) -> Struck {
-        let impact = PointImpact { slip, lift: -1.0, light, patch: Some(patch), tol: 3e-14, longer: 1.0 };
+        let impact = PointImpact {
+            slip,
+            lift: -1.0,
+            light,
+            patch: Some(patch),
+            law: ImpactLaw::Stronge,
+            tol: 3e-14,
+            longer: 1.0,
+        };
         impact.on(&Friction::Coulomb { mu, fixed: mu, patch: patch.radius }.into(), e, &()).unwrap()
     }
 
@@ -568,7 +645,15 @@ mod tests {
                 _ => Table::Smooth,
             };
             let slip = [is("u1"), is("u2")];
-            let impact = PointImpact { slip, lift: is("u3"), light, patch, tol: 3e-14, longer: 1.0 };
+            let impact = PointImpact {
+                slip,
+                lift: is("u3"),
+                light,
+                patch,
+                law: ImpactLaw::Stronge,
+                tol: 3e-14,
+                longer: 1.0,
+            };
             let found = impact.on(&table, is("e"), &()).unwrap();
             let [p, q, n] = found.impulse;
             let pairs = [

@@ -19,6 +19,7 @@ pub mod lossy;
 pub(crate) mod lying;
 pub mod patch;
 pub(crate) mod reduced;
+pub(crate) mod restitution;
 pub mod rolling;
 pub(crate) mod sliding;
 pub mod slip;
@@ -34,6 +35,7 @@ use super::state::State;
 use crate::numbers::Real;
 pub use face::{Face, end_ratio};
 use reduced::{Rates, Reduced};
+pub use restitution::ImpactLaw;
 pub use slip::Friction;
 pub use table::{Table, TableKind};
 

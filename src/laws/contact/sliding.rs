@@ -56,7 +56,7 @@ pub(super) const LIFT: usize = 3;
 const P_1: usize = 4;
 const P_2: usize = 5;
 const COUPLE: usize = 6;
-const PUSHED: usize = 7;
+pub(super) const PUSHED: usize = 7;
 pub(super) const WORK: usize = 8;
 /// The number of these numbers.
 pub(super) const SLIDING: usize = 9;
@@ -93,6 +93,24 @@ pub(super) enum SlipEnd {
     GivenUp,
 }
 
+/// The end of an impact: where one of the numbers of the slip has this value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Restored {
+    pub number: usize,
+    pub value: f64,
+}
+
+impl Restored {
+    pub fn at(number: usize, value: f64) -> Self {
+        Self { number, value }
+    }
+
+    /// What is left up to it.
+    pub fn left<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        self.value - y[self.number]
+    }
+}
+
 /// The coefficient of friction: constant, or a function of the speed.
 #[derive(Clone, Copy)]
 pub(super) struct Roughness<'a> {
@@ -112,8 +130,8 @@ pub(super) struct ImpactSlip<'a> {
     pub light: Delassus,
     pub rubs: Roughness<'a>,
     pub patch: Option<PatchedPoint>,
-    /// The work that is restored from the end of compression on; None in compression.
-    pub restores: Option<f64>,
+    /// The end of restitution; None in compression.
+    pub restores: Option<Restored>,
     pub tol: f64,
 }
 
@@ -331,10 +349,9 @@ impl Flow<2> for ImpactSlip<'_> {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
-        let [falls, rises] = if self.restores.is_none() {
-            [place.rate[LIFT], 0.0]
-        } else {
-            [place.rate[WORK], place.rate[LIFT]]
+        let [falls, rises] = match self.restores {
+            None => [place.rate[LIFT], 0.0],
+            Some(restored) => [place.rate[restored.number], place.rate[LIFT]],
         };
         let [over, up] = [0, 1].map(|i| self.margin(&place.y, i));
         [Dual { value: over, slope: -falls }, Dual { value: up, slope: rises }]
@@ -343,7 +360,7 @@ impl Flow<2> for ImpactSlip<'_> {
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         match (self.restores, i) {
             (None, 0) => -y[LIFT],
-            (Some(work), 0) => work - y[WORK],
+            (Some(restored), 0) => restored.left(y),
             (Some(_), _) => y[LIFT] + BARELY_DOWN,
             _ => 1.0,
         }

@@ -10,7 +10,7 @@ pub(crate) mod sample;
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
-use crate::laws::contact::{Face, Table};
+use crate::laws::contact::{Face, ImpactLaw, Table};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
@@ -68,6 +68,9 @@ pub struct Ask {
     /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims. A stone
     /// ends at its edge, and a body on a patch of contact where a face or its other rim lands.
     pub restitution: Option<f64>,
+    /// The law whose coefficient the restitution is.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub impact_law: ImpactLaw,
     /// How the table presses on a face on which the body stands.
     pub face: Face,
     /// The slope of the table, between -pi/2 and pi/2: x points downhill.
@@ -125,6 +128,12 @@ impl Ask {
     #[must_use]
     pub fn with_restitution(self, restitution: impl Into<Option<f64>>) -> Self {
         Self { restitution: restitution.into(), ..self }
+    }
+
+    /// Returns these options with this law of restitution.
+    #[must_use]
+    pub fn with_impact_law(self, impact_law: ImpactLaw) -> Self {
+        Self { impact_law, ..self }
     }
 
     /// Returns these options with this pressure on a face.

@@ -167,6 +167,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     ask.table.check()?;
     ask.losses.check_for(body)?;
     check_patch(ask)?;
+    ask.impact_law.check(body.is_uniform_ball(), &ask.table)?;
     let fine = check_flow(ask)?;
     let drills = ask.losses.coefficient(Law::Drilling) != 0.0 && ask.restitution.is_some();
     if ask.slope != 0.0 && drills && body.theta_end() < PI {

@@ -9,11 +9,11 @@ use super::face::ALMOST_FLAT;
 use super::fly::Aloft;
 use super::own::Own;
 use crate::laws::body::Rim;
-use crate::laws::contact::impact::{Hit, Struck, lightness, patched, turned};
+use crate::laws::contact::impact::{Hit, PointImpact, Struck, lightness, patched, turned};
 use crate::laws::contact::landing::{Landed, Outcome, bounced, land_at, settled};
 use crate::laws::contact::sliding::PatchedPoint;
 use crate::laws::contact::slip::Friction;
-use crate::laws::contact::{FLAT, Table};
+use crate::laws::contact::{FLAT, ImpactLaw, Table};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::newton;
 use crate::laws::state::State;
@@ -141,7 +141,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let left = self.bounces(&from, &struck, force, e);
         self.claims(left.map_or(0.0, |left| left * self.couple_bound(&from, force)));
         let (stays, bounce) = (left.is_some(), struck.lift);
-        if stays && let Some(last) = self.impact(&from, 0.0) {
+        // A slip that turns back more and more slowly has stopped after all of them.
+        if stays && let Some(last) = self.impact_under(ImpactLaw::Stronge, &from, 0.0) {
+            if self.ask.impact_law.tangential() == 1.0 {
+                self.claims(from.slip[0].hypot(from.slip[1]));
+            }
             struck = last;
         }
         let after = self.struck(&from, &struck, (self.made.path.view.over, stays));
@@ -178,14 +182,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         law.patch().map(|radius| patched(&law.shape, angle, radius, self.of.slide.drills(angle, w[0], w[2])))
     }
 
-    /// Whether the motion ends where a second circle or a face lands: what a table that turns, or a patch, does there has
-    /// no law.
+    /// Whether the motion ends where a second circle or a face lands: what a table that turns, a patch, or another law of
+    /// restitution does there has no law.
     pub(super) fn has_one_contact(&self) -> bool {
-        self.of.turning != 0.0 || self.of.slide.law.patch().is_some()
+        let other =
+            self.ask.impact_law != ImpactLaw::Stronge && self.ask.restitution.is_some_and(|e| e > 0.0);
+        self.of.turning != 0.0 || self.of.slide.law.patch().is_some() || other
     }
 
     /// The impact at these numbers; None for a rolling contact without a solution.
     pub(super) fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
+        self.impact_under(self.ask.impact_law, from, e)
+    }
+
+    fn impact_under(&self, impact_law: ImpactLaw, from: &Aloft, e: f64) -> Option<Struck> {
         if self.of.uniform && from.slip == [0.0; 2] {
             return Some(self.rebounds(from.lift, e));
         }
@@ -196,7 +206,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let patch = self.patched(from.angle, from.w);
         let point = self.point_impact((from.slip, from.lift), (light, patch), &self.of.own);
-        point.on(&self.ask.table, e, &self.of.own)
+        PointImpact { law: impact_law, ..point }.on(&self.ask.table, e, &self.of.own)
     }
 
     /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
@@ -240,8 +250,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(super) fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
-        // No impact gains energy.
-        self.claims(-struck.lost);
+        self.claims_no_gain(struck.lost);
         self.records([from, &after], other, struck.hit, (struck.impulse, struck.lost), stays);
         self.made.path.impacts.iter_mut().last().into_iter().for_each(|last| last.couple = struck.couple);
         after

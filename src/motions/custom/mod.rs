@@ -200,6 +200,9 @@ pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error>
         let expected = "0 together with a user-defined law of friction";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
+    if ask.impact_law.turns_back() && custom.friction.is_some() {
+        return refuse("tangential", ask.impact_law.tangential());
+    }
     if ask.beyond {
         return refuse("beyond", 1.0);
     }

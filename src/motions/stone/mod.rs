@@ -59,6 +59,7 @@ pub(crate) fn check_stone(
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
     }
+    ask.impact_law.check(false, &ask.table)?;
     let fine = check_flow(ask)?;
     if let Some(&value) = times.last().filter(|t| **t < time) {
         let expected =

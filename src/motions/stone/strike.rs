@@ -262,8 +262,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
     fn struck(&mut self, from: &StoneAloft<N>, struck: &Struck, stays: bool) -> StoneAloft<N> {
         let &Struck { hit, impulse, couple, lost, .. } = struck;
         let after = self.after(from, struck);
-        // No impact gains energy.
-        self.claims(-lost);
+        self.claims_no_gain(lost);
         let time = self.t0 + self.at[TIME];
         let velocities = [from, &after].map(|at| {
             let [u, v] = output_slip(&at.y);

@@ -11,11 +11,11 @@
 use super::numbers::lost;
 use super::two_runs::CHANCE;
 use super::{Next, Phases, Walk};
-use crate::laws::contact::Table;
 use crate::laws::contact::delassus::Delassus;
 use crate::laws::contact::impact::{Hit, PointImpact, Struck};
 use crate::laws::contact::landing::REVERSES;
 use crate::laws::contact::sliding::PatchedPoint;
+use crate::laws::contact::{ImpactLaw, Table};
 use crate::laws::custom::SpeedLaw;
 use crate::motions::{Ending, Kind, Method, Moving};
 
@@ -113,7 +113,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         let tol = (IMPACT_SHARE * fine).clamp(IMPACT_TOL[0], IMPACT_TOL[1]);
         // A law of the user need not be smooth.
         let tol = if own.varies() { OWN_IMPACT_TOL * fine } else { tol };
-        PointImpact { slip, lift, light, patch, tol: tol * rougher, longer }
+        PointImpact { slip, lift, light, patch, law: self.ask.impact_law, tol: tol * rougher, longer }
     }
 
     /// The time of all bounces after an impact, if they are over so soon that they are summed. `rates` are those of the
@@ -227,6 +227,13 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         let leaves = if free < -ROUNDED * size { 2 } else { 3 };
         self.hops.takeoff = Takeoff { leaves: Some(leaves), ..Takeoff::default() };
         Next::Own(Kind::Flying)
+    }
+
+    /// Claims the energy that an impact has gained by its rounding errors: only other laws than Stronge's gain any.
+    pub fn claims_no_gain(&mut self, lost: f64) {
+        if self.ask.impact_law == ImpactLaw::Stronge {
+            self.claims(-lost);
+        }
     }
 
     /// The contact that begins where the normal velocity is zero.

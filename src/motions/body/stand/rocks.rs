@@ -58,6 +58,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.lies_on_face();
             return self.stands_on_face();
         }
+        if self.has_one_contact() {
+            return Next::Ends(Ending::Face);
+        }
         let e = self.ask.restitution.unwrap_or(0.0);
         let planar = self.at[W1] == 0.0 && self.at[W3] == 0.0 && self.at[U2] == 0.0;
         if e > 0.0 && planar && falls * self.of.body.rim() > LAST_RATTLE {

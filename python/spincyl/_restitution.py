@@ -1,0 +1,161 @@
+"""Laws of restitution of an impact, for comparison with programs that have another one than Stronge's."""
+
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
+
+from spincyl._input.equality import compared_by_value
+from spincyl._input.numbers import in_range, number
+from spincyl._input.reprs import repr_of_call
+
+
+class GainWarning(UserWarning):
+    """An impact has gained energy, by a law of restitution that allows it."""
+
+
+class _ImpactLaw:
+    """Base of the laws: all of their numbers are from 0 to 1."""
+
+    e: float
+
+    def __post_init__(self) -> None:
+        for name in (x.name for x in fields(self)):  # type: ignore[arg-type]
+            object.__setattr__(self, name, in_range(name, getattr(self, name), 0.0, 1.0))
+
+    def __repr__(self) -> str:
+        first, *more = (x.name for x in fields(self))  # type: ignore[arg-type]
+        named = {name: getattr(self, name) for name in more}
+        return repr_of_call(type(self).__name__, getattr(self, first), **named)
+
+
+@compared_by_value
+@dataclass(frozen=True, eq=False, repr=False)
+class Newton(_ImpactLaw):
+    """Newton's law of restitution, for `restitution=`: the normal velocity after an impact is -e times that before.
+
+    Programs that compute impacts often have this law. Where friction turns or stops the slip it may give energy
+    to the body [1]_; such an impact has `Impact.gained` > 0, and `roll` warns once. A body under this law ends
+    where a second circle or a face lands.
+
+    Parameters
+    ----------
+    e : float
+        Coefficient of restitution, 0 to 1.
+
+    References
+    ----------
+    .. [1] T. R. Kane and D. A. Levinson, *Dynamics: Theory and Applications* (McGraw-Hill, 1985); W. J. Stronge,
+       Proc. R. Soc. A 431, 169 (1990).
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> tube = sc.Body.tube(1.0)
+    >>> start = sc.dropped(tube, 1.0, 1.0)
+    >>> law, contact = sc.Newton(0.5), sc.Coulomb(0.3)
+    >>> hit = sc.roll(tube, start, 1.5, contact=contact, restitution=law).impacts[0]
+    >>> round(-hit.after.lift / hit.before.lift, 12)
+    0.5
+    """
+
+    e: float
+
+
+@compared_by_value
+@dataclass(frozen=True, eq=False, repr=False)
+class Poisson(_ImpactLaw):
+    """Poisson's law of restitution, for `restitution=`: the normal impulse after compression is e times that of it.
+
+    Compression ends where the normal velocity is zero; if friction presses the point down once more, at the last
+    zero. Everything else is as under `Newton`.
+
+    Parameters
+    ----------
+    e : float
+        Coefficient of restitution, 0 to 1.
+
+    Examples
+    --------
+    >>> import spincyl as sc
+    >>> sc.Poisson(0.5)
+    Poisson(0.5)
+    """
+
+    e: float
+
+
+@compared_by_value
+@dataclass(frozen=True, eq=False, repr=False)
+class Walton(_ImpactLaw):
+    """Restitution of a ball that also turns its slip back, for `restitution=`: a superball, a table tennis ball.
+
+    The normal velocity after an impact is -e times that before. The slip becomes -`tangential` times that before,
+    if the friction that this takes is at most mu times the normal impulse; otherwise the ball slips throughout
+    [1]_ [2]_ [3]_. The ball has equal moments of inertia, and the contact is Coulomb friction at a point.
+
+    Parameters
+    ----------
+    e : float
+        Coefficient of restitution, 0 to 1.
+    tangential : float
+        Coefficient of tangential restitution, 0 (the slip stops, as without this law) to 1 (a perfect superball).
+
+    References
+    ----------
+    .. [1] R. L. Garwin, Am. J. Phys. 37, 88 (1969).
+    .. [2] O. R. Walton and R. L. Braun, J. Rheol. 30, 949 (1986).
+    .. [3] R. Cross, Am. J. Phys. 70, 1093 (2002).
+
+    Examples
+    --------
+    A superball that is thrown without spin leaves with a slip that is turned back:
+
+    >>> import spincyl as sc
+    >>> ball = sc.Body.ball(0.0, 0.4, 0.4)
+    >>> start = sc.State(1.0, 0.0, 0.0, 0.0, slip=(0.5, 0.0), height=2.0, lift=0.0)
+    >>> m = sc.roll(ball, start, 2.5, contact=sc.Coulomb(1.0), restitution=sc.Walton(1.0, tangential=1.0))
+    >>> hit = m.impacts[0]
+    >>> hit.kind, round(hit.after.slip[0], 12), abs(hit.lost) < 1e-14
+    ('turns back', -0.5, True)
+    """
+
+    e: float
+    tangential: float
+
+
+#: What `restitution=` takes: the coefficient of Stronge's law, or another law.
+Restitution: TypeAlias = float | Newton | Poisson | Walton
+
+
+def check_restitution(restitution: object) -> None:
+    """Raise TypeError for what is neither a number nor a law; the range of a number is known to the core."""
+    if not isinstance(restitution, _ImpactLaw):
+        number("restitution", restitution)
+
+
+def coefficient_of(restitution: Any) -> float | None:
+    """The coefficient of normal restitution; None for none."""
+    return restitution.e if isinstance(restitution, _ImpactLaw) else restitution
+
+
+def restitution_for_core(restitution: Any) -> dict[str, Any]:
+    """The options of the core for a law of restitution."""
+    if not isinstance(restitution, _ImpactLaw):
+        return {"restitution": float(restitution)}
+    law = type(restitution).__name__, getattr(restitution, "tangential", 0.0)
+    return {"restitution": restitution.e, "impact_law": law}
+
+
+def restitution_as_words(restitution: Any) -> dict[str, float | str]:
+    """The law as plain numbers and words, by name, for an attribute of a file."""
+    if restitution is None or not isinstance(restitution, _ImpactLaw):
+        return {} if restitution is None else {"restitution": restitution}
+    more = {"tangential": restitution.tangential} if isinstance(restitution, Walton) else {}
+    return {"restitution": restitution.e, "impact_law": type(restitution).__name__} | more
+
+
+def restitution_from_words(words: Any) -> Restitution:
+    """The law that such an attribute tells."""
+    laws: dict[str, Any] = {law.__name__: law for law in (Newton, Poisson, Walton)}
+    more = {"tangential": words["tangential"]} if "tangential" in words else {}
+    law = laws.get(words.get("impact_law", ""))
+    return words["restitution"] if law is None else law(words["restitution"], **more)  # type: ignore[no-any-return]
