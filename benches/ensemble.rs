@@ -77,7 +77,7 @@ fn ensembles(c: &mut Criterion) {
         bench(&format!("final state, kick {kick}"), many(kick), job, COUNT);
     }
     bench("final state, kick 0.05, one body", one(0.05), job, COUNT);
-    bench("final state, kick 0.05, within 1e-6", many(0.05), Job { tol: 1e-6, ..job }, COUNT);
+    bench("final state, kick 0.05, within 1e-6", many(0.05), job.with_tol(1e-6), COUNT);
     bench(
         "final state, kick 0.05, its end watched",
         many(0.05),

@@ -200,6 +200,7 @@ fn numbers_of(table: Table) -> [f64; 4] {
         Table::Smooth => [1.0, 0.0, 0.0, 0.0],
         Table::Rubs(Friction::Coulomb { mu, fixed, patch }) => [2.0, mu, fixed, patch],
         Table::Rubs(Friction::Viscous { c }) => [3.0, c, 0.0, 0.0],
+        _ => [f64::NAN; 4],
     }
 }
 

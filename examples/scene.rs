@@ -96,13 +96,7 @@ pub fn scene(tube: &Tube, mu: f64, restitution: f64, motion: &MeasuredMotion) ->
 
 /// The scene of a tube that is thrown.
 pub fn thrown() -> Result<(MeasuredMotion, Value), Error> {
-    let tube = Tube {
-        outer_diameter: 15.875e-3,
-        inner_diameter: 12.7e-3,
-        length: 95.25e-3,
-        mass: 20e-3,
-        ..Tube::default()
-    };
+    let tube = Tube::solid(15.875e-3, 95.25e-3, 20e-3).with_inner_diameter(12.7e-3);
     let (pipe, mu, restitution) = (Measured::tube(&tube)?, 0.3, 0.5);
     let scale = pipe.scale();
     // It leans by 80 degrees, turns by 20 rad/s about the vertical and by 30 about its axis, 5 mm above the table.

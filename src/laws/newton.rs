@@ -24,6 +24,7 @@ use nalgebra::Vector3;
 /// The contact force, in units of the weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Force {
     /// The vertical component N.
     pub normal: f64,
@@ -34,6 +35,11 @@ pub struct Force {
 }
 
 impl Force {
+    /// The force with these components.
+    pub fn new(normal: f64, along: f64, across: f64) -> Self {
+        Self { normal, along, across }
+    }
+
     /// The friction that acts, as the magnitude of the horizontal force.
     pub fn friction(&self) -> f64 {
         self.along.hypot(self.across)

@@ -86,6 +86,7 @@ pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
 /// Orientation and position of a body in a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Pose {
     /// Precession angle since time 0.
     pub phi: Angle,
@@ -95,6 +96,13 @@ pub struct Pose {
     pub contact_point: Point2<f64>,
     /// Height of the lowest point of the rim above the table, in R; 0 on the table.
     pub height: f64,
+}
+
+impl Pose {
+    /// The pose with these angles, this contact point and this height.
+    pub fn new(phi: Angle, psi: Angle, contact_point: Point2<f64>, height: f64) -> Self {
+        Self { phi, psi, contact_point, height }
+    }
 }
 
 impl State {

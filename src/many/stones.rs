@@ -20,6 +20,7 @@ use std::sync::OnceLock;
 /// The numbers of one motion: its stone, initial state and slip, and its own coefficients of friction and
 /// losses, if any.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct StoneRow {
     /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
     pub stone: [f64; 13],
@@ -40,6 +41,7 @@ pub struct StoneRow {
 
 /// The result of one motion of many.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct StoneSummary {
     /// The status: the code of an [`Ending`].
     pub status: u8,

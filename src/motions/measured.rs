@@ -32,6 +32,7 @@ use nalgebra::{Point3, UnitQuaternion, Vector3};
     derive(serde::Serialize, serde::Deserialize),
     serde(default, deny_unknown_fields)
 )]
+#[non_exhaustive]
 pub struct Tube {
     /// Outer diameter, in metres.
     pub outer_diameter: f64,
@@ -61,9 +62,53 @@ impl Default for Tube {
     }
 }
 
+impl Tube {
+    /// A solid cylinder of this outer diameter, length and mass, in metres and kilograms, on the Earth.
+    pub fn solid(outer_diameter: f64, length: f64, mass: f64) -> Self {
+        Self { outer_diameter, length, mass, ..Self::default() }
+    }
+
+    /// Returns this tube with this outer diameter, in metres.
+    #[must_use]
+    pub fn with_outer_diameter(self, outer_diameter: f64) -> Self {
+        Self { outer_diameter, ..self }
+    }
+
+    /// Returns this tube with this inner diameter, in metres.
+    #[must_use]
+    pub fn with_inner_diameter(self, inner_diameter: f64) -> Self {
+        Self { inner_diameter, ..self }
+    }
+
+    /// Returns this tube with this length, in metres.
+    #[must_use]
+    pub fn with_length(self, length: f64) -> Self {
+        Self { length, ..self }
+    }
+
+    /// Returns this tube with this radius of the outer edges, in metres.
+    #[must_use]
+    pub fn with_fillet(self, fillet: f64) -> Self {
+        Self { fillet, ..self }
+    }
+
+    /// Returns this tube with this mass, in kilograms.
+    #[must_use]
+    pub fn with_mass(self, mass: f64) -> Self {
+        Self { mass, ..self }
+    }
+
+    /// Returns this tube with this acceleration of gravity, in m/s^2.
+    #[must_use]
+    pub fn with_gravity(self, gravity: f64) -> Self {
+        Self { gravity, ..self }
+    }
+}
+
 /// A body with a size and a mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct Measured {
     body: Body,
     scale: Scale,
@@ -100,6 +145,7 @@ pub struct Reading {
 /// A motion of a measured body.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct MeasuredMotion {
     /// The motion in natural units.
     pub natural: Motion,

@@ -34,6 +34,7 @@ const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 
 /// The two modes of rocking of a stone that spins upright, the slower one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Rocking {
     /// The rate at which each mode grows (the larger one of two real rates), in sqrt(g/a).
     pub growth: [f64; 2],

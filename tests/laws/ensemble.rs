@@ -72,7 +72,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
     for r in motions().into_iter().filter(|r| r.kind == "state") {
         for tol in [1e-6, 1e-10, 1e-13] {
             let times = [r.t];
-            let job = Job { ask: Ask::on(r.contact).with_beyond(true), tol, ..Job::new(&times) };
+            let job = Job::new(&times).with_ask(Ask::on(r.contact).with_beyond(true)).with_tol(tol);
             let many = Many::of(&[(r.body, r.start)]).run(&job, 1);
             let off = distance(&many.last(0), &r.values);
             assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
@@ -91,7 +91,7 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
     for (all, least) in [(kicked(drawn(1000)), drawn(700)), (kicked_rounded(drawn(600)), drawn(300))] {
         for (contact, tol) in BOTH.into_iter().flat_map(|of| [1e-6, 1e-11, 1e-13].map(|tol| (of, tol))) {
             let many = Many::of(&all)
-                .run(&Job { ask: Ask::on(contact).with_beyond(true), tol, ..Job::new(&times) }, 2);
+                .run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)).with_tol(tol), 2);
             let mut lanes = 0;
             for (i, (body, start)) in all.iter().enumerate() {
                 let in_lanes = many.method[i] == Answer::Lanes as u8;
@@ -332,7 +332,7 @@ fn what_makes_no_sense_is_refused_or_marked() {
     };
     assert!(refused(&Job::new(&[])).contains("at least one time"));
     assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
-    assert!(refused(&Job { tol: 0.0, ..Job::new(&times) }).starts_with("tol = 0.0"));
+    assert!(refused(&Job::new(&times).with_tol(0.0)).starts_with("tol = 0.0"));
     for (ask, name) in [
         (Ask::default().with_slope(0.2), "slope = 0.2"),
         (Ask::on(Table::Rolling { mu: 0.3 }).with_slope(1e-300), "slope = "),

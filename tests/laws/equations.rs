@@ -36,7 +36,7 @@ fn sizes(contact: Contact, body: &Body, y: &State) -> Sizes {
                 force: [1.0 + lever[1] * tilting + slope[1] * w2 * w2, along, across],
             }
         }
-        Contact::Smooth => {
+        _ => {
             let turning = i1 * ct * w1 * w1 + i3 * w1 * w3;
             let tilting = (turning + lever[1] * (1.0 + slope[1] * w2 * w2)) / (i1 + lever[0] * lever[0]);
             Sizes {
@@ -204,7 +204,7 @@ proptest! {
                     let sized = radius * size[2] + deep * size[0] + bends;
                     powers.push((speed * change, large * sized));
                 }
-                Contact::Smooth => {
+                _ => {
                     powers.push((lever[0] * lever[0] * y.w2 * dy.w2, lever[1] * lever[1] * y.w2 * size[1]));
                     powers.push((-lever[0] * slope[0] * y.w2.powi(3), lever[1] * slope[1] * y.w2.powi(3)));
                 }

@@ -61,9 +61,7 @@ fn a_body_from_a_file_has_passed_its_checks() {
         assert!(said.contains(why), "{said}");
     }
     assert!(refused::<Scale>(json!({"radius": 0.0, "mass": 1.0, "gravity": 9.8})).contains("radius = 0.0"));
-    let tube = to_string(
-        &Measured::tube(&Tube { outer_diameter: 1.0, length: 1.0, mass: 1.0, ..Tube::default() }).unwrap(),
-    );
+    let tube = to_string(&Measured::tube(&Tube::solid(1.0, 1.0, 1.0)).unwrap());
     let without = tube.unwrap().replace("\"mass\":1.0", "\"mass\":-1.0");
     assert!(from_str::<Measured>(&without).unwrap_err().to_string().contains("mass = -1.0"));
 }
@@ -183,7 +181,7 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
     }
     let file = r#"{"table": {"Rubs": {"Coulomb": {"mu": 0.3, "fixed": 0.3, "patch": 0.0, "pathc": 0.05}}}}"#;
     assert!(from_str::<Ask>(file).unwrap_err().to_string().contains("unknown field `pathc`"));
-    let tube = Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() };
+    let tube = Tube::solid(24e-3, 2e-3, 8e-3);
     let coin = Measured::tube(&tube).unwrap();
     objects += every_name_counts(&tube) + every_name_counts(&coin);
     objects += every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft([0.5, 0.0]));
@@ -247,8 +245,7 @@ fn motions_come_back_whole() {
     let ask = Ask::default().with_pose(true).with_force(true);
     same(&stone::roll(&half, half.spinning(-0.5, 1e-3, 1e-3), &times, &ask, || true).unwrap().unwrap());
     comes_back(StoneState::spinning(1.0, 0.1, 0.2));
-    let coin =
-        Measured::tube(&Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() }).unwrap();
+    let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3)).unwrap();
     let motion = coin.roll(steady::state(coin.body(), 1.2).unwrap(), &[0.0, 0.1], &Ask::default(), || true);
     let motion = motion.unwrap().unwrap();
     same(&motion);

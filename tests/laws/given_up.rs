@@ -209,7 +209,7 @@ fn a_sweep_gives_up_where_a_single_motion_does() {
         let (mut error, mut end) = (vec![0.0; w3.len()], vec![0.0; w3.len()]);
         let (mut method, mut status) = (vec![0; w3.len()], vec![0; w3.len()]);
         let kind = if table == Table::Smooth { TableKind::Smooth } else { TableKind::Rolling };
-        let job = Job { ask: Ask::on(kind).with_max_evaluations(most), tol: 1e-13, ..Job::new(&[60.0]) };
+        let job = Job::new(&[60.0]).with_ask(Ask::on(kind).with_max_evaluations(most)).with_tol(1e-13);
         let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
         out.summary[Summary::End as usize] = Some(&mut end);
         assert!(roll(&starts, &job, out, 1, |_| true).unwrap());

@@ -67,7 +67,7 @@ fn kappa_is_right_to_16_ulp_of_its_terms_and_their_conditioning() {
         for (contact, kappa) in r.kappa {
             let inertia = match contact {
                 Contact::Rolling => r.body.i1() + 1.0 + ell * ell,
-                Contact::Smooth => r.body.i1() + n * n,
+                _ => r.body.i1() + n * n,
             };
             let largest = kappa.abs().max((ell * c + s) / inertia);
             let error = (at_rest(&r.body, r.theta, contact) - kappa).abs() / (largest * ULP * condition);

@@ -233,7 +233,7 @@ proptest! {
 fn contact_energy(contact: Contact, body: &Body, y: &State) -> f64 {
     match contact {
         Contact::Rolling => spincyl::rolling::energy(body, y),
-        Contact::Smooth => spincyl::smooth::energy(body, y),
+        _ => spincyl::smooth::energy(body, y),
     }
 }
 

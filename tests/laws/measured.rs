@@ -8,7 +8,7 @@ use spincyl::{Body, Error, Scale, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
 fn coin() -> Tube {
-    Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() }
+    Tube::solid(24e-3, 2e-3, 8e-3)
 }
 
 fn name(found: Result<Measured, Error>) -> String {
@@ -38,7 +38,7 @@ fn a_dropped_coin_falls_by_half_g_t_squared() {
 
 #[test]
 fn a_hoop_that_rolls_has_the_speed_of_its_rim_and_carries_its_weight() {
-    let hoop = Tube { outer_diameter: 0.8, inner_diameter: 0.8, mass: 1.5, ..Tube::default() };
+    let hoop = Tube::solid(0.8, 0.0, 1.5).with_inner_diameter(0.8);
     let hoop = Measured::tube(&hoop).unwrap();
     let spin = hoop.scale().angular_velocity(5.0); // rad/s
     let motion =
@@ -110,17 +110,14 @@ fn moments_in_the_wrong_unit_are_refused_by_name() {
 fn a_tube_without_measures_is_refused_by_name() {
     for (tube, named) in [
         (Tube::default(), "outer_diameter = 0.0"),
-        (Tube { mass: 0.0, ..coin() }, "mass = 0.0"),
-        (Tube { gravity: -9.8, ..coin() }, "gravity = -9.8"),
-        (
-            Tube { outer_diameter: 24.0, length: 2.0, ..coin() },
-            "mass = 0.008: expected kilograms, 0.01 kg/m^3",
-        ),
-        (Tube { outer_diameter: 24.0, length: 2.0, mass: 1.0, ..coin() }, "mass = 1.0"),
-        (Tube { mass: f64::NAN, ..coin() }, "mass = NaN"),
-        (Tube { inner_diameter: 25e-3, ..coin() }, "inner_diameter = 0.025"),
-        (Tube { length: f64::NAN, ..coin() }, "length = NaN"),
-        (Tube { outer_diameter: 1e-300, ..coin() }, "ell = 2e297"),
+        (coin().with_mass(0.0), "mass = 0.0"),
+        (coin().with_gravity(-9.8), "gravity = -9.8"),
+        (coin().with_outer_diameter(24.0).with_length(2.0), "mass = 0.008: expected kilograms, 0.01 kg/m^3"),
+        (coin().with_outer_diameter(24.0).with_length(2.0).with_mass(1.0), "mass = 1.0"),
+        (coin().with_mass(f64::NAN), "mass = NaN"),
+        (coin().with_inner_diameter(25e-3), "inner_diameter = 0.025"),
+        (coin().with_length(f64::NAN), "length = NaN"),
+        (coin().with_outer_diameter(1e-300), "ell = 2e297"),
     ] {
         let refused = name(Measured::tube(&tube));
         assert!(refused.starts_with(named), "{refused}");
@@ -132,8 +129,7 @@ fn a_tube_without_measures_is_refused_by_name() {
 #[test]
 fn bounds_of_a_long_rod_hold_for_its_place_velocity_force_and_energy() {
     for length in [0.1, 0.2, 1.0] {
-        let rod =
-            Measured::tube(&Tube { outer_diameter: 0.02, length, mass: 0.05, ..Tube::default() }).unwrap();
+        let rod = Measured::tube(&Tube::solid(0.02, length, 0.05)).unwrap();
         let start = State { theta: 0.3, w1: 0.02, w2: -0.02, w3: 0.1 };
         let end = rod.roll(start, &[0.0, 50.0], &Ask::default(), || true).unwrap().unwrap().end().1.unwrap();
         let t: Vec<f64> = (0..=100).map(|i| 0.009 * end * f64::from(i)).collect();

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const STEEL: Amount = Amount::Density(7800.0);
 
 fn part(form: Form, amount: Amount) -> BodyPart {
-    BodyPart { form, amount }
+    BodyPart::new(form, amount)
 }
 
 fn cylinder(radius: f64, bore: f64, ends: [f64; 2]) -> Form {
@@ -292,6 +292,7 @@ fn turned_over(form: Form) -> Form {
         }
         Form::Shell { radius, centre, ends } => Form::Shell { radius, centre: -centre, ends: over(ends) },
         Form::Ring { radius, height } => Form::Ring { radius, height: -height },
+        _ => unreachable!(),
     }
 }
 
@@ -306,7 +307,6 @@ fn depth(form: &Form, theta: f64) -> f64 {
         }
         Form::Wall { radii, ends: heights } => ends(radii, heights),
         Form::Ring { radius, height } if radius > 0.0 => point(radius, height),
-        Form::Ring { .. } => f64::NEG_INFINITY,
         Form::Ball { radius, centre, ends: [low, high], .. }
         | Form::Shell { radius, centre, ends: [low, high] } => {
             // The lowest point of the whole ball has this height above its centre.
@@ -317,6 +317,7 @@ fn depth(form: &Form, theta: f64) -> f64 {
             let z = if down < low { low } else { high };
             point((radius * radius - (z - centre) * (z - centre)).max(0.0).sqrt(), z)
         }
+        _ => f64::NEG_INFINITY,
     }
 }
 

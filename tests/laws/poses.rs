@@ -183,10 +183,7 @@ fn the_contact_force_and_gravity_move_the_centre() {
             assert!(f.friction_coefficient() == needed || (f.friction_coefficient() - needed).abs() < 1e-15);
         }
     }
-    assert_eq!(
-        contact::Force { normal: -1.0, along: 1.0, across: 0.0 }.friction_coefficient(),
-        f64::INFINITY
-    );
+    assert_eq!(contact::Force::new(-1.0, 1.0, 0.0).friction_coefficient(), f64::INFINITY);
 }
 
 #[test]

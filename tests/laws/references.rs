@@ -51,7 +51,7 @@ fn rates_and_kappas_are_those_of_the_three_dimensional_model() {
         for (contact, known) in [(Contact::Rolling, rolling), (Contact::Smooth, smooth)] {
             let inertia = match contact {
                 Contact::Rolling => i1 + at.radius.powi(2) + at.depth[0].powi(2),
-                Contact::Smooth => i1 + at.lever[0].powi(2),
+                _ => i1 + at.lever[0].powi(2),
             };
             let largest = known.abs().max(at.slope[0].abs().max(i1 * rate * rate / i3) / inertia);
             let error = (at_rest(&body, theta, contact) - known).abs() / largest;

@@ -70,6 +70,7 @@ proptest! {
         let pull = match friction {
             Friction::Coulomb { mu, .. } => mu * f.normal / size,
             Friction::Viscous { c } => c * f.normal,
+            _ => unreachable!(),
         };
         prop_assert!(near(f.across, -pull * u[0]) && near(f.along, -pull * u[1]));
     }
@@ -281,7 +282,7 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     out.last = Some(core::array::from_fn(|_| columns.next().unwrap()));
     out.last_slip = Some(core::array::from_fn(|_| columns.next().unwrap()));
     out.summary = core::array::from_fn(|_| summary.next().unwrap());
-    let job = Job { ask: Ask::on(TableKind::Coulomb), tol: 1e-12, ..Job::new(times) };
+    let job = Job::new(times).with_ask(Ask::on(TableKind::Coulomb)).with_tol(1e-12);
     assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)
 }

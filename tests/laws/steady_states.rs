@@ -25,7 +25,7 @@ proptest! {
         for contact in BOTH {
             let inertia = match contact {
                 Contact::Rolling => body.i1() + radius * radius + depth * depth,
-                Contact::Smooth => body.i1() + lever[0] * lever[0],
+                _ => body.i1() + lever[0] * lever[0],
             };
             let tilting = contact.derivative(&body, &y).w2.abs();
             if sharp(&body) {

@@ -103,7 +103,7 @@ fn a_body_that_static_friction_holds_moves_as_with_a_largest_coefficient_and_by_
             (body, steady::state(&body, 1.3).unwrap().kicked(0.05), [5.0; 2])
         })
         .collect();
-    let limited = Job { ask: Ask::on(Table::Rolling { mu: 5.0 }), tol: 1e-8, ..Job::new(&[20.0]) };
+    let limited = Job::new(&[20.0]).with_ask(Ask::on(Table::Rolling { mu: 5.0 })).with_tol(1e-8);
     let rolling = Swept::of(&all, &limited);
     let rubbing = Swept::of(&all, &limited.with_ask(limited.ask.with_table(TableKind::Coulomb)));
     assert!(rubbing.status.iter().all(|status| *status == Ending::Done as u8));
@@ -124,11 +124,9 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
     for (k, restitution) in [None, Some(0.0), Some(0.5)].into_iter().enumerate() {
         for times in [&[12.0][..], &[0.0, 1.5, 6.0, 12.0]] {
             let all = scenes(if restitution.is_none() { 160 } else { 30 }, 40 + k as u64);
-            let job = Job {
-                ask: Ask::on(TableKind::Coulomb).with_restitution(restitution),
-                tol: [1e-6, 1e-9, 1e-12][k],
-                ..Job::new(times)
-            };
+            let job = Job::new(times)
+                .with_ask(Ask::on(TableKind::Coulomb).with_restitution(restitution))
+                .with_tol([1e-6, 1e-9, 1e-12][k]);
             let found = Swept::of(&all, &job);
             for (i, scene) in all.iter().enumerate() {
                 let motion = match alone(scene, &job) {
@@ -181,7 +179,7 @@ fn a_slip_that_passes_by_zero_goes_on_although_static_friction_would_hold_it() {
     };
     let scene = (body, y, [0.09500249511438211, 0.13338357427089176]);
     for tol in [1e-5, 1e-6, 1e-7, 1e-8] {
-        let m = alone(&scene, &Job { tol, ..Job::new(&[12.0]) }).unwrap();
+        let m = alone(&scene, &Job::new(&[12.0]).with_tol(tol)).unwrap();
         assert!(path_of(&m).phases.len() == 1 && m.error < 1e3 * tol, "{tol:e}: {:e}", m.error);
     }
 }
@@ -190,7 +188,7 @@ fn a_slip_that_passes_by_zero_goes_on_although_static_friction_would_hold_it() {
 fn rolling_between_slips_takes_steps_and_rolling_for_ever_none() {
     let (mut count, mut stepped) = (0, 0);
     for scene in scenes(240, 44) {
-        let run = |tol: f64, until: f64| alone(&scene, &Job { tol, ..Job::new(&[until]) });
+        let run = |tol: f64, until: f64| alone(&scene, &Job::new(&[until]).with_tol(tol));
         let Ok(m) = run(1e-8, 300.0) else { continue };
         let phases = &path_of(&m).phases;
         let Some(last) = phases.last() else { continue };
@@ -213,13 +211,11 @@ fn rolling_between_slips_takes_steps_and_rolling_for_ever_none() {
 #[test]
 fn without_estimated_errors_a_motion_has_the_same_bits() {
     for restitution in [None, Some(0.5)] {
-        let job = Job {
-            ask: Ask::on(TableKind::Coulomb).with_restitution(restitution),
-            tol: 1e-8,
-            ..Job::new(&[2.0, 9.0])
-        };
+        let job = Job::new(&[2.0, 9.0])
+            .with_ask(Ask::on(TableKind::Coulomb).with_restitution(restitution))
+            .with_tol(1e-8);
         let all = scenes(60, 50);
-        let [with, without] = [true, false].map(|errors| Swept::of(&all, &Job { errors, ..job }));
+        let [with, without] = [true, false].map(|errors| Swept::of(&all, &job.with_errors(errors)));
         assert!(with.bits() == without.bits());
         for i in 0..all.len() {
             let integrated = without.method[i] == Answer::Flow as u8;

@@ -58,7 +58,7 @@ fn back(body: &Body, end: &Landed) -> (State, Vector3<f64>) {
     let v = centre_velocity(body, &end.state, end.slip);
     match end.outcome {
         Outcome::Changes => (mirrored(body, &end.state, end.slip).0, Vector3::new(-v.x, -v.y, v.z)),
-        Outcome::Lies | Outcome::Rises => (end.state, v),
+        _ => (end.state, v),
     }
 }
 

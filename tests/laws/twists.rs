@@ -114,7 +114,7 @@ fn a_motion_is_read_where_it_began() {
         2.0 * draws - 1.0
     };
     for length in [0.004, 0.02, 0.3] {
-        let can = Tube { outer_diameter: 0.05, length, mass: 0.1, ..Tube::default() };
+        let can = Tube::solid(0.05, length, 0.1);
         let can = Measured::tube(&can).unwrap();
         for _ in 0..50 {
             let q = UnitQuaternion::from_euler_angles(3.0 * draw(), 1.5 * draw(), 3.0 * draw());

@@ -136,11 +136,9 @@ fn a_ball_in_a_sweep_is_the_ball_alone() {
     let all: Vec<_> =
         (0..40).map(|_| (Body::ball(0.0, 0.4, 0.4).unwrap(), any_start(false, &mut r).state)).collect();
     for (table, e) in [(TableKind::Coulomb, None), (TableKind::Rolling, Some(0.5))] {
-        let job = Job {
-            ask: Ask::on(table.with([0.3, 0.3, 0.0])).with_restitution(e),
-            tol: 1e-8,
-            ..Job::new(&times)
-        };
+        let job = Job::new(&times)
+            .with_ask(Ask::on(table.with([0.3, 0.3, 0.0])).with_restitution(e))
+            .with_tol(1e-8);
         let many = Many::of(&all).run(&job, 1);
         for (i, (body, y)) in all.iter().enumerate() {
             let table = if e.is_some() { Table::Rolling { mu: 0.3 } } else { coulomb(0.3) };
@@ -165,7 +163,7 @@ fn balls_march_in_lanes_to_the_ends_and_states_that_they_have_alone() {
         })
         .collect();
     for contact in [Contact::Rolling, Contact::Smooth] {
-        let job = Job { ask: Ask::on(contact), tol: 1e-8, ..Job::new(&times) };
+        let job = Job::new(&times).with_ask(Ask::on(contact)).with_tol(1e-8);
         let many = Many::of(&all).run(&job, 1);
         let lanes = many.method.iter().filter(|m| **m == Answer::Lanes as u8).count();
         // Without lanes every motion is computed alone.

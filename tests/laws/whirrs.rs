@@ -65,7 +65,7 @@ impl Scene {
         let claims = columns.next().unwrap();
         let mut out = MotionOutput::new(claims, &mut method, &mut status);
         (out.last, out.last_slip, out.summary) = (last, last_slip, summary);
-        let job = Job { ask: Ask::on(on), tol: 1e-11, ..Job::new(times) };
+        let job = Job::new(times).with_ask(Ask::on(on)).with_tol(1e-11);
         assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)
     }

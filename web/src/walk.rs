@@ -130,13 +130,13 @@ impl Walked {
             if self.ask.table == Table::Smooth {
                 at.x += self.ask.slope.sin() * from.t * t;
             }
-            return Pose { phi, psi, contact_point: at, ..*by };
+            return Pose::new(phi, psi, at, by.height);
         }
         let (sin, cos) = phi.rest.sin_cos();
         let (mut at, to) = (contact_point, by.contact_point);
         at.x += to.x * cos - to.y * sin;
         at.y += to.x * sin + to.y * cos;
-        Pose { phi: added(phi, by.phi), psi, contact_point: at, height: by.height }
+        Pose::new(added(phi, by.phi), psi, at, by.height)
     }
 
     /// The rows of an integrated path, which starts at the start of the motion or at the row `from`.
@@ -158,7 +158,7 @@ impl Walked {
                 }
                 Table::Rubs(_) => slip::energy(&body, &y, slip),
                 Table::Smooth => Contact::Smooth.energy(&body, &y),
-                Table::Rolling { .. } => Contact::Rolling.energy(&body, &y),
+                _ => Contact::Rolling.energy(&body, &y),
             };
             let row =
                 Row { t, y, pose: *pose, force: *force, slip, kind: path.kinds[i], energy, lost, lift, rim };

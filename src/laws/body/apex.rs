@@ -13,6 +13,7 @@ use super::{Body, Border, Circle, landing_angle};
 
 /// How a body rolls round its apex, on two neighbouring circles.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Apex {
     /// Distance of the apex from the point of the table under the centre of mass, in R, on which circle the centre moves;
     /// infinite for two equal circles, which roll straight on.

@@ -18,6 +18,7 @@ use core::f64::consts::{PI, TAU};
 /// The amount of matter in a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub enum Amount {
     /// The mass of the part.
     Mass(f64),
@@ -28,6 +29,7 @@ pub enum Amount {
 /// The form of a part. All lengths are in one unit, and heights are measured upward from one point of the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub enum Form {
     /// A cylinder, a cone or a frustum: outer and inner radii at the lower and the upper end, the heights of both ends, and
     /// the radius by which both outer edges of a cylinder are rounded. The mass is that of the sharp body.
@@ -81,6 +83,7 @@ pub enum Form {
 /// A part of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct BodyPart {
     /// Its form.
     pub form: Form,
@@ -88,8 +91,16 @@ pub struct BodyPart {
     pub amount: Amount,
 }
 
+impl BodyPart {
+    /// A part of this form with this mass or density.
+    pub fn new(form: Form, amount: Amount) -> Self {
+        Self { form, amount }
+    }
+}
+
 /// A body assembled from parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Assembled {
     /// The body, in natural units.
     pub body: Body,

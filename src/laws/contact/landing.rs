@@ -37,6 +37,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body after its other rim has landed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// The body lies on both rims, which slip or roll.
     Lies,
@@ -48,6 +49,7 @@ pub enum Outcome {
 
 /// The result of a landing.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,

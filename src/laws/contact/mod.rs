@@ -43,6 +43,7 @@ pub use table::{Table, TableKind};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
+#[non_exhaustive]
 pub enum Contact {
     /// Rolling without slipping.
     #[default]

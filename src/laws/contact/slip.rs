@@ -36,6 +36,7 @@ const LARGEST_POINT_RADIUS: f64 = 1e-16;
 /// The law of friction at a contact point that slips or sticks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub enum Friction {
     /// Dry friction: the force is mu N against the slip, and at most `fixed` times N while the contact point rests.
     Coulomb {

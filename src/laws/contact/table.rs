@@ -8,6 +8,7 @@ use crate::numbers::codes::coded;
 /// A law of the contact between body and table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub enum Table {
     /// The contact point is at rest. The motion ends where rolling needs more friction than mu N; mu may be infinite.
     Rolling {

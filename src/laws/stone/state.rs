@@ -65,6 +65,7 @@ pub(crate) fn headed(from: [f64; 4], heading: f64) -> [f64; 4] {
 /// The orientation of a stone, and its contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[non_exhaustive]
 pub struct StonePose {
     /// The rotation from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,

@@ -11,6 +11,7 @@ use crate::motions::drift::{Drift, End, check_drift};
 /// The motion of the centre during a drift. Arrays hold the number of the variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
+#[non_exhaustive]
 pub enum Centre {
     /// The centre is held at rest.
     Rest = 0,
@@ -21,6 +22,7 @@ pub enum Centre {
 /// Bodies, initial states and losses as columns of numbers: each column has the length n, or is a single number for
 /// all.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct DriftStarts<'a> {
     /// The motion of the centre.
     pub centre: Centre,
@@ -33,11 +35,24 @@ pub struct DriftStarts<'a> {
     pub losses: LossColumns<'a>,
 }
 
+impl<'a> DriftStarts<'a> {
+    /// Bodies whose centres move in this way, with these columns.
+    pub fn new(
+        centre: Centre,
+        bodies: [&'a [f64]; 6],
+        states: [&'a [f64]; 4],
+        losses: LossColumns<'a>,
+    ) -> Self {
+        Self { centre, bodies, states, losses }
+    }
+}
+
 /// The code of an initial state without a drift; the codes of [`End`] are smaller.
 pub const NO_DRIFT: u8 = 255;
 
 /// The arrays for the results.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct DriftOutput<'a> {
     /// The time of the end, in sqrt(R/g): infinite if the drift never ends, NaN for a start without a drift.
     pub stops_at: &'a mut [f64],
@@ -45,6 +60,13 @@ pub struct DriftOutput<'a> {
     pub ends_at_theta: &'a mut [f64],
     /// Code of the [`End`], or [`NO_DRIFT`].
     pub ended: &'a mut [u8],
+}
+
+impl<'a> DriftOutput<'a> {
+    /// These arrays, for the times of the ends, the inclinations there, and the codes of the ends.
+    pub fn new(stops_at: &'a mut [f64], ends_at_theta: &'a mut [f64], ended: &'a mut [u8]) -> Self {
+        Self { stops_at, ends_at_theta, ended }
+    }
 }
 
 impl Split for DriftOutput<'_> {

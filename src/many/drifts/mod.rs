@@ -95,6 +95,7 @@ pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
 
 /// A quantity of a drift that [`ask`] computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Question {
     /// The time, in sqrt(R/g), at which the drift reaches an inclination: one number.
     Time,

@@ -9,6 +9,7 @@ use crate::states::stability::{SteadyPoint, Wanted};
 
 /// An array in double or in single precision.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Slot<'a> {
     Double(&'a mut [f64]),
     Single(&'a mut [f32]),

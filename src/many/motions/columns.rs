@@ -55,6 +55,7 @@ pub type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct MotionColumns {
     bodies: [Vec<f64>; 5],
     states: [Vec<f64>; 4],

@@ -45,6 +45,7 @@ use std::sync::OnceLock;
 
 /// What is the same for all motions of a call: the options, the times and the tolerance.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Job<'a> {
     /// The options of every motion. Coefficients of friction that the motions have themselves replace those of
     /// [`Ask::table`], which is then only the kind of contact. [`Ask::method`] is exact, or a fixed step. Losses are
@@ -69,6 +70,18 @@ impl<'a> Job<'a> {
     #[must_use]
     pub fn with_ask(self, ask: Ask) -> Self {
         Self { ask, ..self }
+    }
+
+    /// Returns this job with this tolerance.
+    #[must_use]
+    pub fn with_tol(self, tol: f64) -> Self {
+        Self { tol, ..self }
+    }
+
+    /// Returns this job, with or without estimates of the errors.
+    #[must_use]
+    pub fn with_errors(self, errors: bool) -> Self {
+        Self { errors, ..self }
     }
 
     fn span(&self) -> f64 {

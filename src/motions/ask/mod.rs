@@ -29,6 +29,7 @@ const NO_SLIP: f64 = 16.0 * f64::EPSILON;
 /// The method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Method {
     /// The first integrals, or an integrator within a tolerance where these lose all their digits. A motion that slips
     /// or loses energy is integrated to the accuracy of double precision.

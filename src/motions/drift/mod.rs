@@ -34,6 +34,7 @@ use rest::Rest;
 
 /// A drift that begins at the time 0. Times are in sqrt(R/g), angles in radians, rates in sqrt(g/R).
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Drift {
     kind: DriftVariant,
 }

@@ -114,7 +114,7 @@ pub fn newton_euler(body: &Body, y: &State, contact: Contact) -> Vector4<f64> {
     let cross = r.cross_matrix();
     let (matrix, known) = match contact {
         Contact::Rolling => (inertia - cross * cross, r.cross(&(fixed + z)) - gyro),
-        Contact::Smooth => {
+        _ => {
             let up = r.cross(&z);
             // (r x a) . z = -(r x z) . a
             (inertia + up * up.transpose(), up * (fixed.dot(&z) + 1.0) - gyro)

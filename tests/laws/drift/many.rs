@@ -61,12 +61,13 @@ impl Many {
 
     fn starts(&self) -> DriftStarts<'_> {
         let Self { centre, bodies, states, losses } = self;
-        DriftStarts {
-            centre: *centre,
-            bodies: core::array::from_fn(|i| bodies[i].as_slice()),
-            states: core::array::from_fn(|i| states[i].as_slice()),
-            losses: loss_columns(losses),
-        }
+        let columns = core::array::from_fn(|i| bodies[i].as_slice());
+        DriftStarts::new(
+            *centre,
+            columns,
+            core::array::from_fn(|i| states[i].as_slice()),
+            loss_columns(losses),
+        )
     }
 
     /// Every `step`th start from `from` on.
@@ -85,7 +86,7 @@ impl Many {
 fn stopped(many: &Many, threads: usize) -> (Vec<f64>, Vec<f64>, Vec<u8>) {
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);
-    let out = DriftOutput { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
+    let out = DriftOutput::new(&mut times, &mut thetas, &mut ends);
     assert!(spincyl::drift::stops(&many.starts(), out, threads, |_| true).unwrap());
     (times, thetas, ends)
 }
@@ -158,7 +159,7 @@ fn nobody_and_one_for_all_are_answered_and_who_says_no_is_heard() {
     assert_eq!(stopped(&many, 2).0.len(), 40_000);
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);
-    let out = DriftOutput { stops_at: &mut times, ends_at_theta: &mut thetas, ended: &mut ends };
+    let out = DriftOutput::new(&mut times, &mut thetas, &mut ends);
     let mut asked = 0;
     let finished = spincyl::drift::stops(&many.starts(), out, 1, |_| {
         asked += 1;
@@ -181,7 +182,7 @@ fn what_many_are_asked_is_what_one_answers() {
                 let expected = one.map_or(f64::NAN, |d| match question {
                     Question::Time => d.time(x[i]),
                     Question::At => d.theta(x[i]),
-                    Question::Stable => d.stable_until(),
+                    _ => d.stable_until(),
                 });
                 assert_eq!(out[i * WIDTH].to_bits(), expected.to_bits());
             }
