@@ -61,9 +61,9 @@ const SLOW_CHANGE_FACTOR: f64 = 100.0;
 /// The smallest tolerance that [`Step::strictness`] leaves; an error below this is rounding.
 const ROUNDING: f64 = 3e-15;
 
-/// Whether the stages of a step form a loop, unless a flow chooses otherwise: only without optimisation,
-/// where a short compilation matters more than a fast program.
-pub(crate) const LOOPS: bool = cfg!(any(debug_assertions, short_code));
+/// Whether the stages of a step form a loop, unless a flow chooses otherwise: only in the code for pages, which is short. A
+/// program that is compiled for debugging follows the same steps as one that is compiled for speed.
+pub(crate) const LOOPS: bool = cfg!(short_code);
 
 /// The number of stages of a step; the weights number the stages from 0 on.
 pub(crate) const STAGES: usize = 12;

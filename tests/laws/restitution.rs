@@ -74,7 +74,7 @@ fn a_ball_whose_slips_turn_back_loses_what_its_impacts_take_and_rolls_in_the_end
         let start = dropped(state, [speed(), speed()], 0.5 * (2.0 + speed()), speed());
         let tangential = if r() < 0.2 { 1.0 } else { r() };
         let mut ask = Ask::on(coulomb(0.05 + 0.9 * r()))
-            .with_restitution(0.95 * r())
+            .with_restitution(0.85 * r())
             .with_impact_law(ImpactLaw::Walton { tangential })
             .with_pose(k % 3 == 0);
         if k % 5 == 0 {
