@@ -90,8 +90,8 @@ class Impact(NamedTuple):
         touch the table, the sum of their impulses. For a stone along x, y and z of the laboratory, as
         `Motion.contact_force`.
     lost : float
-        Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed. Negative
-        for an impact that has gained energy, which only the laws `Newton` and `Poisson` allow.
+        Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
+        Negative for an impact that has gained energy, which only the laws `Newton` and `Poisson` allow.
     before : State or EllipsoidState
         State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands; for a
         body of several circles always to its lower end.

@@ -30,11 +30,11 @@ class _ImpactLaw:
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Newton(_ImpactLaw):
-    """Newton's law of restitution, for `restitution=`: the normal velocity after an impact is -e times that before.
+    """Newton's law, for `restitution=`: the normal velocity after an impact is -e times that before.
 
-    Programs that compute impacts often have this law. Where friction turns or stops the slip it may give energy
-    to the body [1]_; such an impact has `Impact.gained` > 0, and `roll` warns once. A body under this law ends
-    where a second circle or a face lands.
+    Programs that compute impacts often have this law. Where friction turns or stops the slip it may give
+    energy to the body [1]_; such an impact has `Impact.gained` > 0, and `roll` warns once. A motion under
+    this law ends where a second circle or a face lands.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ class Newton(_ImpactLaw):
 
     References
     ----------
-    .. [1] T. R. Kane and D. A. Levinson, *Dynamics: Theory and Applications* (McGraw-Hill, 1985); W. J. Stronge,
-       Proc. R. Soc. A 431, 169 (1990).
+    .. [1] T. R. Kane and D. A. Levinson, *Dynamics: Theory and Applications* (McGraw-Hill, 1985); W. J.
+       Stronge, Proc. R. Soc. A 431, 169 (1990).
 
     Examples
     --------
@@ -63,10 +63,10 @@ class Newton(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Poisson(_ImpactLaw):
-    """Poisson's law of restitution, for `restitution=`: the normal impulse after compression is e times that of it.
+    """Poisson's law, for `restitution=`: the normal impulse after compression is e times that of compression.
 
-    Compression ends where the normal velocity is zero; if friction presses the point down once more, at the last
-    zero. Everything else is as under `Newton`.
+    Compression ends where the normal velocity is zero; if friction presses the point down once more, at the
+    last zero. Everything else is as under `Newton`.
 
     Parameters
     ----------
@@ -86,18 +86,20 @@ class Poisson(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Walton(_ImpactLaw):
-    """Restitution of a ball that also turns its slip back, for `restitution=`: a superball, a table tennis ball.
+    """Restitution of a ball that also turns its slip back, for `restitution=`, such as of a superball.
 
-    The normal velocity after an impact is -e times that before. The slip becomes -`tangential` times that before,
-    if the friction that this takes is at most mu times the normal impulse; otherwise the ball slips throughout
-    [1]_ [2]_ [3]_. The ball has equal moments of inertia, and the contact is Coulomb friction at a point.
+    The normal velocity after an impact is -e times that before. The slip becomes -`tangential` times that
+    before, if the friction that this takes is at most mu times the normal impulse; otherwise the ball slips
+    throughout [1]_ [2]_ [3]_. The ball has equal moments of inertia, and the contact is Coulomb friction at a
+    point.
 
     Parameters
     ----------
     e : float
         Coefficient of restitution, 0 to 1.
     tangential : float
-        Coefficient of tangential restitution, 0 (the slip stops, as without this law) to 1 (a perfect superball).
+        Coefficient of tangential restitution, 0 (the slip stops, as without this law) to 1 (a perfect
+        superball).
 
     References
     ----------

@@ -140,8 +140,8 @@ def roll(
         If true, continue the solution past the event, although it no longer describes the real body.
         `Motion.event` is still set. The solution cannot continue past a landing of the face.
     restitution : float or Newton or Poisson or Walton, optional
-        Coefficient of restitution of impacts, 0 to 1, or another law of restitution. Its square is the fraction of the work of compression
-        that an impact returns (Stronge). Default: the motion ends where the body leaves the table or its
+        Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
+        that an impact returns (Stronge); `Newton`, `Poisson` and `Walton` are other laws. Default: the motion ends where the body leaves the table or its
         other rim or its face lands. With a restitution the motion continues: the body may fly, bounce, lie on
         both rims, stand on its face and rise again. An initial state in the air (`dropped`, and for a stone
         `Ellipsoid.dropped`) needs a restitution. A stone flies, bounces, slips and rolls, until its edge
@@ -289,7 +289,8 @@ def roll(
     if stone and m._doubt:
         why = f"after that its estimated error reaches {m.error:.2g}"
         warn(f"the motion is {m._doubt} (known_until); {why}", ErrorWarning)
-    if isinstance(restitution, Newton | Poisson) and (gained := sum(hit.gained for hit in m.impacts)) > _GAINED:
+    gained = sum(hit.gained for hit in m.impacts) if isinstance(restitution, Newton | Poisson) else 0.0
+    if gained > _GAINED:
         why = "which this law allows (Impact.gained tells how much in each)"
         warn(f"{restitution!r}: impacts have gained {gained:.2g} of energy in all, {why}", GainWarning)
     if m.status == Ending.BOUNDED:

@@ -41,8 +41,8 @@ _RESTITUTION_IS = dict.fromkeys(
 ) | {
     "Newton": "the normal velocity after an impact is minus this times that before (Newton)",
     "Poisson": "the normal impulse after compression is this times that of compression (Poisson)",
-    "Walton": "the normal velocity of the ball after an impact is minus this times that before, its slip minus"
-    " `tangential` times that before if that takes at most mu times the normal impulse (Walton)",
+    "Walton": "the normal velocity of the ball after an impact is minus this times that before, its slip"
+    " minus `tangential` times that before if that takes at most mu times the normal impulse (Walton)",
 }
 _ROLLS = "what keeps the contact point at rest; any coefficient from `needed` on does"
 _PATCH = (
