@@ -140,11 +140,12 @@ def roll(
         If true, continue the solution past the event, although it no longer describes the real body.
         `Motion.event` is still set. The solution cannot continue past a landing of the face.
     restitution : float or Newton or Poisson or Walton, optional
-        Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of compression
-        that an impact returns (Stronge); `Newton`, `Poisson` and `Walton` are other laws. Default: the motion ends where the body leaves the table or its
-        other rim or its face lands. With a restitution the motion continues: the body may fly, bounce, lie on
-        both rims, stand on its face and rise again. An initial state in the air (`dropped`, and for a stone
-        `Ellipsoid.dropped`) needs a restitution. A stone flies, bounces, slips and rolls, until its edge
+        Coefficient of restitution of impacts, 0 to 1. Its square is the fraction of the work of
+        compression that an impact returns (Stronge); `Newton`, `Poisson` and `Walton` are other laws.
+        Default: the motion ends where the body leaves the table or its other rim or its face lands. With
+        a restitution the motion continues: the body may fly, bounce, lie on both rims, stand on its face
+        and rise again. An initial state in the air (`dropped`, and for a stone `Ellipsoid.dropped`) needs
+        a restitution. A stone flies, bounces, slips and rolls, until its edge
         lands (`theta_end`). While the other rim carries the body, theta refers to that rim, and phi is turned
         by pi: `Motion.rim` tells the rim, and `Motion.axis_up` and `Motion.rests_on` tell heads from tails.
         With `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only
