@@ -19,7 +19,7 @@ FEW = (
 # results, which only functions construct, and enumerations
 MADE = {
     "": {
-        "Deviation", "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "Held", "Impact", "Motion", "Phase", "Play", "Region", "RestsOn", "Rocking",
+        "Deviation", "Drift", "DriftWarning", "EllipsoidMotion", "Ending", "ErrorWarning", "Event", "GainWarning", "Held", "Impact", "Motion", "Phase", "Play", "Region", "RestsOn", "Rocking",
         "Apex", "Scene", "StepWarning", "Swing", "View",
         "custom", "data", "loss", "parts", "plot", "sweep",
     },

@@ -48,7 +48,7 @@ OPTIONS = {
     ),
     "beyond": Row("beyond", "beyond", "beyond", "beyond", "beyond", "--beyond", "none: a page ends with the model"),
     "restitution": Row(
-        "restitution", "restitution", "restitution", "restitution", "restitution",
+        "restitution", "restitution", "restitution", "restitution impact_law", "restitution impact_law",
         "none: `spincyl flick` has it, whose motions need it", "restitution: restitution",
     ),
     "losses": Row("losses", "losses", "losses", "losses couple", "losses", "--loss", "losses: law loss"),

@@ -20,7 +20,7 @@ from spincyl._input.numbers import (
     whole,
 )
 from spincyl._phases import check_contact, has_friction
-from spincyl._restitution import Restitution, restitution_for_core
+from spincyl._restitution import Restitution, coefficient_of, law_for_core
 from spincyl._state import State
 
 if TYPE_CHECKING:
@@ -107,7 +107,9 @@ def options_for_core(
         if own is not None:
             options["couple"] = own
     if asked.restitution is not None:
-        options |= restitution_for_core(asked.restitution)
+        options["restitution"] = coefficient_of(asked.restitution)
+        if (law := law_for_core(asked.restitution)) is not None:
+            options["impact_law"] = law
     if asked.stop_at:
         options["stop_at_rolling"] = True
     if asked.max_nfev is not None:

@@ -134,22 +134,21 @@ def check_restitution(restitution: object) -> None:
         number("restitution", restitution)
 
 
-def coefficient_of(restitution: Any) -> float | None:
-    """The coefficient of normal restitution; None for none."""
-    return restitution.e if isinstance(restitution, _ImpactLaw) else restitution
+def coefficient_of(restitution: Any) -> float:
+    """The coefficient of normal restitution."""
+    return float(restitution.e if isinstance(restitution, _ImpactLaw) else restitution)
 
 
-def restitution_for_core(restitution: Any) -> dict[str, Any]:
-    """The options of the core for a law of restitution."""
+def law_for_core(restitution: Any) -> tuple[str, float] | None:
+    """The name of a law and its tangential restitution; None for that of a number."""
     if not isinstance(restitution, _ImpactLaw):
-        return {"restitution": float(restitution)}
-    law = type(restitution).__name__, getattr(restitution, "tangential", 0.0)
-    return {"restitution": restitution.e, "impact_law": law}
+        return None
+    return type(restitution).__name__, getattr(restitution, "tangential", 0.0)
 
 
 def restitution_as_words(restitution: Any) -> dict[str, float | str]:
     """The law as plain numbers and words, by name, for an attribute of a file."""
-    if restitution is None or not isinstance(restitution, _ImpactLaw):
+    if not isinstance(restitution, _ImpactLaw):
         return {} if restitution is None else {"restitution": restitution}
     more = {"tangential": restitution.tangential} if isinstance(restitution, Walton) else {}
     return {"restitution": restitution.e, "impact_law": type(restitution).__name__} | more
