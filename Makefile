@@ -52,6 +52,10 @@ rust: export RUSTFLAGS = -C llvm-args=-enable-noalias-to-md-conversion=false
 rust:
 	cargo fmt --all --check
 	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib
+	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib --no-default-features
+	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib --no-default-features --features serde
+	if rustup target list --installed 2>/dev/null | grep -q wasm32; then \
+	  nice -n 10 cargo check --quiet -p spincyl-web --target wasm32-unknown-unknown; fi
 	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,serde -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(SLOW) nice -n 10 cargo test --lib --no-run
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(AWAKE) nice -n 10 cargo test --lib
