@@ -10,7 +10,7 @@ from spincyl._circles import FIELDS, extent_of, set_rims
 from spincyl._circular import circular as _circular
 from spincyl._circular import steady_on_circle as _steady_on_circle
 from spincyl._input.equality import compared_by_value
-from spincyl._input.hints import Hinting
+from spincyl._input.hints import HintingFamily
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -44,7 +44,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Body(Laws, Outlines, Sized, Hinting):
+class Body(Laws, Outlines, Sized, HintingFamily):
     """A rigid body of revolution that touches the table with its lower rim.
 
     If fields are arrays, the object is a family of bodies; the arrays broadcast, and every method broadcasts

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from spincyl._body import Body
 from spincyl._contact import contact_in_words
 from spincyl._ending import Held, held
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import Floats
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _given(m: "Motion", setting: str) -> bool:
     return not (value is None or value is False or value == math.inf)
 
 
-class Outputs:
+class Outputs(Hinting):
     """Outputs of a motion at each time that are computed if they were asked for."""
 
     contact_point = Number(
