@@ -136,7 +136,7 @@ def test_an_attribute_that_is_not_there_says_which_are_a_near_one_first(kind):
         ("motion", "omega", "w"),
         ("motion of a stone", "omega", "w"),
         ("motion of a stone", "velocity", "slip"),
-        ("stone", "semi_axes", "axes"),
+        ("stone", "axes", "semi_axes"),
         ("state of a stone", "w1", "w"),
     ],
 )

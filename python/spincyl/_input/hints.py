@@ -69,7 +69,9 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
     },
     "Ellipsoid": {
         **dict.fromkeys(("mass", "radius", "gravity"), _SIZE),
-        **dict.fromkeys(("semi_axes", "length", "width", "a", "ell"), "axes are the semi-axes"),
+        **dict.fromkeys(
+            ("axes", "length", "width", "a", "ell"), "semi_axes are half of length, width and height"
+        ),
         **dict.fromkeys(("i1", "i3"), "moments are the principal moments, in M a^2"),
         **dict.fromkeys(("rate", "steady", "states"), "only for bodies of revolution; see rocking(spin)"),
         "roll": "sc.roll(stone, state, t) computes a motion",
@@ -102,6 +104,8 @@ _INSTEAD = {
 def proposal(name: str, known: Iterable[str]) -> str:
     """A proposal in place of a name, after a colon; empty if no known name is similar."""
     names = [x for x in known if not x.startswith("_")]
+    if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
+        return ": semi_axes= are half of length, width and height of the whole ellipsoid"
     if name in _INSTEAD:
         return f": {_INSTEAD[name]}"
     near = difflib.get_close_matches(name, names, 3, 0.7)
