@@ -197,7 +197,7 @@ def nouns():
         "Body.critical_aspect": (sc.Body.critical_aspect, {"bore": 0.0, "fillet": 0.0}),
         "measured": (
             sc.measured,
-            {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "mass": None, "fillet": 0.0, "gravity": 9.8},
+            {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "mass": None, "fillet": 0.0, "density": None, "gravity": 9.8},
         ),
         "Body.hertz": (TUBE.hertz, {"at": 1.3}),
         "Body.roll": (body.roll, {"state": state, "t": 1.0}),

@@ -27,6 +27,8 @@ STATE = BODY.steady(1.3)
         (lambda: BODY.roll(STATE, 1.0, tols=0.1), "^roll\\(\\) .*'tols': did you mean tol\\?"),
         (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': expected body, state, t, t0, step"),
         (lambda: sc.measured(outer_diameter=0.1, height=0.1), "^measured\\(\\) .*'height': .*length="),
+        (lambda: sc.measured(outer_diameter=0.1, material="steel"), "'material': give density= the name of a"),
+        (lambda: sc.Ellipsoid.rattleback(axes=(3, 2, 1), twist=0.1), "'axes': semi_axes= are half of length"),
         (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
         (
             lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),

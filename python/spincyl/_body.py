@@ -373,8 +373,9 @@ class Body(Laws, Outlines, Sized, HintingFamily):
         if self.rims is not None and self._single:
             return "body", extent_of(self.rims), 0.0
         if self._single and self.bore == self.bore:
-            half = self.ell + self.fillet
-            return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half
+            half, f = self.ell + self.fillet, self.fillet
+            cut = 4 * np.pi * ((1 - np.pi / 4) * f**2 * (1 - f) + f**3 / 6)  # by the fillets, from Pappus
+            return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half - cut
         if not self._single or self.fillet != 1:
             return "body", (2.0, 2.0), 0.0
         if self.theta_end == self.theta_end:  # where the upper one lands

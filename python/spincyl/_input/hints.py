@@ -90,6 +90,7 @@ _INSTEAD = {
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
     **dict.fromkeys(("friction", "mu_s"), "give contact=sc.Coulomb(mu, static) for friction"),
+    "material": "give density= the name of a material, as density='steel'",
     "cone": "sc.assembled([sc.parts.cone(...)]) makes a body of parts",
     **dict.fromkeys(
         ("cylinder", "disk", "disc", "coin"), "sc.Body.solid(ell), or sc.measured(...) in metres"
