@@ -305,7 +305,10 @@ def table(rows: list[Row]) -> str:
             listed = "; ".join(f"{p.setting:.2g}: {_time(p.seconds)}, {p.error:.1e}" for p in points)
             lines.append(f"- {name}: {listed}")
         lines.append("")
-    lines += ["| outputs of RK4 | ns a step, last state | ns a step, every state |", "| --- | --- | --- |"]
+    lines += [
+        "| outputs computed by RK4 | time per step for the last state (ns) | time per step for every state (ns) |",
+        "| --- | --- | --- |",
+    ]
     lines += [f"| {name} | {last:.0f} | {every:.0f} |" for name, last, every in costs()]
     lines.append("")
     return "\n".join(lines)
