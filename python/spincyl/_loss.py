@@ -202,7 +202,7 @@ class Law(Loss):
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """The law itself, as a tuple of one."""
+        """The laws of which it consists: this law alone."""
         return (self,)
 
     def __repr__(self) -> str:
