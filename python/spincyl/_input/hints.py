@@ -54,7 +54,7 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("events", "end", "ending", "stops_at"), "event has the time and state of the end"),
         **dict.fromkeys(("heat", "lost", "energy_lost"), "dissipated, work_lost and lost_in_impacts"),
         **dict.fromkeys(("force", "forces", "normal_force"), 'normal, friction, with want="force"'),
-        **dict.fromkeys(("film", "animate", "animation", "video", "gif"), "sc.view(m).save('film.mp4')"),
+        **dict.fromkeys(("animate", "animation", "video", "movie", "gif"), "sc.view(m).save('film.mp4')"),
         **dict.fromkeys(("view", "show", "display", "page", "html"), "sc.view(m) shows it"),
         **dict.fromkeys(("save", "to_csv", "csv"), "to_dataframe().to_csv(path), or sc.view(m).save(path)"),
         **dict.fromkeys(("df", "dataframe", "to_pandas", "table"), "to_dataframe() is a table"),
