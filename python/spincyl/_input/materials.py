@@ -40,7 +40,7 @@ _SORTS = {"wood": ("oak", "fir"), "plastic": ("acrylic", "polypropylene", "polys
 def density_in_si(value: object) -> float:
     """A density in kg/m^3: from a number, a text with a unit, a quantity, or the name of a material."""
     if not isinstance(value, str) or not value.strip()[:1].isalpha():
-        return number("density", si("density", value, "kilogram/metre**3"))  # type: ignore[arg-type]
+        return number("density", si("density", value, "kilogram/metre**3"))
     word = value.strip().lower()
     if word in _KNOWN:
         return MATERIALS[_KNOWN[word]][0]
