@@ -67,7 +67,8 @@ def main():
     report.figure(rows, ROOT / "docs" / "figures" / "speed_against_error.png")
     curves = long_run(int(args.steps))
     draw(curves, ROOT / "docs" / "figures" / "long_run.png")
-    lines = ["| steps of 1e-3 | " + " | ".join(f"{name}: energy | phase" for name in curves) + " |"]
+    told = (f"{name}: relative error of the energy | time by which the motion is ahead" for name in curves)
+    lines = ["| number of steps of 1e-3 | " + " | ".join(told) + " |"]
     lines.append("| --- |" + " --- | --- |" * len(curves))
     for k in range(3, int(np.log10(args.steps)) + 1):
         cells = []

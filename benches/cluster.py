@@ -85,19 +85,24 @@ def efficiency(client, blocks, count, rounds):
         )
         # without the scheduler, whose time the plan counts separately
         each[name] = used["workers"] - used["scheduler"]
-    told = "initial states, one thread", "roll, two threads", "dask, two threads", "dask, two workers"
+    told = (
+        "initial states on one thread",
+        "`sweep.roll` on two threads",
+        "dask on two threads",
+        "dask on two workers",
+    )
     head(
         "Efficiency: microseconds a motion by the clock",
         "job",
-        "motions a block",
-        "blocks",
+        "motions per block",
+        "number of blocks",
         *told,
-        "efficiency",
+        "efficiency (ratio)",
     )
     for line in walls:
         row(*line)
     title = "CPU time of all threads and processes, microseconds a motion; less affected by other work on the computer"
-    head(title, "job", *told, "of this, client and scheduler", "efficiency")
+    head(title, "job", *told, "part of it for client and scheduler", "efficiency (ratio)")
     for line in cpus:
         row(*line)
     return each
@@ -108,10 +113,10 @@ def graph(blocks):
     head(
         "Sent: the description of a block",
         "job",
-        "motions a block",
-        "tasks a block",
-        "bytes a task",
-        "bytes a block",
+        "motions per block",
+        "tasks per block",
+        "bytes sent per task",
+        "bytes sent per block",
     )
     for name, start in JOBS.items():
         for size in (1_000, blocks[name], 10_000_000):
@@ -128,7 +133,14 @@ def spread(client, blocks, count):
     """How much the times of blocks of one size differ, from dask's record of its tasks."""
     from distributed import get_task_stream
 
-    head("Time of a block on a worker", "job", "blocks", "median, s", "least", "most")
+    head(
+        "Time of a block on a worker",
+        "job",
+        "number of blocks",
+        "median time (s)",
+        "shortest time (s)",
+        "longest time (s)",
+    )
     for name, start in JOBS.items():
         with get_task_stream(client) as stream:
             counted(lazy(start, count * blocks[name], blocks[name])).compute()
@@ -146,14 +158,14 @@ def spread(client, blocks, count):
 def plan(blocks, each, used, kept):
     """The time of 1e9 motions, from the figures above: the computing, and the work of the one scheduler."""
     told = (
-        "motions a block",
-        "computing, s",
-        "scheduler, counted, s",
-        "saved, s",
-        "saved, GB",
-        "MB/s to write",
+        "motions per block",
+        "time of the workers (s)",
+        "time of the scheduler if motions are counted (s)",
+        "time of the scheduler if they are saved (s)",
+        "size of the results (GB)",
+        "rate of writing that keeps up (MB/s)",
     )
-    head("1e9 motions", "job", "workers", "blocks", *told)
+    head("1e9 motions", "job", "workers", "number of blocks", *told)
     for name in JOBS:
         for workers_, times in ((2, 1), (100, 1), (1000, 1), (1000, 100)):
             size = blocks[name] * times

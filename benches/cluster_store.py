@@ -31,9 +31,9 @@ def scheduler(folder, count):
     }
     head(
         "The scheduler: cost of one more block, with blocks of two motions",
-        "results",
-        "client and scheduler, ms a block",
-        "two workers, ms a block by the clock",
+        "results of the motions",
+        "CPU time of client and scheduler per block (ms)",
+        "time by the clock per block, two workers (ms)",
     )
     used = {}
     for name, run in ways.items():
@@ -50,8 +50,13 @@ def scheduler(folder, count):
 
 def memory(blocks):
     """Peak memory of a worker less what it holds idle; each job has new workers."""
-    told = "results, MB", "idle worker, MB", "peak above idle, MB", "peak over results"
-    head("Memory of a worker", "job", "motions a block", *told)
+    told = (
+        "results of a block (MB)",
+        "memory of an idle worker (MB)",
+        "peak memory above that (MB)",
+        "ratio of this peak to the results",
+    )
+    head("Memory of a worker", "job", "motions per block", *told)
     for name, start in JOBS.items():
         size = blocks[name]
         with workers() as (_, client):
@@ -82,7 +87,13 @@ def saved(cluster, folder, size, count):
     """A sweep that two workers write: undisturbed, with a worker killed, and run again when complete."""
     store, start = pathlib.Path(folder) / "sweep.zarr", any_start
     total = size * count
-    head("Saved by two workers", "case", "s", "bytes a motion", "files a block")
+    head(
+        "Saved by two workers",
+        "what happens while it is saved",
+        "time (s)",
+        "bytes per motion",
+        "files per block",
+    )
     plain, found = [], None
     for _ in range(2):
         remove(store)

@@ -99,13 +99,13 @@ def table():
     """Rows of the table."""
     head = [
         "body",
-        "in MuJoCo",
-        "radius",
-        "true",
-        "time of a turn",
-        "true",
-        "inclination varies by",
-        "rises at",
+        "its shape in MuJoCo",
+        "radius of the circle in MuJoCo",
+        "exact radius",
+        "time of a turn in MuJoCo",
+        "exact time of a turn",
+        "range of the inclination in MuJoCo",
+        "rate at which the end rises, over the exact rate",
     ]
     yield head
     yield ["---"] * len(head)

@@ -118,7 +118,7 @@ def at_once(scenes):
         sort = type(how["losses"])
         how["losses"] = sort(**columns([x.how["losses"] for x in scenes], fields(sort)[0].name))
     if isinstance(bodies[0], sc.Ellipsoid):
-        stones = sc.Ellipsoid(**columns(bodies, "axes", "inertia", "offset", "theta_end"))
+        stones = sc.Ellipsoid(**columns(bodies, "semi_axes", "inertia", "offset", "theta_end"))
         return stones, sc.EllipsoidState(**columns(states, "vertical", "w"), slip=slip.T), how
     body = sc.Body(**columns(bodies, "ell", "i1", "i3", "fillet", "theta_end"))
     slips = {"slip": tuple(slip)} if "contact" in how else {}

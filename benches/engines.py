@@ -116,7 +116,13 @@ def main():
     parser.add_argument("folder", type=Path, help="folder with the JSON files of the scenes")
     parser.add_argument("--docs", metavar="PAGE", type=Path, help="write the table into a page")
     args = parser.parse_args()
-    head = ["scene", "engine", "step", "centre off by", "inclination off by"]
+    head = [
+        "scene",
+        "engine",
+        "time step",
+        "largest error of the centre",
+        "largest error of the inclination",
+    ]
     table = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]
     solvers = {
         "Bullet": bullet,

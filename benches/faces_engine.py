@@ -126,14 +126,14 @@ def table():
     """Rows of the table."""
     yield [
         "scene",
-        "in MuJoCo",
-        "step",
-        "centre off by",
-        "turn off by",
-        "tilt off by",
-        "rests",
-        "true",
-        "time",
+        "its shape in MuJoCo",
+        "time step",
+        "largest error of the centre",
+        "largest error of the turn",
+        "largest error of the inclination",
+        "comes to rest at, in MuJoCo",
+        "comes to rest at, exactly",
+        "processor time",
     ]
     yield ["---"] * 9
     for case in cases():

@@ -283,9 +283,10 @@ def _time(seconds: float) -> str:
 
 def table(rows: list[Row]) -> str:
     """Return Markdown: a table of all scenes, the points of all curves, and the cost of each output."""
-    head = ["scene", "t", "exact: true error", "estimated error", "one call", "a state of 1000"]
+    head = ["scene", "t", "exact solution: true error", "its estimated error", "time of one call"]
+    head.append("time of one more state")
     methods = list(rows[0].curves)
-    head += [f"{name} to {target:g}" for name in methods for target in _TARGETS]
+    head += [f"{name}: time for an error of {target:g}" for name in methods for target in _TARGETS]
     lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
     for row in rows:
         true = "-" if row.true is None else f"{row.true:.1e}"
@@ -305,7 +306,10 @@ def table(rows: list[Row]) -> str:
             listed = "; ".join(f"{p.setting:.2g}: {_time(p.seconds)}, {p.error:.1e}" for p in points)
             lines.append(f"- {name}: {listed}")
         lines.append("")
-    lines += ["| outputs of RK4 | ns a step, last state | ns a step, every state |", "| --- | --- | --- |"]
+    lines += [
+        "| outputs computed by RK4 | time per step for the last state (ns) | time per step for every state (ns) |",
+        "| --- | --- | --- |",
+    ]
     lines += [f"| {name} | {last:.0f} | {every:.0f} |" for name, last, every in costs()]
     lines.append("")
     return "\n".join(lines)

@@ -179,10 +179,10 @@ def main() -> None:
     head = [
         "scene",
         "solver",
-        "steps",
-        "inclination off by",
-        "centre off by",
-        "time",
+        "number of steps",
+        "largest error of the inclination",
+        "largest error of the centre",
+        "processor time",
     ]
     table = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]
     for name, scene in scenes(args.seconds).items():

@@ -60,7 +60,7 @@ def picture() -> None:
     # it turns in the plane x, z, by this angle
     turned = np.degrees(np.arctan2(-motion.vertical[:, 0], motion.vertical[:, 2]))
     x, _, z = 100 * motion.centre.T
-    wide, _, long = 200 * scale.metres(body.axes)
+    wide, _, long = 200 * scale.metres(body.semi_axes)
     for i in np.flatnonzero(x < 56.0)[::40]:
         colour = COLOURS[int(motion.phase[i])]
         at = {"angle": -turned[i], "zorder": 2 + i / len(t)}

@@ -107,10 +107,14 @@ def main() -> None:
     args = parser.parse_args()
     head = [
         "scene",
-        "solver, per unit of time",
-        "centre off by, before the first blow (mm)",
+        "solver, steps per unit of time",
+        "largest error of the centre before the first impact (mm)",
     ]
-    head += ["in all (mm)", "inclination off by (degrees)", "time"]
+    head += [
+        "largest error of the centre (mm)",
+        "largest error of the inclination (degrees)",
+        "processor time",
+    ]
     table = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]
     for name, scene in scenes().items():
         table += ["| " + " | ".join(row) + " |" for row in rows(name, scene)]

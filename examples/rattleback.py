@@ -55,7 +55,9 @@ def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
 # the lower half of a uniform ellipsoid, 14 cm long, whose axes of inertia are turned
 # by two degrees
 scale = sc.Scale(radius=0.07)
-body = sc.Ellipsoid.rattleback((0.07, 0.014, 0.012), twist=np.radians(2)).in_metres()
+body = sc.Ellipsoid.rattleback(
+    semi_axes=(0.07, 0.014, 0.012), twist=np.radians(2)
+).in_metres()
 second = float(scale.seconds(1.0))
 SPIN = 5.0  # radians per second
 start = spun(-SPIN)

@@ -54,7 +54,7 @@ def least() -> float:
 # 57 mm long, 44 mm wide, 60 g
 scale = sc.Scale(radius=0.0285, mass=0.06)
 body = sc.Ellipsoid.egg(0.022, 0.0285).in_metres(0.06)
-second, squares = float(scale.seconds(1.0)), np.asarray(body.axes) ** 2
+second, squares = float(scale.seconds(1.0)), np.asarray(body.semi_axes) ** 2
 table = sc.Coulomb(0.1)
 TURNS = 18.0  # a second
 start = lying(TURNS)

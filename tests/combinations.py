@@ -213,7 +213,10 @@ def letters(found: dict[tuple[str, str, str, str, str], Cell]) -> dict[tuple[str
 def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     """The reasons as a table, with the numbers of their combinations."""
     of = letters(found)
-    lines = ["| | why it is refused | one motion | many |", "| --- | --- | --- | --- |"]
+    lines = [
+        "| letter in the tables | why the combination is refused | combinations refused for one motion | refused for many motions |",
+        "| --- | --- | --- | --- |",
+    ]
     for physics in (True, False):
         for x in (x for x in REASONS if x.physics is physics):
             counts = [sum(of[k] == x.letter for k in of if k[-1] == way) for way in WAYS]
@@ -236,7 +239,7 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
 
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:
     """Losses by tables for a body and a restitution, where one motion and many agree."""
-    lines = ["| losses | " + " | ".join(TABLES) + " |", "| --- |" + " --- |" * len(TABLES)]
+    lines = ["| losses; contact: | " + " | ".join(TABLES) + " |", "| --- |" + " --- |" * len(TABLES)]
     for law in LOSSES:
         both = [{of[body, table, law, e, way] for way in WAYS} for table in TABLES]
         row = [" or ".join(sorted({"": "yes", "*": "yes*"}.get(x, x) for x in some)) for some in both]

@@ -142,11 +142,11 @@ def stones():
     spinning = {"spin": 0.5, "pitch": 0.01, "roll": 0.0}
     return {
         "Ellipsoid": (
-            sc.Ellipsoid, {"axes": axes, "inertia": inertia, "offset": (0, 0, 0), "theta_end": 1.5, "scale": None},
+            sc.Ellipsoid, {"semi_axes": axes, "inertia": inertia, "offset": (0, 0, 0), "theta_end": 1.5, "scale": None},
         ),
-        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"axes": axes, "mass": None}),
+        "Ellipsoid.uniform": (sc.Ellipsoid.uniform, {"semi_axes": axes, "mass": None}),
         "Ellipsoid.rattleback": (
-            sc.Ellipsoid.rattleback, {"axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
+            sc.Ellipsoid.rattleback, {"semi_axes": axes, "twist": 0.1, "moments": (0.02, 0.2, 0.21), "offset": (0, 0, 0)},
         ),
         "Ellipsoid.with_weights": (stone.with_weights, {"weights": [(0.1, (0.5, 0.0, 0.0))]}),
         "Ellipsoid.egg": (sc.Ellipsoid.egg, {"radius": 0.7, "half_length": 1.0, "offset": 0.0, "mass": None}),
@@ -197,7 +197,7 @@ def nouns():
         "Body.critical_aspect": (sc.Body.critical_aspect, {"bore": 0.0, "fillet": 0.0}),
         "measured": (
             sc.measured,
-            {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "mass": None, "fillet": 0.0, "gravity": 9.8},
+            {"outer_diameter": 1e-2, "length": 1e-2, "inner_diameter": 0.0, "mass": None, "fillet": 0.0, "density": None, "gravity": 9.8},
         ),
         "Body.hertz": (TUBE.hertz, {"at": 1.3}),
         "Body.roll": (body.roll, {"state": state, "t": 1.0}),

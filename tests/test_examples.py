@@ -129,7 +129,9 @@ def test_a_rattleback_turns_back_because_the_rocking_grows_that_the_eigenvalue_s
 
 
 def test_a_rattleback_turned_the_other_way_in_a_mirror_turns_back_the_other_way():
-    given = [np.asarray(x) for x in (rattleback.body.axes, rattleback.body.moments, rattleback.body.offset)]
+    given = [
+        np.asarray(x) for x in (rattleback.body.semi_axes, rattleback.body.moments, rattleback.body.offset)
+    ]
     mirrored = sc.Ellipsoid.rattleback(given[0], twist=np.radians(-2), moments=given[1], offset=given[2])
     spins = np.array([-0.4, 0.4])
     there, here = mirrored.growth_rates(spins), rattleback.body.growth_rates(-spins)

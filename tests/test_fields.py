@@ -6,7 +6,7 @@ import pytest
 import spincyl as sc
 
 ONE = {"ell": 2.0, "i1": 1.5, "i3": 0.5}
-STONE = {"axes": (1, 0.5, 0.4), "inertia": np.diag([0.1, 0.2, 0.21])}
+STONE = {"semi_axes": (1, 0.5, 0.4), "inertia": np.diag([0.1, 0.2, 0.21])}
 UP = {"vertical": (0, 0, 1.0), "w": (0, 0.01, 0.5)}
 
 
@@ -34,7 +34,11 @@ FIELDS = [
     ("c", sc.Viscous, np.array([0.1, 0.2])),
     ("coefficient", sc.loss.DryContour, np.array([1e-3, 2e-3])),
     ("coefficient", sc.loss.AirFilm, np.array([1e-7, 2e-7])),
-    ("axes", lambda x: sc.Ellipsoid(**STONE | {"axes": x}), np.array([[1, 0.5, 0.4], [1, 0.6, 0.4]])),
+    (
+        "semi_axes",
+        lambda x: sc.Ellipsoid(**STONE | {"semi_axes": x}),
+        np.array([[1, 0.5, 0.4], [1, 0.6, 0.4]]),
+    ),
     ("inertia", lambda x: sc.Ellipsoid(**STONE | {"inertia": x}), np.array([np.diag([0.1, 0.2, 0.21])] * 2)),
     ("inertia", lambda x: sc.Ellipsoid(**STONE | {"inertia": x}), np.diag([0.1, 0.2, 0.21])),
     ("offset", lambda x: sc.Ellipsoid(**STONE, offset=x), np.array([[0, 0, -0.1], [0, 0, 0.1]])),

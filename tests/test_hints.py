@@ -1,8 +1,11 @@
 """Names that are not there: the error names the function and says what there is instead."""
 
+import copy
 import dataclasses
+import importlib
 import inspect
 import pickle
+import pkgutil
 import re
 import sys
 
@@ -24,6 +27,11 @@ STATE = BODY.steady(1.3)
         (lambda: BODY.roll(STATE, 1.0, tols=0.1), "^roll\\(\\) .*'tols': did you mean tol\\?"),
         (lambda: sc.roll(BODY, STATE, 1.0, mass=0.1), "'mass': expected body, state, t, t0, step"),
         (lambda: sc.measured(outer_diameter=0.1, height=0.1), "^measured\\(\\) .*'height': .*length="),
+        (
+            lambda: sc.measured(outer_diameter=0.1, material="steel"),
+            "'material': give density= the name of a",
+        ),
+        (lambda: sc.Ellipsoid.rattleback(axes=(3, 2, 1), twist=0.1), "'axes': semi_axes= are half of length"),
         (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
         (
             lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),
@@ -35,7 +43,7 @@ STATE = BODY.steady(1.3)
 def test_an_unknown_argument_names_its_function_and_what_there_is(call, told):
     with pytest.raises(TypeError, match=told) as caught:
         call()
-    assert re.match(r"\w+\(\) got an unexpected keyword argument '\w+'", str(caught.value))
+    assert re.match(r"[\w.]+\(\) got an unexpected keyword argument '\w+'", str(caught.value))
 
 
 def test_every_public_function_is_named_by_the_error_about_an_unknown_argument():
@@ -68,10 +76,18 @@ def test_a_name_that_is_not_there_says_what_is(name, told):
 
 
 def test_a_module_shows_its_public_names_and_none_that_it_imports():
-    for module in (sc, sc.loss, sc.custom, sc.parts):
+    doors = {"spincyl", *(f"spincyl.{x}" for x in "cli custom data loss parts plot sweep".split())}
+    for module in map(importlib.import_module, doors):
         shown = {name for name in dir(module) if not name.startswith("_")}
-        assert shown - {"typical"} == {*module.__all__}, module.__name__
+        assert shown - {"typical", "MOST_BYTES"} == {*module.__all__}, module.__name__
         assert "__doc__" in dir(module)
+    # no other module of the package has a name without an underscore, but those of the two applications
+    for found in pkgutil.iter_modules(sc.__path__, "spincyl."):
+        assert found.name in doors | {"spincyl.studio", "spincyl.lab"} or "._" in found.name, found.name
+    for name in ("spincyl.lab", "spincyl.studio", "spincyl.studio.plot", "spincyl.studio.pages"):
+        module = importlib.import_module(name)
+        shown = {x for x in dir(module) if not x.startswith("_")}
+        assert all(inspect.ismodule(getattr(module, x)) for x in shown), name
 
 
 @pytest.mark.parametrize("name", ["still", "still_symbols", "symbols"])
@@ -82,6 +98,72 @@ def test_still_symbols_are_found_under_their_name(name):
     assert not hasattr(STATE, "stil") and not hasattr(STATE, "__len__")
     with pytest.raises(AttributeError, match="^critical_hertz: needs a measured body"):
         BODY.critical_hertz
+
+
+COIN, STONE = sc.measured(outer_diameter="24mm", length="2mm"), sc.Ellipsoid.egg(0.7, 1.0)
+KNOWN = {
+    "body": BODY,
+    "state": STATE,
+    "motion": sc.roll(BODY, STATE, [0.0, 1.0]),
+    "stone": STONE,
+    "state of a stone": STONE.spinning(1.0),
+    "motion of a stone": sc.roll(STONE, STONE.spinning(1.0), [0.0, 1.0]),
+    "drift": sc.drift(COIN, 0.3, sc.loss.DryContour.from_si("0.05mm", scale=COIN)),
+    "scale": COIN.scale,
+    "friction": sc.Coulomb(0.3),
+    "loss": sc.loss.DryContour(0.01),
+    "table": sc.Table(0.1),
+}
+
+
+@pytest.mark.parametrize("kind", KNOWN)
+def test_an_attribute_that_is_not_there_says_which_are_a_near_one_first(kind):
+    thing = KNOWN[kind]
+    public = [x for x in dir(thing) if not x.startswith("_")]
+    name = type(thing).__name__
+    for x in public:  # a letter doubled is a slip of the finger
+        with pytest.raises(
+            AttributeError, match=f"^'{name}' object has no attribute '{x[0]}{x}': "
+        ) as caught:
+            getattr(thing, x[0] + x)
+        assert len(x) < 3 or re.search(f"did you mean .*\\b{x}\\b", str(caught.value)), str(caught.value)
+    with pytest.raises(AttributeError, match=f"'zzzz': it has {', '.join(sorted(public))}$"):
+        thing.zzzz
+    assert copy.copy(thing) == thing == pickle.loads(pickle.dumps(thing)) and not hasattr(thing, "__len__")
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "there"),
+    [
+        ("body", "mass", "scale"),
+        ("motion", "velocity", "body.centre_velocity"),
+        ("motion", "position", "centre"),
+        ("motion", "omega", "w"),
+        ("motion of a stone", "omega", "w"),
+        ("motion of a stone", "velocity", "slip"),
+        ("stone", "axes", "semi_axes"),
+        ("state of a stone", "w1", "w"),
+    ],
+)
+def test_another_word_for_an_attribute_leads_to_it(kind, name, there):
+    with pytest.raises(AttributeError, match=rf"has no attribute '{name}': {re.escape(there)}\b"):
+        getattr(KNOWN[kind], name)
+    at, *more = there.split(".")
+    assert at in dir(KNOWN[kind]) and all(x in dir(getattr(KNOWN[kind], at)) for x in more)
+
+
+def test_every_word_that_is_proposed_for_an_attribute_begins_with_one_that_there_is():
+    from spincyl._input.hints import _ATTRIBUTES
+
+    of = {type(thing).__name__: thing for thing in KNOWN.values()}
+    for kind, words in _ATTRIBUTES.items():
+        for name, said in words.items():
+            assert not hasattr(of[kind], name), f"{kind}.{name}"
+            first = re.match(r"\w+", said)[0]
+            there = first in dir(of[kind]) or re.match(
+                "only for|sc\\.|a state|.* of a state|body.centre", said
+            )
+            assert there, f"{kind}.{name}: {said}"
 
 
 @pytest.mark.parametrize(
@@ -178,6 +260,9 @@ def test_the_arrays_of_a_motion_that_ends_early_are_arrays_like_any_other():
         (0.3, r"contact = 0.3: .*did you mean sc.Coulomb\(0.3\)\?"),
         (lambda u: 0.3, r"did you mean sc.custom.Friction\(function\)\?"),
         (sc.Coulomb, r"contact = .*: expected 'rolling', 'smooth', sc.Coulomb\(mu\)"),
+        ("ice", "contact = 'ice': .*; did you mean 'smooth'\\?$"),
+        ("no slip", "did you mean 'rolling'\\?$"),
+        ("dry", r"did you mean sc.Coulomb\(mu\)\?$"),
     ],
 )
 def test_a_contact_that_is_none_says_which_there_are_also_for_a_measured_body(contact, told):

@@ -2,12 +2,16 @@
 
 import copy
 import dataclasses
+import inspect
 import math
+import pathlib
 import pickle
+import re
 
 import matplotlib as mpl
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
@@ -437,3 +441,65 @@ def test_a_wall_is_half_the_difference_of_the_diameters():
             sc.measured(outer_diameter=wrong, wall=1.5e-3, length=0.06)
     with pytest.raises(TypeError, match="^inner_diameter, wall: give only one"):
         sc.measured(outer_diameter=0.02, inner_diameter=0.017, wall=1e-3, length=0.06)
+
+
+def volume(outer_diameter, length, inner_diameter=0.0, fillet=0.0):
+    """The volume of a tube with rounded outer edges, by slices across its axis."""
+    r, b = outer_diameter / 2, inner_diameter / 2
+
+    def slice_(z):
+        deep = max(fillet - z, z - (length - fillet), 0.0)  # beyond the centres of the rounding
+        return math.pi * ((r - fillet + math.sqrt(max(fillet**2 - deep**2, 0.0))) ** 2 - b**2)
+
+    return quad(slice_, 0.0, length, points=[fillet, length - fillet], epsabs=0, epsrel=1e-11)[0]
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        {"outer_diameter": 0.022, "length": 0.066},
+        {"outer_diameter": 0.0254, "length": 0.003, "inner_diameter": 0.02},
+        {"outer_diameter": 0.022, "length": 0.03, "fillet": 0.004},
+        {"outer_diameter": 0.022, "length": 0.03, "inner_diameter": 0.01, "fillet": 0.003},
+        {"outer_diameter": 0.02, "length": 0.05, "fillet": 0.01},
+        {"outer_diameter": 0.02, "length": 0.02, "fillet": 0.01},
+    ],
+)
+def test_the_mass_of_a_tube_is_its_density_times_its_volume(size):
+    for given, dense in (("brass", 8500.0), (1234.5, 1234.5), ("7.85 g/cm3", 7850.0), ("Aluminum", 2700.0)):
+        body = sc.measured(**size, density=given)
+        assert body.scale.mass == pytest.approx(dense * volume(**size), rel=1e-10)
+        assert body == sc.measured(**size, mass=body.scale.mass)
+
+
+@pytest.mark.parametrize(
+    ("given", "error", "why"),
+    [
+        ({"density": "wood"}, ValueError, "^density = 'wood': expected 'oak' or 'fir', or a number in kg/m"),
+        ({"density": "stel"}, ValueError, "^density = 'stel': expected 'steel'"),
+        ({"density": "mithril"}, ValueError, "^density = 'mithril': expected one of 'steel', "),
+        ({"density": "7.85"}, TypeError, "^density: expected real numbers, or .* '7.85g/cm3'"),
+        ({"density": "7.85 kg"}, ValueError, "^density: '7.85 kg': expected a density, .* in kg/m3"),
+        ({"density": -7850.0}, ValueError, "^density = -7850"),
+        ({"density": 0.0}, ValueError, "^density = 0"),
+        ({"density": math.nan}, ValueError, "^density = nan"),
+        ({"density": [7850.0]}, TypeError, "^density: expected a number"),
+        ({"density": 7850.0, "mass": 0.1}, TypeError, "^mass, density: give only one of them"),
+    ],
+)
+def test_a_density_that_is_none_is_refused_by_its_name(given, error, why):
+    with pytest.raises(error, match=why):
+        sc.measured(outer_diameter=0.022, length=0.066, **given)
+
+
+def test_a_part_of_a_material_has_its_density_and_the_page_lists_each_material():
+    from spincyl._input.materials import MATERIALS
+
+    page = (pathlib.Path(__file__).parents[1] / "docs/api.md").read_text("utf-8")
+    told = inspect.getdoc(sc.measured)
+    for name, (dense, sort) in MATERIALS.items():
+        assert f'| "{name}" | {dense:.0f} | {sort} |' in page
+        assert f'"{name}"' in re.sub(r"\s+", " ", told)
+        assert sc.parts.ball(diameter="1cm", density=name) == sc.parts.ball(diameter="1cm", density=dense)
+    with pytest.warns(UserWarning, match="as dense as 7.85 kg"):
+        sc.measured(outer_diameter="22mm", length="66mm", density=7.85)  # g/cm^3 for kg/m^3

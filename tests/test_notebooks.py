@@ -118,7 +118,7 @@ def test_the_call_of_a_live_figure_shows_what_its_address_tells(address):
         view = shown(called(address))
         (motion,) = view.motions
         assert motion.spin[0] / view.scale.seconds(1.0) == pytest.approx(float(words["spin"]), rel=1e-3)
-        metres = view.scale.metres(np.asarray(motion.body.axes))
+        metres = view.scale.metres(np.asarray(motion.body.semi_axes))
         np.testing.assert_allclose(metres, words["stone"], rtol=1e-6)
         return
     told = shown(called(address))._told

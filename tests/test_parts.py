@@ -193,6 +193,8 @@ def test_a_stem_that_lands_is_another_part_and_no_rim_also_without_assembled_par
     ("why", "make"),
     [
         ("mass, density: give exactly one of them", lambda: parts.ball(diameter=0.01)),
+        ("density: .* in kg/m\\^2 for a thin wall", lambda: parts.disk(outer_diameter=0.1, density="steel")),
+        ("density: .* in kg/m for a ring", lambda: parts.ring(diameter=0.1, density="steel")),
         ("mass, density: give exactly one of them", lambda: parts.ball(diameter=0.01, mass=1, density=1)),
         ("expected a Part", lambda: sc.assembled([3])),
         ("diameter", lambda: parts.ball(diameter=[1, 2], mass=1)),
@@ -233,7 +235,7 @@ def test_balls_and_stones_take_their_sizes_as_tubes_do():
     other = sc.Ellipsoid.rattleback((0.08, 0.016, 0.014), twist=0.03).in_metres(0.04)
     assert stone == other and stone.scale == other.scale
     assert sc.Ellipsoid.rattleback(("8cm", "16mm", "14mm"), twist=0.03).scale.radius == 0.08
-    with pytest.raises(ValueError, match=r"^axes\[1\] = 16: expected a text with a unit"):
+    with pytest.raises(ValueError, match=r"^semi_axes\[1\] = 16: expected a text with a unit"):
         sc.Ellipsoid.rattleback(("8cm", 16, 14), twist=0.03)
 
 

@@ -97,7 +97,7 @@ def test_circles_are_told_from_the_lower_end_up_with_their_heights_above_the_cen
     assert BOTTLE.rests() == (0,) and np.isnan(BOTTLE.apex(1).rate)
     bowl = sc.assembled([sc.parts.cap(diameter=2, height=1, density=1.0)])
     assert bowl.smooth.tolist() == [True] and bowl.rests() == ()
-    with pytest.raises(ValueError, match="smooth joint"):
+    with pytest.raises(ValueError, match="meet smoothly"):
         bowl.apex()
 
 

@@ -21,7 +21,7 @@ def test_a_stone_in_any_unit_of_length_is_the_same_stone():
             np.multiply(INERTIA, unit**2),
             np.multiply((0, 0, -0.07), unit),
         )
-        assert np.allclose(same.axes, STONE.axes, rtol=1e-15)
+        assert np.allclose(same.semi_axes, STONE.semi_axes, rtol=1e-15)
         assert np.allclose(same.inertia, STONE.inertia, rtol=1e-14)
         assert np.allclose(same.offset, STONE.offset, rtol=1e-14)
 
@@ -33,7 +33,7 @@ def test_a_stone_and_its_state_are_values():
     assert pickle.loads(pickle.dumps(START)) == START
     assert eval(repr(STONE), {"Ellipsoid": sc.Ellipsoid}) == STONE
     with pytest.raises(ValueError, match="read-only"):
-        STONE.axes[0] = 2.0
+        STONE.semi_axes[0] = 2.0
 
 
 def test_an_axisymmetric_inertia_may_be_three_numbers():
@@ -229,9 +229,9 @@ def test_a_start_that_nobody_would_choose_is_answered():
 @pytest.mark.parametrize(
     ("call", "error", "word"),
     [
-        (lambda: sc.Ellipsoid((1, 1), (1, 1, 1)), ValueError, "axes"),
-        (lambda: sc.Ellipsoid((1, 1, 0), (1, 1, 1)), ValueError, "axes"),
-        (lambda: sc.Ellipsoid("abc", (1, 1, 1)), TypeError, "axes"),
+        (lambda: sc.Ellipsoid((1, 1), (1, 1, 1)), ValueError, "semi_axes"),
+        (lambda: sc.Ellipsoid((1, 1, 0), (1, 1, 1)), ValueError, "semi_axes"),
+        (lambda: sc.Ellipsoid("abc", (1, 1, 1)), TypeError, "semi_axes"),
         (lambda: sc.Ellipsoid((1, 1, 1), (1, 1, 2.5)), ValueError, "principal moments"),
         (lambda: sc.Ellipsoid((1, 1, 1), [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]), ValueError, "symmetric"),
         (lambda: sc.Ellipsoid((1, 1, 1), (0.4, 0.4, 0.4), (0, 0, 1)), ValueError, "inside"),
@@ -347,10 +347,10 @@ def test_the_centre_of_a_stone_starts_with_the_velocity_that_it_is_given(up):
 @pytest.mark.parametrize(
     "bad",
     [
-        {"axes": (-1, -0.5, -0.4)},
-        {"axes": (1, 0.5, -0.4)},
-        {"axes": (1, np.nan, 0.4)},
-        {"axes": (1, 0.5, 1e-7)},
+        {"semi_axes": (-1, -0.5, -0.4)},
+        {"semi_axes": (1, 0.5, -0.4)},
+        {"semi_axes": (1, np.nan, 0.4)},
+        {"semi_axes": (1, 0.5, 1e-7)},
         {"inertia": [[0.2, 0.1, 0], [0, 0.2, 0], [0, 0, 0.2]]},
         {"inertia": [[0.2, 0, 0], [0, 0.2, 0], [0.01, 0, 0.2]]},
         {"inertia": np.diag([0.1, 0.2, 0.4])},
@@ -363,7 +363,7 @@ def test_the_centre_of_a_stone_starts_with_the_velocity_that_it_is_given(up):
 )
 def test_a_family_is_checked_as_single_stones_are(bad):
     good = {
-        "axes": (1, 0.5, 0.4),
+        "semi_axes": (1, 0.5, 0.4),
         "inertia": np.diag([0.1, 0.2, 0.21]),
         "offset": (0, 0, -0.1),
         "theta_end": 2.0,
@@ -389,7 +389,7 @@ def test_a_family_of_a_constructor_marks_what_is_no_stone():
         sc.Ellipsoid.rattleback([(1, 0.5, 0.4), (1, 0.5, 0.0)], twist=0.05),
     ]
     for family in families:
-        assert np.isnan(family.axes).all(axis=-1).tolist() == [False, True]
+        assert np.isnan(family.semi_axes).all(axis=-1).tolist() == [False, True]
     assert sc.Ellipsoid.uniform(np.empty((0, 3))).shape == (0,)
 
 

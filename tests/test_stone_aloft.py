@@ -29,7 +29,7 @@ FALLING = sc.EllipsoidState(TILTED.vertical, TILTED.w, **ALOFT)
 
 def lever_of(stone, vertical):
     """The vector from the centre of mass to the lowest point of an ellipsoid."""
-    n, squares = np.asarray(vertical), np.asarray(stone.axes) ** 2
+    n, squares = np.asarray(vertical), np.asarray(stone.semi_axes) ** 2
     return -squares * n / np.sqrt(np.sum(squares * n * n)) - np.asarray(stone.offset)
 
 

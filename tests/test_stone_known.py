@@ -132,7 +132,7 @@ def grazed(end):
     state = sc.EllipsoidState((0, 0.1, np.sqrt(0.99)), (0.1, 0.2, 0.3))
     most, when = extremum(lambda t: sc.roll(STONE, state, t, t0=0.0), lambda m: m.theta, 0.02, 0.3)
     return (
-        lambda limit: (sc.Ellipsoid(STONE.axes, STONE.inertia, STONE.offset, limit), state, {}),
+        lambda limit: (sc.Ellipsoid(STONE.semi_axes, STONE.inertia, STONE.offset, limit), state, {}),
         most,
         when,
     )

@@ -35,7 +35,7 @@ def random_stone(rng):
     whole = sc.Ellipsoid.uniform(axes / axes.max())
     turn = Rotation.from_rotvec([0.0, 0.0, rng.uniform(-0.3, 0.3)]).as_matrix()
     inertia = turn @ np.diag(np.diagonal(whole.inertia)) @ turn.T
-    return sc.Ellipsoid(whole.axes, inertia, offset=0.3 * rng.uniform(-1, 1, 3) * whole.axes)
+    return sc.Ellipsoid(whole.semi_axes, inertia, offset=0.3 * rng.uniform(-1, 1, 3) * whole.semi_axes)
 
 
 def test_random_motions_are_met_between_their_knots():
@@ -70,18 +70,18 @@ def test_its_surface_is_closed_and_its_marks_lie_on_it(stone, upper):
     surface.merge_vertices(merge_norm=True, merge_tex=True)
     assert surface.is_watertight and surface.is_winding_consistent
     cut = height(stone)
-    volume = np.pi * np.prod(stone.axes) * (cut - cut**3 / 3 + 2 / 3)
+    volume = np.pi * np.prod(stone.semi_axes) * (cut - cut**3 / 3 + 2 / 3)
     assert surface.volume == pytest.approx(volume, rel=2e-3)
     # the offset gives the centre of the ellipsoid
-    beyond = (surface.vertices + stone.offset) / stone.axes
+    beyond = (surface.vertices + stone.offset) / stone.semi_axes
     assert np.linalg.norm(beyond, axis=1).max() == pytest.approx(1.0, abs=1e-9)
     first, second = marks(stone, upper)
     assert (first.name, second.name) == ((upper, "X") if upper == "O" else ("X", "O"))
     for part in (first, second):
-        out = np.linalg.norm((part.vertices + stone.offset) / stone.axes, axis=1)
-        on_top = part.vertices[:, 2] > (cut - 1e-9) * stone.axes[2] - stone.offset[2]
+        out = np.linalg.norm((part.vertices + stone.offset) / stone.semi_axes, axis=1)
+        on_top = part.vertices[:, 2] > (cut - 1e-9) * stone.semi_axes[2] - stone.offset[2]
         assert np.allclose(out[~on_top], 1.004) and out.max() < 1.01
-        above = (cut + 0.004) * stone.axes[2] - stone.offset[2]
+        above = (cut + 0.004) * stone.semi_axes[2] - stone.offset[2]
         assert part.vertices[on_top & (cut < 1), 2] == pytest.approx(above)
         corners = part.vertices[part.triangles]
         flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -191,8 +191,8 @@ def test_it_stands_on_the_table_where_it_touches_it(shown):
             assert there[:, 2].min() == pytest.approx(0.0, abs=1e-3)
             # the contact point is on the surface, where the surface is level
             touched = (np.array(pose["contact"]) - matrix[:3, 3]) @ matrix[:3, :3] + m.body.offset
-            assert np.linalg.norm(touched / m.body.axes) == pytest.approx(1.0, abs=1e-6)
-            level = touched / np.square(m.body.axes)
+            assert np.linalg.norm(touched / m.body.semi_axes) == pytest.approx(1.0, abs=1e-6)
+            level = touched / np.square(m.body.semi_axes)
             assert matrix[2, :3] @ level == pytest.approx(-np.linalg.norm(level), rel=1e-6)
             # a vertex of the mesh is close to it
             assert np.linalg.norm(there - pose["contact"], axis=1).min() < 0.06

@@ -217,7 +217,7 @@ def grazing(rng):
     """A stone, a start, contact and options with which an end is just reached or just missed; the kind of
     end, the side, the distance as a share of the margin, and the time."""
     body, (n, w) = stone(rng), start(rng)
-    body = sc.Ellipsoid(body.axes, body.inertia, body.offset)
+    body = sc.Ellipsoid(body.semi_axes, body.inertia, body.offset)
     w = np.clip(w, -3, 3)
     end = rng.choice(["mu", "edge", "lift-off"])
     contact = rng.choice(
@@ -262,7 +262,10 @@ def grazing(rng):
         found = extremum(follow(), lambda m: m.theta, True)
         if found is None or not 0.05 < found[0] * (1 - by) < 3.1:
             return None
-        body, when = sc.Ellipsoid(body.axes, body.inertia, body.offset, found[0] * (1 - side * by)), found[1]
+        body, when = (
+            sc.Ellipsoid(body.semi_axes, body.inertia, body.offset, found[0] * (1 - side * by)),
+            found[1],
+        )
     else:
         found = extremum(follow(), lambda m: np.where(m.normal > 0, m.friction_coefficient, np.nan), True)
         if found is None or not 1e-6 < found[0] < 50:

@@ -58,14 +58,26 @@ def measure(quick):
             off = errors(told, truth)[0]
             shown.setdefault(who, []).append((setting, us, max(off, 1e-16)))
         rows.append((who, setting, us, off))
-    text = table(("one call", "setting", "us", "error of the state at t = 20"), rows)
+    text = table(
+        ("call from Python", "tolerance or method", "time of one call (us)", "error of the state at t = 20"),
+        rows,
+    )
     sine, rate = (
         next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("np.sin", "body.rate")
     )
     text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times as long as `np.sin(x)`.\n\n"
     text += "First and second calls in a new process, in seconds of CPU time:\n\n"
     text += table(("call", "s"), first_calls()) + "\n"
-    text += table(("job", "number", "ns each, 1 thread", "2 threads", "ratio"), scaling(quick))
+    text += table(
+        (
+            "job",
+            "number of points or motions",
+            "time of each on 1 thread (ns)",
+            "time of each on 2 threads (ns)",
+            "ratio of both times",
+        ),
+        scaling(quick),
+    )
     best = compared("one motion", shown, (1e-6, 1e-10, 1e-12), "us")
     return {"panels": {"one call, us a motion": shown}, "text": text, "best": best}
 

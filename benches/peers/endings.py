@@ -193,16 +193,18 @@ def measure(quick):
         shown.setdefault(who, []).append((setting, us, max(parts[1], parts[3])))
         exact.setdefault(who, []).append((setting, us, max(parts[2], parts[4])))
     head = (
-        "contestant",
-        "setting",
-        "us a motion",
-        "motions",
+        "program",
+        "tolerance or step",
+        "time per motion (us)",
+        "number of motions",
         "wrong endings",
-        "error of the time of the ending: median",
-        "99 %",
-        "worst",
+        "median error of the time of the ending",
+        "99 % of these errors are below",
+        "largest of these errors",
+        "99 % of errors of the state at t = 20 are below",
+        "largest of these errors",
     )
-    text = table((*head, "error of the state at t = 20: 99 %", "worst"), rows)
+    text = table(head, rows)
     share = np.bincount(truth[:, 0].astype(int), minlength=4) / n
     names = ("go on to t = 20", "land on the face", "land on the other rim", "lift off")
     text += (

@@ -40,7 +40,16 @@ JOBS = {
     "calls": calls.measure,
 }
 KEPT, NARROW = ROOT / "target" / "peers.json", ROOT / "target" / "peers-narrow.json"
-HEAD = ("job", "error at most", "spincyl", "AVX2", "best peer", "which", "times as fast", "AVX2")
+HEAD = (
+    "job",
+    "largest error allowed",
+    "spincyl, time of one",
+    "spincyl without AVX-512, time of one",
+    "fastest other program, time of one",
+    "which program",
+    "spincyl: times as fast",
+    "without AVX-512: times as fast",
+)
 # the rows in the README: the best case, the general one, and slips and losses, whoever is faster
 QUOTED = (
     ("near-steady", 1e-6),

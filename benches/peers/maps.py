@@ -108,9 +108,12 @@ def measure(quick, also=()):
             shown.setdefault(f"{who.split(' ')[0]}, {n} thread" + "s" * (n > 1), []).append(
                 (n, ns, off[who][0])
             )
-    text = table(("job", "contestant", "threads", "ns a point"), sorted(rows, key=lambda r: (r[0], r[1])))
+    text = table(
+        ("map", "program", "threads", "time per point (ns)"), sorted(rows, key=lambda r: (r[0], r[1]))
+    )
     text += "\n" + table(
-        ("map by", "error max, ulp over 1 + kappa_c", "99 %"), [(w, *e) for w, e in off.items()]
+        ("program", "largest error (ulp over 1 + kappa_c)", "99 % of errors are below (same unit)"),
+        [(w, *e) for w, e in off.items()],
     )
     times = {(job, who, n): ns for job, who, n, ns in rows}
     best = []

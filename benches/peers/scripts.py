@@ -36,12 +36,12 @@ def value(row, *words):
 
 
 def contestants(rows):
-    """{contestant: [(setting, microseconds, error)]} of a table with the columns contestant, setting, us ..., max."""
+    """{contestant: [(setting, microseconds, error)]} of a table with the columns program, tolerance, us ..., max ...."""
     found = {}
     for row in rows:
-        name, us, off = row.get("contestant", ""), value(row, "us", "µs"), value(row, "max")
+        name, us, off = row.get("program", ""), value(row, "us", "µs"), value(row, "max")
         if name and us == us and 0 < off < 1:
-            found.setdefault(name, []).append((row.get("setting", row.get("tolerance", "")), us, off))
+            found.setdefault(name, []).append((row.get("tolerance", ""), us, off))
     return found
 
 

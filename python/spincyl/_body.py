@@ -10,7 +10,7 @@ from spincyl._circles import FIELDS, extent_of, set_rims
 from spincyl._circular import circular as _circular
 from spincyl._circular import steady_on_circle as _steady_on_circle
 from spincyl._input.equality import compared_by_value
-from spincyl._input.hints import Hinting
+from spincyl._input.hints import HintingFamily
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -44,7 +44,7 @@ _rate_of_one, _float64 = _core.rate_of_one, np.float64
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Body(Laws, Outlines, Sized, Hinting):
+class Body(Laws, Outlines, Sized, HintingFamily):
     """A rigid body of revolution that touches the table with its lower rim.
 
     If fields are arrays, the object is a family of bodies; the arrays broadcast, and every method broadcasts
@@ -373,8 +373,9 @@ class Body(Laws, Outlines, Sized, Hinting):
         if self.rims is not None and self._single:
             return "body", extent_of(self.rims), 0.0
         if self._single and self.bore == self.bore:
-            half = self.ell + self.fillet
-            return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half
+            half, f = self.ell + self.fillet, self.fillet
+            cut = 4 * np.pi * ((1 - np.pi / 4) * f**2 * (1 - f) + f**3 / 6)  # by the fillets, from Pappus
+            return "tube", (2 * half, 2.0), 2 * np.pi * (1 - self.bore**2) * half - cut
         if not self._single or self.fillet != 1:
             return "body", (2.0, 2.0), 0.0
         if self.theta_end == self.theta_end:  # where the upper one lands

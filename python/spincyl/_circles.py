@@ -77,12 +77,12 @@ class Circles:
 
     @property
     def borders(self) -> Floats:
-        """(n - 1,) inclinations in radians at which the next circle lands; see `circles`."""
+        """(n - 1,) inclinations in radians at which each of the n `circles` hands over to the next."""
         return self._told()[1][:, 0].copy()
 
     @property
     def spans(self) -> Floats:
-        """(n - 1,) distances, in R, of both points of contact at the inclinations `borders`.
+        """(n - 1,) distances, in R, between the two points that touch the table at each of the `borders`.
 
         A distance of 0 is a smooth joint, as between a ball and the edge at which it is cut: nothing lands
         there.
@@ -91,7 +91,7 @@ class Circles:
 
     @property
     def smooth(self) -> NDArray[np.bool_]:
-        """(n - 1,) whether each two neighbouring circles touch at a smooth joint."""
+        """(n - 1,) whether two neighbouring circles meet smoothly: `spans` is 0, and nothing lands."""
         found: NDArray[np.bool_] = self.spans == 0
         return found
 
@@ -111,14 +111,14 @@ class Circles:
         """
         told = self._told()[1]
         if not len(told):
-            raise ValueError("k: the body has a single circle, and no apex")
+            raise ValueError("k: the body stands on a single circle, and rolls round no apex")
         row = told[whole("k", k, 0, len(told) - 1)]
         if row[1] == 0:
-            raise ValueError(f"k = {k}: these circles touch at a smooth joint, where the body does not lie")
+            raise ValueError(f"k = {k}: circles {k} and {k + 1} meet smoothly; no body can lie on both")
         return Apex(*row[2:5])
 
     def rests(self) -> tuple[int, ...]:
-        """The circles k that can be at rest on the table together with circle k + 1."""
+        """The numbers k of the `circles` on which, together with circle k + 1, the body can lie at rest."""
         return tuple(np.flatnonzero(self._told()[1][:, 5]).tolist())
 
     def _told(self) -> tuple[Floats, Floats]:

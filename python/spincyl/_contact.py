@@ -1,12 +1,14 @@
 """Contact laws: rolling, a smooth table, or a law of friction."""
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import Reals, is_scalar, one_of, read_only_copy, reals, refuse_bad_value, si
 from spincyl._input.reprs import is_lazy, repr_of_call
 from spincyl._scale import Scale, refuse_other_scale, scale_of
@@ -28,7 +30,7 @@ TABLES = CODES["Table"]
 FACES = CODES["Face"]
 
 
-class _Law:
+class _Law(Hinting):
     """Base of the laws of friction: coefficients are numbers or arrays, compared by value."""
 
     #: False for numbers in natural units; True, or the scale, if they were given in SI.
@@ -208,10 +210,26 @@ def _coefficient(name: str, value: Reals) -> Reals:
     return read_only_copy(found)
 
 
+#: Contacts by other words; the last two only where laws of friction are possible.
+_MEANT = {
+    "'smooth'": ("smooth", "ice", "icy", "slippery", "slick", "frictionless", "free", "none", "no friction"),
+    "'rolling'": ("rolling", "roll", "rough", "grip", "stick", "sticking", "static", "no slip", "no-slip"),
+    "sc.Coulomb(mu)": ("coulomb", "dry", "friction", "slip", "slipping", "slide", "sliding", "kinetic"),
+    "sc.Viscous(c)": ("viscous", "wet", "water", "fluid", "linear"),
+}
+
+
+def _meant(contact: str, rubs: bool) -> str:
+    """The contact that another word means, as a question; empty if it is not known."""
+    known = {word: means for means, words in _MEANT.items() if rubs or means[0] == "'" for word in words}
+    near = get_close_matches(contact.strip().lower(), known, 1, 0.75)
+    return f"; did you mean {known[near[0]]}?" if near else ""
+
+
 def code_of(contact: object, rubs: bool = False) -> int:
     """Code of the contact "rolling" or "smooth"; with `rubs` the error also proposes laws of friction."""
     if not isinstance(contact, str) or contact not in ("rolling", "smooth"):
-        last, instead = " or 'smooth'", ""
+        last, instead = " or 'smooth'", _meant(contact, rubs) if isinstance(contact, str) else ""
         if rubs:
             last = ", 'smooth', sc.Coulomb(mu) or sc.Viscous(c)"
             if isinstance(contact, int | float):

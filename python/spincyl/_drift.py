@@ -11,6 +11,7 @@ from spincyl import _core
 from spincyl._body import Body
 from spincyl._contact import CODES
 from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Floats,
     Reals,
@@ -49,7 +50,7 @@ class DriftWarning(UserWarning):
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Drift:
+class Drift(Hinting):
     """Slow drift of one body or of many, which starts at the time 0; the result of `drift`.
 
     Angles are in radians. Times are in sqrt(R/g), for a measured body in seconds; `precession` is then in

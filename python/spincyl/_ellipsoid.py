@@ -14,6 +14,7 @@ from spincyl._ellipsoid_rows import SIX, by_blocks, checked_rows, row_parts, row
 from spincyl._ellipsoid_starts import StoneStarts, tilt_of_stone
 from spincyl._ellipsoid_state import EllipsoidState, Rocking, as_doubles, as_vectors
 from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import with_hints
 from spincyl._input.numbers import (
     Floats,
     Reals,
@@ -45,7 +46,7 @@ class Ellipsoid(StoneStarts):
 
     Parameters
     ----------
-    axes : array_like, (..., 3)
+    semi_axes : array_like, (..., 3)
         Semi-axes of the ellipsoid, in any unit of length. A stone that is only the lower half of an ellipsoid
         has its whole depth as third semi-axis. Each semi-axis is at least a millionth of the largest.
     inertia : array_like, (..., 3, 3) or (..., 3)
@@ -90,7 +91,7 @@ class Ellipsoid(StoneStarts):
     True
     """
 
-    axes: Reals
+    semi_axes: Reals
     inertia: Reals
     offset: Reals = (0.0, 0.0, 0.0)
     theta_end: Reals = math.nan
@@ -103,13 +104,13 @@ class Ellipsoid(StoneStarts):
 
     def __post_init__(self) -> None:
         self._check_scale()
-        axes = as_vectors("axes", self.axes, 3)
+        axes = as_vectors("semi_axes", self.semi_axes, 3)
         inertia = as_doubles(reals("inertia", self.inertia))
         if inertia.shape[-2:] != (3, 3) or inertia.ndim < 2:
             inertia = as_vectors("inertia", inertia, 3)[..., None] * np.eye(3)
         offset = as_vectors("offset", self.offset, 3)
         theta_end = as_doubles(reals("theta_end", self.theta_end)).reshape(np.shape(self.theta_end))
-        lead = {"axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
+        lead = {"semi_axes": axes[..., 0], "inertia": inertia[..., 0, 0], "offset": offset[..., 0]}
         common_shape(lead | {"theta_end": theta_end})
         rows = by_blocks(checked_rows, "(i),(j,k),(l),()->(m)", 18, axes, inertia, offset, theta_end)
         *fields, unit, reach = row_parts(rows)
@@ -117,7 +118,7 @@ class Ellipsoid(StoneStarts):
             object.__setattr__(self, "_doubted", True)
             most = f"{float(np.nanmax(reach)):.3g} times the largest inertia of a mass inside the ellipsoid"
             warn(f"inertia: {most}; expected inertia per mass, in the unit of the semi-axes squared")
-        for name, value in zip(("axes", "inertia", "offset", "theta_end"), fields, strict=True):
+        for name, value in zip(("semi_axes", "inertia", "offset", "theta_end"), fields, strict=True):
             object.__setattr__(self, name, read_only_copy(value))
         object.__setattr__(self, "_unit", self._unit * unit)
 
@@ -133,19 +134,21 @@ class Ellipsoid(StoneStarts):
         return cls(*numbers, _unit=unit)
 
     @classmethod
-    def uniform(cls, axes: Reals, *, mass: float | None = None) -> Self:
-        """Uniform ellipsoid with the semi-axes `axes`, (..., 3).
+    def uniform(cls, semi_axes: Reals, *, mass: float | None = None) -> Self:
+        """Uniform ellipsoid with these semi-axes, (..., 3): half its length, its width and its height.
 
         A `mass` in kilograms, or lengths such as "8cm", make a measured stone. Raises the same errors as
         `Ellipsoid`.
         """
-        axes, told = lengths_in_metres("axes", axes)
-        return cls._of(_core.uniform_stone, axes=(as_vectors("axes", axes, 3), True))._measured(told, mass)
+        semi_axes, told = lengths_in_metres("semi_axes", semi_axes)
+        vectors = as_vectors("semi_axes", semi_axes, 3)
+        return cls._of(_core.uniform_stone, semi_axes=(vectors, True))._measured(told, mass)
 
     @classmethod
+    @with_hints
     def rattleback(
         cls,
-        axes: Reals,
+        semi_axes: Reals,
         *,
         twist: Reals,
         moments: Reals | None = None,
@@ -156,10 +159,11 @@ class Ellipsoid(StoneStarts):
 
         Parameters
         ----------
-        axes : array_like, (..., 3)
-            Semi-axes; the stone stands on the end of the third. A stone 16 cm long, 3.2 cm wide and 1.4 cm
-            deep, the lower half of an ellipsoid, has the semi-axes (0.08, 0.016, 0.014). Texts such as
-            ("8cm", "16mm", "14mm") make a measured stone.
+        semi_axes : array_like, (..., 3)
+            Semi-axes of the whole ellipsoid: half its length, half its width, half its height. The stone
+            stands on the end of the third. A stone that is the lower half of an ellipsoid, 16 cm long, 3.2 cm
+            wide and 1.4 cm deep, has the semi-axes (0.08, 0.016, 0.014): its depth is the third. Texts such
+            as ("8cm", "16mm", "14mm") make a measured stone.
         twist : array_like
             Angle about axis 3 from the axes of the shape to the axes of inertia, in radians, counterclockwise
             as seen from above.
@@ -170,7 +174,7 @@ class Ellipsoid(StoneStarts):
             Vector from the centre of the ellipsoid to the centre of mass. Default: zero with `moments`;
             without them the offset of the lower half, downward by 3/8 of the third semi-axis.
         mass : float, optional
-            Mass in kilograms; makes a measured stone, with `axes` in metres. See also `in_metres`.
+            Mass in kilograms; makes a measured stone, with `semi_axes` in metres. See also `in_metres`.
 
         Raises
         ------
@@ -181,11 +185,12 @@ class Ellipsoid(StoneStarts):
         --------
         >>> import numpy as np
         >>> import spincyl as sc
-        >>> stone = sc.Ellipsoid.rattleback((0.20, 0.03, 0.02), twist=np.radians(3)).in_metres(mass=0.3)
+        >>> half = {"semi_axes": (0.20, 0.03, 0.02)}  # a stone 40 cm long, 6 cm wide and 2 cm deep
+        >>> stone = sc.Ellipsoid.rattleback(**half, twist=np.radians(3)).in_metres(mass=0.3)
         >>> print(f"{stone.growth_rates(-1.0).max() / stone.scale.seconds(1.0):.1f} per second")
         15.4 per second
         """
-        axes, told = lengths_in_metres("axes", axes)
+        semi_axes, told = lengths_in_metres("semi_axes", semi_axes)
         wide = [
             None if x is None else as_vectors(name, x, 3)
             for name, x in (("moments", moments), ("offset", offset))
@@ -194,7 +199,7 @@ class Ellipsoid(StoneStarts):
             refuse_bad_value("moments", wide[0], lambda x: ~np.isfinite(x), "expected finite numbers")
         found = cls._of(
             _core.rattleback,
-            axes=(as_vectors("axes", axes, 3), True),
+            semi_axes=(as_vectors("semi_axes", semi_axes, 3), True),
             moments=(wide[0], wide[0] is not None),
             twist=(tilt_of_stone("twist", twist), False),
             offset=(wide[1], wide[1] is not None),
@@ -241,7 +246,7 @@ class Ellipsoid(StoneStarts):
     @property
     def shape(self) -> tuple[int, ...]:
         """Shape of the family; () for a single stone."""
-        a, i, d, end = (np.shape(x) for x in (self.axes, self.inertia, self.offset, self.theta_end))
+        a, i, d, end = (np.shape(x) for x in (self.semi_axes, self.inertia, self.offset, self.theta_end))
         return np.broadcast_shapes(a[:-1], i[:-2], d[:-1], end)
 
     @property
@@ -300,9 +305,9 @@ class Ellipsoid(StoneStarts):
         return float(units[0])
 
     def _bulk(self) -> tuple[str, tuple[float, float], float]:
-        volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.axes), axis=-1)))
+        volume = float(np.max(4 / 3 * math.pi * np.prod(np.asarray(self.semi_axes), axis=-1)))
         cut = not bool(np.isnan(np.asarray(self.theta_end)).all())
-        wide = float(np.max(np.median(np.asarray(self.axes), axis=-1)))
+        wide = float(np.max(np.median(np.asarray(self.semi_axes), axis=-1)))
         return "stone", (2.0, 2 * wide), volume / 2 if cut else volume  # about half of the ellipsoid
 
     def _with_scale(self, scale: Scale | None) -> Self:
@@ -342,7 +347,8 @@ class Ellipsoid(StoneStarts):
         words = [f"{name}={np.asarray(x).tolist() if name != 'scale' else x!r}" for name, x in more.items()]
         inertia = np.asarray(self.inertia)
         moments = np.diagonal(inertia) if (inertia == np.diag(np.diagonal(inertia))).all() else inertia
-        return f"Ellipsoid({', '.join([str(np.asarray(self.axes).tolist()), str(moments.tolist()), *words])})"
+        numbers = str(np.asarray(self.semi_axes).tolist()), str(moments.tolist())
+        return f"Ellipsoid({', '.join([*numbers, *words])})"
 
     @property
     def _numbers(self) -> list[float]:
@@ -351,7 +357,7 @@ class Ellipsoid(StoneStarts):
             raise ValueError(f"body: expected a single stone, not a family of shape {self.shape}")
         inertia = np.asarray(self.inertia)
         return [
-            *np.asarray(self.axes).tolist(),
+            *np.asarray(self.semi_axes).tolist(),
             *six_of_tensor(inertia),
             *np.asarray(self.offset).tolist(),
             float(self.theta_end),
@@ -361,7 +367,7 @@ class Ellipsoid(StoneStarts):
         """The thirteen numbers of a family, each an array of the family's shape or a single number."""
         inertia: Any = self.inertia
         moments = (inertia[..., i, j] for i, j in SIX)
-        return [*components(self.axes), *moments, *components(self.offset), self.theta_end]
+        return [*components(self.semi_axes), *moments, *components(self.offset), self.theta_end]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
         """Apply a function of the core to each stone of a family; NaN, or the error of a single stone."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from spincyl._input.numbers import Floats, components, instance_of
 from spincyl._motion import ENDINGS, Motion, fixed_step
 from spincyl._outputs import ALOFT, FRICTION, Number, output_in_units
 from spincyl._phases import has_friction
+from spincyl._reversals import reversal_times
 
 
 class EllipsoidMotion(Motion):
@@ -77,6 +79,17 @@ class EllipsoidMotion(Motion):
         """(n,) angular velocity about the vertical, sqrt(g/a) or rad/s; a rattleback reverses it."""
         found: Floats = _core.stone_spin(*components(self.vertical), *components(self.w))
         return found
+
+    @cached_property
+    def reversals(self) -> Floats:
+        """Times at which the spin reverses, in sqrt(a/g) or s, up to `known_until`.
+
+        A reversal counts if the spin passes zero and then reaches a tenth of the initial spin in the other
+        direction, as in `sweep.roll`; its time is that of the last zero before, which does not depend on the
+        times `t` of the motion. A spin that begins at zero has no reversals.
+        """
+        found = reversal_times(self.natural)  # type: ignore[arg-type]
+        return found if self.scale is None else found * self.scale._units[1]
 
     @property
     def inclinations(self) -> Floats:

@@ -1,7 +1,8 @@
 """Stones as rows of numbers from the core: computed at once, or block by block for arrays of dask."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -44,13 +45,23 @@ def by_blocks(law: Callable[..., Floats], signature: str, size: int, *arrays: Re
     )
 
 
+@contextmanager
+def _named_as_in_python() -> Iterator[None]:
+    """Context in which errors of the core about the semi-axes begin with the name that they have here."""
+    try:
+        yield
+    except ValueError as e:
+        raise ValueError(f"semi_{e}" if str(e).startswith("axes") else str(e)) from None
+
+
 def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
     """Rows of checked stones, with largest semi-axis and reach of each (`Ellipsoid::reach`); (..., 18)."""
     each = axes, inertia.reshape(*inertia.shape[:-2], 9), offset, theta_end[..., None]
     shape = np.broadcast_shapes(*(x.shape[:-1] for x in each))
     given = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in each], axis=-1)
     if shape == ():
-        one, size, out = _core.check_stone(given.tolist())
+        with _named_as_in_python():
+            one, size, out = _core.check_stone(given.tolist())
         return with_whole_tensor(np.array([*one, size, out]))
     return with_whole_tensor(_core.check_stones(given.reshape(math.prod(shape), 16)).reshape(*shape, 15))
 
@@ -70,7 +81,10 @@ def rows_by(
     found = np.full((*shape, 14), np.nan)
     for i in np.ndindex(shape):
         try:
-            numbers, unit = make(*(inputs[name][i].tolist() if name in inputs else None for name in names))
+            with _named_as_in_python():
+                numbers, unit = make(
+                    *(inputs[name][i].tolist() if name in inputs else None for name in names)
+                )
         except ValueError:
             if not shape:
                 raise

@@ -8,6 +8,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._ellipsoid_state import EllipsoidState, as_doubles
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -24,7 +25,7 @@ from spincyl._sized import Sized
 from spincyl._slip import rise_of_stone, slip_of_stone
 
 
-class StoneStarts(Sized):
+class StoneStarts(Sized, Hinting):
     """Base of stones: the states from which their motions start."""
 
     def spinning(

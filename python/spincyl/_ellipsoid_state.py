@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Floats,
     Reals,
@@ -66,7 +67,7 @@ class Rocking(NamedTuple):
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class EllipsoidState:
+class EllipsoidState(Hinting):
     """State of a stone, in natural units: vertical and angular velocity along the axes of the ellipsoid.
 
     The last axis of an array holds the components of a vector; the other axes broadcast. Dask arrays stay

@@ -152,7 +152,7 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How near to its limit dry friction holds a body at rest.
+    """Share of its limit with which dry friction holds a body at rest.
 
     Attributes
     ----------

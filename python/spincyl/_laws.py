@@ -193,9 +193,10 @@ class Laws(Circles):
 
     @elementwise
     def topples(self, mu: Reals, theta: Reals = 0.0) -> Result:
-        """Whether the body topples as it slides straight on its face: mu Z > a.
+        """Whether the body topples as it slides straight on its face.
 
-        Z is the height of the centre of mass, a the radius of the face. A body that also spins may stay up.
+        It does if mu Z > a, with the height Z of the centre of mass and the radius a of the face. A body that
+        also spins may stay up.
 
         Parameters
         ----------
@@ -303,12 +304,12 @@ class Laws(Circles):
             found = np.vectorize(of_circles, otypes=[float])(theta, mu, code, phi)[()]
         if is_scalar(found) and np.isnan(found):
             refuse_bad_value("mu", mu, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
-            needs = "a body that can be so; on one rim only a disk or a ball, with its axis across"
+            needs = "one that this body can have; on one rim only a disk or a ball rolls, with its axis level"
             raise ValueError(f"posture = {posture!r}: expected {needs}")
         return found
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
-        """Inclinations at which the stability changes; unit, shape and errors as for `folds`."""
+        """Inclinations at which steady states become unstable; unit, shape and errors as for `folds`."""
         law = _core.boundary_rolling if is_rolling(contact) else _core.boundary_smooth
         return self._several(law)
 
@@ -404,7 +405,7 @@ class Laws(Circles):
 
     @elementwise
     def speed_o(self, state: State) -> Result:
-        """Speed of the point O, in sqrt(g R).
+        """Speed of the point O, opposite to the contact point, in sqrt(g R).
 
         O is the mirror image of the contact point in the centre of mass; for a tube with sharp rims, the
         uppermost point of the upper rim. Its speed is 0 if the centre is at rest.
@@ -413,7 +414,7 @@ class Laws(Circles):
 
     @elementwise
     def speed_x(self, state: State) -> Result:
-        """Speed of the point X, in sqrt(g R).
+        """Speed of the point X, the highest one of the circle of contact, in sqrt(g R).
 
         X is the highest point of the circle of the body along which it touches the table. With a sharp rim
         and the centre at rest its speed is 2 ell w1.

@@ -10,6 +10,7 @@ import numpy as np
 from spincyl import _core
 from spincyl._body import Body
 from spincyl._input.equality import equality_key
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -47,7 +48,7 @@ _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
 
 
-class Loss:
+class Loss(Hinting):
     """A loss law, or a sum of loss laws: a couple on the body that takes energy from its motion."""
 
     __array_ufunc__ = None  # so that NumPy does not add the law to each element of an array
@@ -201,7 +202,7 @@ class Law(Loss):
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """The law itself, as a tuple of one."""
+        """The laws of which it consists: this law alone."""
         return (self,)
 
     def __repr__(self) -> str:

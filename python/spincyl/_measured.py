@@ -13,6 +13,7 @@ import numpy as np
 
 from spincyl._body import Body
 from spincyl._input.hints import with_hints
+from spincyl._input.materials import density_in_si
 from spincyl._input.numbers import Floats, Reals, in_range, metres, reals, refuse_bad_value, si
 from spincyl._phases import COUPLE_COLUMN, IMPULSE_COLUMNS, LOST_COLUMN
 from spincyl._scale import Scale, scale_of, unit_of_output
@@ -29,6 +30,7 @@ def measured(
     inner_diameter: float = 0.0,
     wall: float | None = None,
     mass: float | None = None,
+    density: float | str | None = None,
     fillet: float = 0.0,
     gravity: float = Scale.gravity,
 ) -> Body:
@@ -47,6 +49,10 @@ def measured(
     mass : float, optional
         Mass in kilograms. Rates, times and lengths do not need the mass. Without a mass, forces and energies
         raise an error.
+    density : float or str, optional
+        Density in kg/m^3, in place of `mass`, or the name of a material: "steel", "stainless steel", "cast
+        iron", "aluminium", "brass", "copper", "glass", "acrylic", "polypropylene", "polystyrene", "PET",
+        "PVC", "PTFE", "oak" or "fir". The mass is then that of the tube with its fillets.
     fillet : float
         Radius of the rounded outer edges, in metres.
     gravity : float
@@ -73,6 +79,11 @@ def measured(
         If the tube is larger than 5 m or smaller than 0.1 mm, or its density is below that of foam or above
         that of osmium. Probably millimetres were given for metres.
 
+    Notes
+    -----
+    Densities of materials: Callister, Rethwisch, Fundamentals of Materials Science and Engineering, 3rd ed.
+    (Wiley, 2008), Table B.1; docs/api.md lists them. Those of alloys, plastics and wood vary by some percent.
+
     See Also
     --------
     Body.in_metres : makes any other body a measured body.
@@ -83,6 +94,9 @@ def measured(
     >>> tube = sc.measured(outer_diameter=15.875e-3, inner_diameter=12.7e-3, length=95.25e-3, mass=20e-3)
     >>> print(f"{tube.critical_hertz:.2f} Hz")
     6.18 Hz
+    >>> rod = sc.measured(outer_diameter="1cm", length="5cm", density="brass")
+    >>> print(f"{1e3 * rod.scale.mass:.1f} g")
+    33.4 g
     >>> m = sc.roll(tube, tube.steady(1.4).kicked(0.05), 2.0, want="force")  # of two seconds
     >>> print(f"{m.t[-1]} s, {m.normal[-1]:.3f} N")
     2.0 s, 0.178 N
@@ -100,6 +114,11 @@ def measured(
         given["inner_diameter"] = outer - 2 * thick
     body = Body.from_metres(**given)
     in_range("outer_diameter", given["outer_diameter"], 2e-100, 2e100, "metres")
+    if density is not None:
+        if mass is not None:
+            raise TypeError("mass, density: give only one of them")
+        dense = in_range("density", density_in_si(density), 1e-100, 1e100, "kg/m^3")
+        mass = dense * body._bulk()[2] * (given["outer_diameter"] / 2) ** 3
     return body.in_metres(mass, gravity=gravity)
 
 
@@ -173,7 +192,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     second = scale._units[1]
     asked = m._asked
     event = m.event and m.event._replace(time=m.event.time * second)
-    made = ("phases", "impacts")  # in natural units, if they have been looked at
+    made = ("phases", "impacts", "reversals")  # in natural units, if they have been looked at
     found: dict[str, Any] = {name: x for name, x in m.__dict__.items() if name not in made} | {
         "body": body,
         "t": seconds[: m.t.size].copy(),

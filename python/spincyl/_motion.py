@@ -180,7 +180,7 @@ class Motion(Outputs):
 
     @property
     def rim(self) -> NDArray[np.uint8]:
-        """(n,) code of the rim from which the body is seen at each time: 0 its first rim, 1 the other one.
+        """(n,) code of the rim to which theta and w refer at each time: 0 the first rim, 1 the other one.
 
         For a body of several circles it is the number of the circle in `Body.circles` that carries the body
         or did so before a flight; on two circles the lower one. Theta, w, phi, psi then do not depend on it.
@@ -247,7 +247,7 @@ class Motion(Outputs):
 
     @property
     def lost_in_impacts(self) -> Floats:
-        """(n,) energy lost in impacts and their friction since the start, M g R, J. Needs `restitution=`."""
+        """(n,) energy lost in impacts and their friction since the start, M g R or J. Needs restitution."""
         of = self.natural._impacts
         if of is None:
             raise missing_output(self, "impacts", ALOFT)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from spincyl._body import Body
 from spincyl._contact import contact_in_words
 from spincyl._ending import Held, held
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import Floats
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _given(m: "Motion", setting: str) -> bool:
     return not (value is None or value is False or value == math.inf)
 
 
-class Outputs:
+class Outputs(Hinting):
     """Outputs of a motion at each time that are computed if they were asked for."""
 
     contact_point = Number(
@@ -116,7 +117,7 @@ class Outputs:
     )
     friction_coefficient = Number(
         FORCE,
-        '(n,) coefficient of friction needed; infinite if N <= 0, NaN in the air. Needs want="force".',
+        '(n,) `friction` over `normal`; infinite if N <= 0, NaN in the air. Needs want="force".',
     )
     contact_force = Number(
         BOTH,
@@ -140,7 +141,8 @@ class Outputs:
         """,
     )
     dissipated = Number(
-        FRICTION, "(n,) heat of friction since the start, without impacts, M g R, J. Needs a law of friction."
+        FRICTION,
+        "(n,) heat of friction since the start, without impacts, M g R or J. Needs a law of friction.",
     )
     phase = Number(
         FRICTION,
@@ -154,7 +156,8 @@ class Outputs:
         PATCH, "(n,) angular velocity about the vertical over the table, sqrt(g/R) or rad/s. Needs a patch."
     )
     creep = Number(
-        PATCH, "(n,) slip over the product of `drilling` and patch radius; 0 in rolling. Needs a patch."
+        PATCH,
+        "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch.",
     )
     couple = Number(
         COUPLE,
@@ -178,10 +181,12 @@ class Outputs:
     slip_other = Number(
         ALOFT, "(n, 2) `slip` of the other rim; NaN unless both rims touch the table. Needs `restitution=`."
     )
-    normal_other = Number(ALOFT, '(n,) `normal` of the other rim. Needs `restitution=` and want="force".')
+    normal_other = Number(
+        ALOFT, '(n,) normal force on the other rim, M g or N. Needs `restitution=` and want="force".'
+    )
     friction_other = Number(
         ALOFT,
-        """(n,) `friction` of the other rim. Needs `restitution=` and want="force".
+        """(n,) horizontal force on the other rim, M g or N. Needs `restitution=` and want="force".
 
         While a body rolls round its apex, only the sum of the frictions of both circles is determined: they
         are shares of it in the ratio of the normal forces.
@@ -193,7 +198,7 @@ class Outputs:
 
     @property
     def work_table(self: Any) -> Floats:
-        """(n,) work of a table that turns since the first time, M g R or J."""
+        """(n,) work that a turning table has done on the body since the first time, M g R or J."""
         found: Floats = self.energy - self.energy[0]
         for name in ("dissipated", "work_lost"):
             found = found + (getattr(self, name) if name in self._extra else 0.0)
@@ -201,10 +206,10 @@ class Outputs:
 
     @cached_property
     def held(self) -> Held | None:
-        """How near to its limit dry friction holds the body; None unless a body of revolution `STOPS`.
+        """Share of its limit with which dry friction holds a body at rest; None unless the motion `STOPS`.
 
-        On a level table the share is 0, but for a body that dry losses hold on its edge off its balance. Laws
-        of your own have none, nor has a table that turns.
+        The share is 0 on a level table, unless dry losses hold the body on its edge off its balance. It is
+        None for a stone, for a law of your own, and on a table that turns.
         """
         found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found

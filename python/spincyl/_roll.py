@@ -283,7 +283,8 @@ def roll(
         of = one if scale is None else one.natural
         m: Motion = stones.rolled_stone(of, given, asked) if stone else rolled(of, start, asked, numbers)
     if not stone and step is None and restitution is None and not m.error <= LARGE_ERROR:
-        warn(f"the estimated error of the motion is {m.error:.2g}, in natural units", ErrorWarning)
+        why = "in natural units: its last states are not known"
+        warn(f"the estimated error of the motion is {m.error:.2g}, {why}", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)

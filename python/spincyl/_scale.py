@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
+from spincyl._input.hints import Hinting
 from spincyl._input.numbers import Reals, Result, elementwise, number, reals, si
 from spincyl._upward import function_of_method
 
@@ -31,7 +32,7 @@ _UNITS_WITH_MASS = ("J", "N")
 
 @compared_by_value
 @dataclass(frozen=True)
-class Scale:
+class Scale(Hinting):
     """Size, mass and gravity of a body in SI; methods convert results from natural units to SI.
 
     Each argument is a number, a text such as "12mm", or a pint quantity in any suitable unit.

@@ -8,7 +8,7 @@ import numpy as np
 
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
-from spincyl._input.hints import Hinting
+from spincyl._input.hints import HintingFamily
 from spincyl._input.numbers import (
     Reals,
     Result,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class State(Hinting):
+class State(HintingFamily):
     """Inclination and angular velocity of a body, in natural units, also for a measured body.
 
     Components are along axes that follow the inclination and the precession, but not the spin. e3 is the

@@ -3,14 +3,14 @@
 from dataclasses import dataclass, field
 
 from spincyl._input.equality import compared_by_value
-from spincyl._input.hints import Hinting
+from spincyl._input.hints import HintingFamily
 from spincyl._input.numbers import Reals, number, radians, read_only_copy, reals
 from spincyl._input.reprs import repr_of_call
 
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Table(Hinting):
+class Table(HintingFamily):
     """A table that is level or tilted, and may turn, for `table=` of `roll` and `sweep.roll`.
 
     On a slope x points downhill in the table, y to the left of one who looks downhill, and z along its

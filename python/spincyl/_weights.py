@@ -14,7 +14,7 @@ _Stone = TypeVar("_Stone", bound=Any)
 
 def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
     """Add point masses to a stone; see `Ellipsoid.with_weights`."""
-    if np.ndim(stone.axes) != 1:
+    if np.ndim(stone.semi_axes) != 1:
         raise ValueError("with_weights: expected a single stone, not a family")
     scale = stone.scale
     if scale is not None and math.isnan(scale.mass):
@@ -23,7 +23,7 @@ def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
     found = [_mass_and_place(i, each, scale is not None) for i, each in enumerate(_as_list(weights))]
     if not found:
         return stone
-    axes, offset = np.asarray(stone.axes), np.asarray(stone.offset)
+    axes, offset = np.asarray(stone.semi_axes), np.asarray(stone.offset)
     bodies = [(1.0, offset, np.asarray(stone.inertia))]
     for i, (mass, place) in enumerate(found):
         place = place / size

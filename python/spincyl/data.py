@@ -34,3 +34,7 @@ __all__ = [
     "read_tracker",
     "wobble",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "MOST_BYTES", *(name for name in globals() if name.startswith("__"))]

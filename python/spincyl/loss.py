@@ -82,7 +82,10 @@ _AIR_VISCOSITY, _AIR_DENSITY = 1.8e-5, 1.2  # Pa s, kg/m^3
 class DryContour(Law):
     """Dry friction along the contour of the rim: ``P = eps N A |psi'|``.
 
-    The couple is m = eps N A sgn(psi') h/s, as if the normal force acted ahead of the contact point by eps/s.
+    P is the power that the law takes, N the normal force, psi' the spin and A psi' the speed of the contact
+    point along the rim; A is 1 for a sharp rim and 1 - fillet + fillet sin(theta) for a rounded one. The
+    couple is m = eps N A sgn(psi') h/s, with s = sin(theta) and the horizontal vector h, which is e_h of
+    `State`: as if the normal force acted ahead of the contact point by eps/s.
     At theta below about eps it would act outside the rim, which is impossible. Source: Le Saux, Leine and
     Glocker, J. Nonlinear Sci. 15, 27 (2005).
 
@@ -106,9 +109,10 @@ class DryContour(Law):
 class ViscousContour(Law):
     """Viscous friction along the contour of the rim: P = c (A psi')^2.
 
-    The couple is m = c A^2 psi' h/s; here c is the coefficient, not the cosine. Source: Leine, Arch. Appl.
-    Mech. 79, 1063 (2009). McDonald and McDonald, arXiv physics/0008227, observed a power that grows as the
-    square of the rate.
+    P is the power that the law takes, psi' the spin and A psi' the speed of the contact point along the rim,
+    as for `DryContour`. The couple is m = c A^2 psi' h/s, with s = sin(theta) and the horizontal vector h,
+    which is e_h of `State`. Source: Leine, Arch. Appl. Mech. 79, 1063 (2009). McDonald and McDonald, arXiv
+    physics/0008227, observed a power that grows as the square of the rate.
 
     Parameters
     ----------
@@ -137,9 +141,11 @@ class ViscousContour(Law):
 class RollingResistance(Law):
     """Rolling resistance with the classical arm delta: P = delta N sqrt(w_h^2 + w2^2).
 
-    The normal force acts ahead of the contact point by the arm delta. The couple is
-    m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2), since w_h is along h and w2 along e2. This law alone
-    stops a coin in a finite time, but after infinitely many turns.
+    P is the power that the law takes, N the normal force. The angular velocity has the horizontal components
+    w_h along e_h of `State` and w2 along e2; the rest of it, about the vertical, is not resisted. The normal
+    force acts ahead of the contact point by the arm delta. The couple along e1, e2, e3 is
+    m = -delta N (cos(theta) w_h, w2, -sin(theta) w_h)/sqrt(w_h^2 + w2^2). It acts whether the contact point
+    slips or not. This law alone stops a coin in a finite time, but after infinitely many turns.
 
     Parameters
     ----------
@@ -161,6 +167,7 @@ class RollingResistance(Law):
 class Drilling(Law):
     """Friction of the patch of contact as it rotates on the table: ``P = length N |w_z|``.
 
+    P is the power that the law takes, N the normal force, and w_z the angular velocity about the vertical z.
     The couple is m = -length N sgn(w_z) z. This law alone never stops a thin disk; it does stop a disk of
     finite height. Source: Contensou (1963); Leine, Arch. Appl. Mech. 79, 1063 (2009).
 
@@ -185,7 +192,7 @@ class Drilling(Law):
 class AirLinear(Law):
     """Air drag linear in the angular velocity (Stokes): P = b w.w.
 
-    The couple is m = -b w.
+    P is the power that the law takes, w the vector of the angular velocity. The couple is m = -b w.
 
     Parameters
     ----------
@@ -214,7 +221,7 @@ class AirLinear(Law):
 class AirQuadratic(Law):
     """Air drag quadratic in the angular velocity (Newton): ``P = b2 |w|^3``.
 
-    The couple is ``m = -b2 |w| w``.
+    P is the power that the law takes, w the vector of the angular velocity. The couple is ``m = -b2 |w| w``.
 
     Parameters
     ----------
@@ -241,12 +248,13 @@ class AirQuadratic(Law):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AirFilm(Law):
-    """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/s.
+    """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/sin(theta).
 
-    The couple is m = (pi/4) viscosity psi' h/s^2. Source: Moffatt, Nature 404, 833 (2000). The film fills the
-    gap only where theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, with the kinematic viscosity nu of air;
-    for Euler's disk, below 0.005 rad. At larger inclinations use `BoundaryLayer`. The drift of a measured
-    body that starts at a larger inclination issues a warning.
+    P is the power that the law takes, psi' the spin. The couple is m = (pi/4) viscosity psi' h/sin(theta)^2,
+    along the horizontal vector h, which is e_h of `State`. Source: Moffatt, Nature 404, 833 (2000). The film
+    fills the gap only where theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, with the kinematic viscosity nu
+    of air; for Euler's disk, below 0.005 rad. At larger inclinations use `BoundaryLayer`. The drift of a
+    measured body that starts at a larger inclination issues a warning.
 
     Parameters
     ----------
@@ -277,8 +285,9 @@ class AirFilm(Law):
 class BoundaryLayer(Law):
     """Boundary layers of the air that a flat face presses out below it: ``P = k |psi'|^(5/2)``.
 
-    The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``. Source: Bildsten, Phys. Rev. E 66, 056309 (2002). The
-    law holds at inclinations so large that the film of `AirFilm` does not fill the gap.
+    P is the power that the law takes, psi' the spin. The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``, with
+    s = sin(theta) and the horizontal vector h, which is e_h of `State`. Source: Bildsten, Phys. Rev. E 66,
+    056309 (2002). The law holds at inclinations so large that the film of `AirFilm` does not fill the gap.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
 """Parts on one axis, from which `assembled` makes a body: cylinders, cones, balls, thin walls, rings, points.
 
 Diameters, lengths and heights are numbers in metres, or texts such as "18mm". Give each part its `mass` (kg)
-or its `density`: in kg/m^3 for a solid part, in kg/m^2 for a thin wall, in kg/m for a ring. `at` is the
-height of the lowest point of the part. By default the first part is at height 0, and each further part stands
-on the part before it; a part that would stand on nothing, such as a hub in the hole of a wheel, needs `at`.
+or its `density`: in kg/m^3 for a solid part, in kg/m^2 for a thin wall, in kg/m for a ring. For a solid part
+it may also be the name of a material, such as "steel"; `measured` lists these names. `at` is the height of
+the lowest point of the part. By default the first part is at height 0, and each further part stands on the
+part before it; a part that would stand on nothing, such as a hub in the hole of a wheel, needs `at`.
 
 >>> import spincyl as sc
 >>> from spincyl import parts
@@ -24,6 +25,7 @@ from typing import Any
 
 from spincyl import _core
 from spincyl._body import Body
+from spincyl._input.materials import density_in_si
 from spincyl._input.numbers import instance_of, number, si
 from spincyl._input.units import suspicion_of_units
 from spincyl._scale import Scale
@@ -118,7 +120,7 @@ def cylinder(
     fillet: float = 0.0,
     at: float | None = None,
     mass: float | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
 ) -> Part:
     """Solid or hollow cylinder. A `fillet` rounds the outer edges, but does not change mass and moments."""
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
@@ -133,7 +135,7 @@ def cone(
     length: float,
     at: float | None = None,
     mass: float | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
 ) -> Part:
     """Solid cone or frustum. One of the two diameters may be 0."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
@@ -146,7 +148,7 @@ def ball(
     inner_diameter: float = 0.0,
     at: float | None = None,
     mass: float | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
 ) -> Part:
     """Solid or hollow ball."""
     r, b = _metres("diameter", diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
@@ -160,7 +162,7 @@ def cap(
     upper: bool = False,
     at: float | None = None,
     mass: float | None = None,
-    density: float | None = None,
+    density: float | str | None = None,
 ) -> Part:
     """Solid cap of a ball: its lowest part, of the given `height`; with `upper`, its highest part."""
     r, h = _metres("diameter", diameter) / 2, _metres("height", height)
@@ -326,17 +328,18 @@ def _part(
     numbers: tuple[float, ...],
     at: float | None,
     mass: float | None,
-    density: float | None,
+    density: float | str | None,
 ) -> Part:
     if (mass is None) == (density is None):
         raise TypeError(f"mass, density: give exactly one of them for the {name}")
     if mass is not None:
         amount: Any = number("mass", si("mass", mass, "kilogram"))
     else:
-        if isinstance(density, str):
-            told = "a number in kg/m^3, for a thin wall in kg/m^2, for a ring in kg/m"
-            raise TypeError(f"density: expected {told}, not the text {density!r}")
-        amount = number("density", density)
+        if isinstance(density, str) and form not in (_SOLID, _BALL):
+            told = "in kg/m^2 for a thin wall: the density of its material times its thickness"
+            told = "in kg/m for a ring" if form == _RING else told
+            raise TypeError(f"density: expected a number {told}, not the text {density!r}")
+        amount = number("density", density) if form not in (_SOLID, _BALL) else density_in_si(density)
     low = None if at is None else _metres("at", at)
     if low is not None and not math.isfinite(low):
         raise ValueError(f"at = {low}: expected a finite height")

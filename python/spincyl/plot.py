@@ -26,3 +26,7 @@ __all__ = [
     "motion",
     "portrait",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

@@ -16,11 +16,71 @@ _Given = ParamSpec("_Given")
 _Found = TypeVar("_Found")
 _MOST_LISTED = 24  #: More names than these are not listed.
 _TABLE = "roll takes table=sc.Table(slope)"
-#: Proposals for attributes of bodies and states.
 _STILL = dict.fromkeys(
     ("still", "still_symbols", "symbols"),
     "contact_radius of a state is the number of still symbols in one turn, if the centre rests",
 )
+_SIZE = "scale of a measured body has its radius in m and its mass in kg; it is None for any other body"
+#: Proposals for attributes of objects, by the class of the object.
+_ATTRIBUTES: dict[str, dict[str, str]] = {
+    "Body": {
+        **_STILL,
+        **dict.fromkeys(("mass", "radius", "diameter", "gravity"), _SIZE),
+        **dict.fromkeys(("aspect", "half_length", "length"), "ell is the height of the centre of mass, in R"),
+        **dict.fromkeys(("inertia", "moments", "I1", "I3"), "i1 and i3 are the moments, in M R^2"),
+        **dict.fromkeys(("kappa", "frequency"), "stability(theta) is kappa, nutation(theta) a frequency"),
+    },
+    "State": {
+        **_STILL,
+        **dict.fromkeys(("w", "omega"), "w1, w2, w3 are the angular velocity along e1, e2, e3"),
+        **dict.fromkeys(("velocity", "v", "speed"), "body.centre_velocity(state) is that of the centre"),
+        **dict.fromkeys(("phi", "psi"), "a state has rates, precession (phi') and spin (psi'); see want="),
+    },
+    "Motion": {
+        **_STILL,
+        **dict.fromkeys(
+            ("omega", "w1", "w2", "w3", "angular_velocity"), "w has w1, w2, w3 in its columns, as m.w[:, 0]"
+        ),
+        **dict.fromkeys(("velocity", "v", "speed"), "body.centre_velocity(m.states) is that of the centre"),
+        **dict.fromkeys(
+            ("position", "positions", "x", "path", "trajectory", "centre_of_mass", "center", "pose"),
+            'centre, contact_point and orientation are there with want="pose"',
+        ),
+        **dict.fromkeys(("quaternion", "quaternions", "rotation", "attitude"), "orientation is a quaternion"),
+        **dict.fromkeys(("angle", "tilt", "alpha", "inclination"), "theta is the inclination"),
+        **dict.fromkeys(("time", "times", "ts"), "t has the times"),
+        **dict.fromkeys(("precession", "gamma"), "states has it: m.states.precession"),
+        "spin": "states has it: m.states.spin; psi is the angle of the spin",
+        **dict.fromkeys(("events", "end", "ending", "stops_at"), "event has the time and state of the end"),
+        **dict.fromkeys(("heat", "lost", "energy_lost"), "dissipated, work_lost and lost_in_impacts"),
+        **dict.fromkeys(("force", "forces", "normal_force"), 'normal, friction, with want="force"'),
+        **dict.fromkeys(("animate", "animation", "video", "movie", "gif"), "sc.view(m).save('film.mp4')"),
+        **dict.fromkeys(("view", "show", "display", "page", "html"), "sc.view(m) shows it"),
+        **dict.fromkeys(("save", "to_csv", "csv"), "to_dataframe().to_csv(path), or sc.view(m).save(path)"),
+        **dict.fromkeys(("df", "dataframe", "to_pandas", "table"), "to_dataframe() is a table"),
+        **dict.fromkeys(("bounces", "hits", "collisions"), "impacts, with restitution="),
+        **dict.fromkeys(("steps", "step"), "nfev counts evaluations, rk4 judges a fixed step"),
+    },
+    "EllipsoidMotion": {
+        **dict.fromkeys(
+            ("velocity", "v", "speed"), 'slip is that of the contact point; centre is there with want="pose"'
+        ),
+        **dict.fromkeys(("precession", "phi", "psi"), "spin is the angular velocity about the vertical"),
+    },
+    "Ellipsoid": {
+        **dict.fromkeys(("mass", "radius", "gravity"), _SIZE),
+        **dict.fromkeys(
+            ("axes", "length", "width", "a", "ell"), "semi_axes are half of length, width and height"
+        ),
+        **dict.fromkeys(("i1", "i3"), "moments are the principal moments, in M a^2"),
+        **dict.fromkeys(("rate", "steady", "states"), "only for bodies of revolution; see rocking(spin)"),
+        "roll": "sc.roll(stone, state, t) computes a motion",
+    },
+    "EllipsoidState": {
+        **dict.fromkeys(("w1", "w2", "w3", "omega"), "w has the components along the axes of the ellipsoid"),
+        "precession": "spin is the angular velocity about the vertical",
+    },
+}
 #: Proposals for names that the library does not have.
 _INSTEAD = {
     **_STILL,
@@ -30,6 +90,7 @@ _INSTEAD = {
     **dict.fromkeys(("thickness", "width"), "give length= for the thickness of a disk"),
     **dict.fromkeys(("radius", "diameter"), "outer_diameter= is the size of a tube, in metres"),
     **dict.fromkeys(("friction", "mu_s"), "give contact=sc.Coulomb(mu, static) for friction"),
+    "material": "give density= the name of a material, as density='steel'",
     "cone": "sc.assembled([sc.parts.cone(...)]) makes a body of parts",
     **dict.fromkeys(
         ("cylinder", "disk", "disc", "coin"), "sc.Body.solid(ell), or sc.measured(...) in metres"
@@ -44,6 +105,8 @@ _INSTEAD = {
 def proposal(name: str, known: Iterable[str]) -> str:
     """A proposal in place of a name, after a colon; empty if no known name is similar."""
     names = [x for x in known if not x.startswith("_")]
+    if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
+        return ": semi_axes= are half of length, width and height of the whole ellipsoid"
     if name in _INSTEAD:
         return f": {_INSTEAD[name]}"
     near = difflib.get_close_matches(name, names, 3, 0.7)
@@ -91,9 +154,9 @@ def why_no_numbers(value: Any) -> str:
 
 
 class Hinting:
-    """Base of bodies and states: the error about a missing attribute or index says what there is instead."""
+    """Base of objects that users hold: the error about a missing attribute says what there is instead."""
 
-    if not TYPE_CHECKING:  # type checkers know that there is neither
+    if not TYPE_CHECKING:  # type checkers know that there is none
 
         def __getattr__(self, name: str) -> Any:
             kind = type(self)
@@ -101,9 +164,25 @@ class Hinting:
                 name in vars(base) for base in kind.__mro__
             ):  # a property with an AttributeError of its own
                 return object.__getattribute__(self, name)
-            more = f": {_STILL[name]}" if name in _STILL else ""
-            told = f"{kind.__name__!r} object has no attribute {name!r}{more}"
-            raise AttributeError(told, name=name, obj=self)
+            told = f"{kind.__name__!r} object has no attribute {name!r}"
+            more = "" if name.startswith("_") else _instead_of_attribute(self, name)
+            raise AttributeError(f"{told}{more}", name=name, obj=self)
+
+
+def _instead_of_attribute(thing: object, name: str) -> str:
+    """What an object has in place of an attribute, after a colon: the near names, else all of them."""
+    for base in type(thing).__mro__:
+        if name in _ATTRIBUTES.get(base.__name__, {}):
+            return f": {_ATTRIBUTES[base.__name__][name]}"
+    names = [x for x in dir(thing) if not x.startswith("_")]
+    near = difflib.get_close_matches(name, names, 3, 0.7)
+    return f": did you mean {' or '.join(near)}?" if near else f": it has {', '.join(names)}"
+
+
+class HintingFamily(Hinting):
+    """Base of bodies and states: the error about an index says how to take one of a family."""
+
+    if not TYPE_CHECKING:  # type checkers know that there is no index
 
         def __getitem__(self, index: Any) -> Any:
             kind, at = type(self).__name__, index if isinstance(index, int) else "i"

@@ -22,6 +22,14 @@ _UNITS = {
         "in": "0.0254",
     },
     "mass": {"kg": "1", "g": "1e-3", "mg": "1e-6"},
+    "density": {
+        "kg/m3": "1",
+        "kg/m^3": "1",
+        "kg/m³": "1",
+        "g/cm3": "1e3",
+        "g/cm^3": "1e3",
+        "g/cm³": "1e3",
+    },
     "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
     "damping": {"Nms": "1"},
     "drag": {"Nms2": "1", "Nms^2": "1", "Nms²": "1"},
@@ -140,6 +148,7 @@ _LENGTHS, _DENSITIES = (1e-4, 5.0), (12.0, 23e3)
 _KINDS = {
     "metre": "length",
     "kilogram": "mass",
+    "kilogram/metre**3": "density",
     "second": "duration",
     "hertz": "frequency",
     "radian/second": "angular velocity",
@@ -158,6 +167,7 @@ _KINDS = {
 _EXAMPLES = {
     "metre": "16mm",
     "kilogram": "30g",
+    "kilogram/metre**3": "7.85g/cm3",
     "second": "2s",
     "radian": "85deg",
     "hertz": "9Hz",

@@ -188,7 +188,7 @@ class LossFit(NamedTuple):
 
     @property
     def best(self) -> FittedLoss:
-        """The law with the least AIC."""
+        """The law that fits best: the one with the least AIC (Akaike's information criterion)."""
         return self.fits[0]
 
     @property

@@ -191,7 +191,7 @@ def _(stone: Ellipsoid, metre: float) -> dict[str, Any]:
     return {
         "type": "ellipsoid",
         "radius": metre,
-        "semi_axes": (np.asarray(stone.axes) * metre).tolist(),
+        "semi_axes": (np.asarray(stone.semi_axes) * metre).tolist(),
         "centre": (-np.asarray(stone.offset) * metre).tolist(),
         "lands_at": None if math.isnan(end) else end,
     }

@@ -45,7 +45,7 @@ def height(stone: Ellipsoid) -> float:
     end = float(stone.theta_end)
     if not end < math.pi:
         return 1.0
-    a1, a2, a3 = np.asarray(stone.axes).tolist()
+    a1, a2, a3 = np.asarray(stone.semi_axes).tolist()
     sin, cos = math.sin(end), math.cos(end)
     across = max(a1, a2) if cos > 0 else min(a1, a2)
     return float(-a3 * cos / math.hypot(across * sin, a3 * cos))
@@ -131,11 +131,11 @@ def _names_and_colours(
 
 def _longer_axis(stone: Ellipsoid) -> int:
     """Index of the longer of the first two axes."""
-    return int(np.argmax(np.asarray(stone.axes)[:2]))
+    return int(np.argmax(np.asarray(stone.semi_axes)[:2]))
 
 
 def _stretch(stone: Ellipsoid, about: int = 2) -> Stretch:
-    a, b, c = np.asarray(stone.axes).tolist()
+    a, b, c = np.asarray(stone.semi_axes).tolist()
     x, y, z = (-np.asarray(stone.offset)).tolist()
     return Stretch((a, b, c), (x, y, z), about)
 

@@ -27,3 +27,7 @@ __all__ = [
     "save",
     "survey",
 ]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

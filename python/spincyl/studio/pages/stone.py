@@ -34,7 +34,7 @@ def _(m: EllipsoidMotion, t: Floats) -> dict[str, Any]:
     far = reach(m.body)
     return {
         "ell": max(0.0, far * far - 1) ** 0.5,
-        "axes": np.asarray(m.body.axes).tolist(),
+        "axes": np.asarray(m.body.semi_axes).tolist(),
         "offset": np.asarray(m.body.offset).tolist(),
         "inertia": np.asarray(m.body.inertia).tolist(),
         "back": turns_back(m, t),

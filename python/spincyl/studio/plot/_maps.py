@@ -40,7 +40,7 @@ _HALF_PI = np.pi / 2
 
 
 class Landmark(NamedTuple):
-    """A named point of a branch."""
+    """A named point of a branch of steady states."""
 
     letter: str
     meaning: str

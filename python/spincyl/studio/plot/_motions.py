@@ -197,7 +197,7 @@ def _rockings(ax: "Axes", m: Any, t: Any, legend: dict[str, Any]) -> None:
     """Draw the envelopes of both rockings: the maxima of the angle of each axis from the horizontal."""
     ax.lines[0].set_alpha(0.25)
     tilts = np.abs(90 - np.degrees(m.inclinations))
-    longer = int(np.argmax(np.asarray(m.body.axes)[:2]))
+    longer = int(np.argmax(np.asarray(m.body.semi_axes)[:2]))
     for axis, name, colour in ((longer, "end to end", BLUE), (1 - longer, "side to side", GREEN)):
         x = tilts[:, axis]
         most = 1 + np.flatnonzero((x[1:-1] >= x[:-2]) & (x[1:-1] > x[2:]))
