@@ -43,6 +43,8 @@ mod random_cups;
 mod references;
 mod resting;
 mod rounded_motions;
+#[cfg(feature = "scene")]
+mod scenes;
 mod several_held;
 mod slip;
 mod slope;
@@ -69,5 +71,6 @@ mod uniform;
 mod units;
 mod upright;
 mod whirrs;
+mod worlds;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};

@@ -21,7 +21,8 @@ from spincyl._loss import LAWS
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, has_two_rims
 from spincyl._scale import Scale
-from spincyl.studio.shape import kind, landing, reach, rotations, skin, tensor
+from spincyl.studio.scene_again import natural_data
+from spincyl.studio.shape import kind, landing, profiles, reach, rotations, skin, tensor
 
 VERSION = 1
 _SYMBOLS = (
@@ -42,6 +43,8 @@ _PATCH = (
 _LEAST = 1e-11
 #: Friction of a scene of rolling whose motion has no `mu`: least value, ratio to the needed value, largest.
 _MU = 1.0, 1.5, 1e3
+#: Of an outline for display: number of pieces of a profile that become one.
+_PIECES = 4
 
 
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
@@ -65,6 +68,7 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
         },
         "expected": known,
         "error": _errors(m, metre, second, joule, w, v),
+        "natural": natural_data(m),
     }
 
 
@@ -155,7 +159,14 @@ def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "all within swollen_by of the convex hull of the circles, which are about axis 3, at these"
         " heights over the centre of mass; at the inclination lands_at something else touches the table",
+        "outline": _outline(body, metre) if 0 < body.fillet < 1 or body._parts else [],
     }
+
+
+def _outline(body: Body, metre: float) -> list[list[float]]:
+    """Radius and height of points of a profile whose convex hull shows a body."""
+    every = ((skin.corners, _PIECES if skin.normals else 1) for skin in profiles(body))
+    return [[metre * r, metre * z] for found, step in every for r, z in (*found[::step], found[-1])]
 
 
 def _several_circles(body: Body, metre: float) -> dict[str, Any]:
@@ -171,6 +182,7 @@ def _several_circles(body: Body, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "the convex hull of the circles, each with all within its swollen_by, about axis 3 at these"
         " heights over the centre of mass; at the inclination lands_at the second one touches the table",
+        "outline": _outline(body, metre),
     }
 
 
