@@ -76,7 +76,12 @@ impl Measured {
         let unit = q.coords.norm();
         within("orientation", unit, (1.0 - 1e-9, 1.0 + 1e-9), "a unit quaternion")?;
         for x in start.position.iter().chain(&start.velocity).chain(&start.angular_velocity) {
-            within("start", *x, (-f64::MAX, f64::MAX), "a position, a velocity and an angular velocity that are finite")?;
+            within(
+                "start",
+                *x,
+                (-f64::MAX, f64::MAX),
+                "a position, a velocity and an angular velocity that are finite",
+            )?;
         }
         let w = start.angular_velocity.map(|w| scale.angular_velocity(w));
         let v = start.velocity.map(|v| scale.speed(v));
@@ -85,7 +90,12 @@ impl Measured {
         let body = self.body().told_at(state.theta);
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let gap = z - rim.height(angle);
-        within("position", gap, (-NEAR_THE_TABLE, f64::MAX), "a body above the table, its lowest point 0 R or more high")?;
+        within(
+            "position",
+            gap,
+            (-NEAR_THE_TABLE, f64::MAX),
+            "a body above the table, its lowest point 0 R or more high",
+        )?;
         let rise = v.z - centre_rise(&body, &state);
         let few = NO_RISE * (v.amax() + w.amax() * (1.0 + rim.ell.abs()));
         let aloft = (gap > NEAR_THE_TABLE || rise > few).then_some(z.max(rim.height(angle)));

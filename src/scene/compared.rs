@@ -85,7 +85,8 @@ impl Comparison {
     /// last time.
     #[must_use]
     pub fn largest(&self) -> Deviation {
-        let most = |of: fn(&Deviation) -> f64| self.rows.iter().map(of).fold(0.0, crate::numbers::larger_or_nan);
+        let most =
+            |of: fn(&Deviation) -> f64| self.rows.iter().map(of).fold(0.0, crate::numbers::larger_or_nan);
         Deviation {
             time: self.rows.last().map_or(f64::NAN, |row| row.time),
             position: most(|row| row.position),
@@ -106,7 +107,9 @@ impl Scene {
         let (answer, scale) = (self.answer(seconds)?, self.scale()?);
         let rows = answer.rows.iter().zip(seconds);
         Ok(rows
-            .map(|(now, time)| TrajectoryRow::new(*time, now.position.map(|x| scale.metres(x)), now.orientation))
+            .map(|(now, time)| {
+                TrajectoryRow::new(*time, now.position.map(|x| scale.metres(x)), now.orientation)
+            })
             .collect())
     }
 

@@ -79,7 +79,8 @@ pub(super) fn contents(natural: Natural, scale: &Scale, seconds: &[f64]) -> Resu
     Ok(Contents {
         version: VERSION,
         units: "SI: metres, kilograms, seconds, radians, newtons, joules".into(),
-        axes: "of the table, z its normal; quaternions are x, y, z, w and turn the body's axes into these".into(),
+        axes: "of the table, z its normal; quaternions are x, y, z, w and turn the body's axes into these"
+            .into(),
         scale: NaturalUnits { radius, mass, gravity, second: scale.seconds(1.0) },
         gravity: Vector3::new(gravity * sin, 0.0, -gravity * cos),
         body: body_of(&natural, scale),
@@ -115,7 +116,8 @@ fn body_of(natural: &Natural, scale: &Scale) -> SceneBody {
         name,
         mass,
         inertia,
-        inertia_is: "about the centre of mass, along the body's axes; the origin is the centre of mass".into(),
+        inertia_is: "about the centre of mass, along the body's axes; the origin is the centre of mass"
+            .into(),
         principal_moments: moments,
         principal_axes: axes,
         shape,
@@ -175,9 +177,10 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
         normal: Vector3::z(),
         friction,
         restitution: ask.restitution,
-        restitution_is: "its square is the share of the work of compression that the normal force gives back \
+        restitution_is:
+            "its square is the share of the work of compression that the normal force gives back \
                          (Stronge); null: nothing strikes the table"
-            .into(),
+                .into(),
         losses: losses.collect(),
         symbols: SYMBOLS.into(),
     })
@@ -193,15 +196,18 @@ fn expected(natural: &Natural, answer: &KnownMotion, scale: &Scale, seconds: &[f
     let (rows, ask) = (&answer.rows, natural.ask());
     let joules = |all: &Vec<f64>| all.iter().map(|x| scale.joules(*x)).collect();
     let strikes = ask.restitution.is_some();
-    let lost_before = |t: f64| answer.impacts.iter().filter(|hit| hit.time < t).map(|hit| hit.lost).sum::<f64>();
+    let lost_before =
+        |t: f64| answer.impacts.iter().filter(|hit| hit.time < t).map(|hit| hit.lost).sum::<f64>();
     let impacts = answer.impacts.iter().map(|hit| SceneImpact {
         time: scale.seconds(hit.time),
         kind: hit.kind.clone(),
         normal_impulse: scale.newton_seconds(hit.impulse),
         energy_lost: scale.joules(hit.lost),
     });
-    let phases =
-        answer.phases.iter().map(|(time, kind)| ScenePhase { time: scale.seconds(*time), kind: kind.to_string() });
+    let phases = answer
+        .phases
+        .iter()
+        .map(|(time, kind)| ScenePhase { time: scale.seconds(*time), kind: kind.to_string() });
     let last = seconds.last().copied().unwrap_or_default();
     Expected {
         time: seconds.to_vec(),

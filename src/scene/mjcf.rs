@@ -9,7 +9,9 @@
 //! circles each is such a cylinder, or a ball, and a tip is a tiny ball. Where a ball passes into an edge at a smooth joint,
 //! the whole ball would be the lowest: there the mesh for display touches.
 
-use super::contents::{CirclesShape, Contents, SceneCircle, SceneFriction, SceneTable, SceneShape, ShapeKind};
+use super::contents::{
+    CirclesShape, Contents, SceneCircle, SceneFriction, SceneShape, SceneTable, ShapeKind,
+};
 use super::words::{general, shortest, words};
 use core::f64::consts::{PI, TAU};
 use core::fmt::Write;
@@ -131,7 +133,10 @@ fn laws(table: &SceneTable) -> (EngineGrip, Vec<String>) {
             }
             if *patch > 0.0 {
                 torsion = TURNS * mu * patch;
-                let said = format!("a patch of {} m. Here slip and drilling share an ellipse instead.", shortest(*patch));
+                let said = format!(
+                    "a patch of {} m. Here slip and drilling share an ellipse instead.",
+                    shortest(*patch)
+                );
                 notes.push(format!("NEARLY: {said}"));
             }
         }
@@ -172,7 +177,8 @@ fn geometry(of: &Contents, grip: EngineGrip) -> Geometry {
     match &of.body.shape {
         SceneShape::Ellipsoid(stone) => {
             let [axes, centre] = [&stone.semi_axes, &stone.centre].map(|v| words(v.iter().copied()));
-            all.geoms = vec![format!(r#"name="rim" type="ellipsoid" size="{axes}" pos="{centre}" {}"#, common.touch)];
+            all.geoms =
+                vec![format!(r#"name="rim" type="ellipsoid" size="{axes}" pos="{centre}" {}"#, common.touch)];
         }
         SceneShape::Circles(shape) if shape.kind == ShapeKind::Circles => {
             several(shape, metre, grip, &common, &mut all);
@@ -194,9 +200,7 @@ fn geometry(of: &Contents, grip: EngineGrip) -> Geometry {
                 let _ = write!(places, "{blank}{}", at.join(" "));
             }
         }
-        all.mesh = format!(
-            "  <asset><mesh name=\"looks\" inertia=\"shell\" vertex=\"{places}\"/></asset>\n"
-        );
+        all.mesh = format!("  <asset><mesh name=\"looks\" inertia=\"shell\" vertex=\"{places}\"/></asset>\n");
     }
     all
 }
@@ -233,13 +237,16 @@ fn one_or_two(
             words([rim, half])
         );
         if heights.len() == 1 {
-            all.notes.push(format!("The rim is a cylinder of {} m instead of a circle.", general(2.0 * half, 3)));
+            all.notes
+                .push(format!("The rim is a cylinder of {} m instead of a circle.", general(2.0 * half, 3)));
         }
         all.geoms = vec![format!("{of} {touch}")];
         if fillet > 0.0 {
             all.geoms = vec![format!("{of} {UNSEEN}")];
-            let deep =
-                format!(r#"    <geom name="table" type="plane" pos="0 0 {}" {size} {UNSEEN}/>"#, shortest(-fillet));
+            let deep = format!(
+                r#"    <geom name="table" type="plane" pos="0 0 {}" {size} {UNSEEN}/>"#,
+                shortest(-fillet)
+            );
             all.table = format!("    <geom name=\"top of the table\" type=\"plane\" {size} {SEEN}/>\n{deep}");
             let held = format!(
                 r#"friction="{}" {dim} margin="{}""#,

@@ -47,8 +47,9 @@ use crate::motions::{Ask, Start};
 use crate::pose::euler_angles;
 pub use compared::{Comparison, Deviation, Doubt, TrajectoryRow};
 pub use contents::{
-    CirclesShape, Contents, EllipsoidShape, Expected, NaturalUnits, SceneBody, SceneCircle, SceneEnding, SceneErrors,
-    SceneFriction, SceneImpact, SceneLoss, ScenePhase, SceneStart, SceneTable, SceneShape, ShapeKind,
+    CirclesShape, Contents, EllipsoidShape, Expected, NaturalUnits, SceneBody, SceneCircle, SceneEnding,
+    SceneErrors, SceneFriction, SceneImpact, SceneLoss, ScenePhase, SceneShape, SceneStart, SceneTable,
+    ShapeKind,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 pub use natural::Natural;
@@ -101,8 +102,10 @@ fn from_start(seconds: &[f64]) -> Result<Vec<f64>, SceneError> {
         all.push(0.0);
     }
     all.extend(seconds);
-    if all.windows(2).any(|both| !(both[0] < both[1])) {
-        return Err(SceneError::Motion("seconds: expected ascending times since the start, since an engine starts there"));
+    if !all.windows(2).all(|both| both[0] < both[1]) {
+        return Err(SceneError::Motion(
+            "seconds: expected ascending times since the start, since an engine starts there",
+        ));
     }
     Ok(all)
 }
@@ -114,7 +117,12 @@ impl Scene {
     /// # Errors
     /// Those of the motion; and [`SceneError::Motion`] for times that do not ascend, for a motion without a time after its
     /// start, beyond an event or without a known error, and for a table that turns.
-    pub fn of(of: &Measured, start: impl Into<Start>, seconds: &[f64], ask: &Ask) -> Result<Self, SceneError> {
+    pub fn of(
+        of: &Measured,
+        start: impl Into<Start>,
+        seconds: &[f64],
+        ask: &Ask,
+    ) -> Result<Self, SceneError> {
         let natural = Natural::of_body(*of.body(), start.into(), *ask);
         let contents = filled::contents(natural, of.scale(), &from_start(seconds)?)?;
         Ok(Self { contents })
@@ -170,9 +178,11 @@ impl Scene {
 
     /// Returns an error for an answer that is not that of what it is computed from.
     fn check_answer(&self) -> Result<(), SceneError> {
-        let (known, error, metre) = (&self.contents.expected, &self.contents.error, self.contents.scale.radius);
+        let (known, error, metre) =
+            (&self.contents.expected, &self.contents.error, self.contents.scale.radius);
         let poses = known.time.iter().zip(&known.position).zip(&known.orientation);
-        let rows: Vec<TrajectoryRow> = poses.map(|((time, x), q)| TrajectoryRow::new(*time, *x, *q)).collect();
+        let rows: Vec<TrajectoryRow> =
+            poses.map(|((time, x), q)| TrajectoryRow::new(*time, *x, *q)).collect();
         let found = self.compare(&rows)?;
         let most = found.largest();
         let same = found.rows.len() == known.time.len()

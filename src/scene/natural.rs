@@ -9,8 +9,8 @@
 use super::SceneError;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
-use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::laws::state::State;
+use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::ask::sample::Sample;
 use crate::motions::slope::{energy_beside, energy_of_fall};
 use crate::motions::{Ask, Bounds, Ending, Kind, Motion, Moving, Start, motion, stone};
@@ -133,9 +133,14 @@ impl Natural {
                 let ask = ask.with_pose(true).with_force(true);
                 let m = stone::roll(of, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
-                let rows: Vec<Known> = (0..m.states.len()).filter_map(|i| stone_at(&m, of, &ask, i)).collect();
+                let rows: Vec<Known> =
+                    (0..m.states.len()).filter_map(|i| stone_at(&m, of, &ask, i)).collect();
                 let most = |of: &dyn Fn(&Known) -> f64| rows.iter().map(of).fold(0.0, larger_or_nan);
-                let most = [most(&|now| now.w.norm()), most(&|now| now.velocity.norm()), most(&|now| now.force.norm())];
+                let most = [
+                    most(&|now| now.w.norm()),
+                    most(&|now| now.velocity.norm()),
+                    most(&|now| now.force.norm()),
+                ];
                 let [x, y, z] = of.offset();
                 let size = [1.0 + Vector3::new(x, y, z).norm(), of.moments()[2]];
                 let bounds = Bounds::of([m.error, m.pose_error, m.force_error], size, most);
@@ -149,7 +154,12 @@ impl Natural {
 }
 
 /// The answer from a motion and its rows.
-fn told<S: Moving>(m: Motion<S>, rows: Vec<Known>, bounds: Bounds, ask: &Ask) -> Result<KnownMotion, SceneError> {
+fn told<S: Moving>(
+    m: Motion<S>,
+    rows: Vec<Known>,
+    bounds: Bounds,
+    ask: &Ask,
+) -> Result<KnownMotion, SceneError> {
     if m.event.is_some() && ask.beyond {
         return Err(SceneError::Motion("beyond: expected a motion that ends at its event"));
     }
@@ -177,20 +187,22 @@ fn told<S: Moving>(m: Motion<S>, rows: Vec<Known>, bounds: Bounds, ask: &Ask) ->
         end: m.event.map(|event| event.time),
         phases,
         impacts: impacts.collect(),
-        heat: path.filter(|_| ask.table.rubs() || ask.restitution.is_some()).map(|path| path.dissipated.clone()),
+        heat: path
+            .filter(|_| ask.table.rubs() || ask.restitution.is_some())
+            .map(|path| path.dissipated.clone()),
         lost: path.filter(|_| !ask.losses.is_none()).map(|path| path.work_lost.clone()),
         rows,
     })
 }
 
 /// What the contact is at a time: on the table, on both rims, on a face, in the air.
-struct Touching {
+struct TouchNow {
     both: bool,
     point: bool,
     flies: bool,
 }
 
-impl Touching {
+impl TouchNow {
     fn of<S: Moving>(now: &Sample<S>) -> Self {
         let kind = now.kind.unwrap_or(Kind::Rolling);
         let (stands, flies) = (kind == Kind::OnItsFace, kind == Kind::Flying);
@@ -219,7 +231,7 @@ fn fall(ask: &Ask, time: f64) -> Option<f64> {
 
 fn body_at(m: &Motion<State>, body: &Body, ask: &Ask, i: usize) -> Option<Known> {
     let now = m.sample(i);
-    let (pose, touch, force) = (now.pose?, Touching::of(&now), now.force?);
+    let (pose, touch, force) = (now.pose?, TouchNow::of(&now), now.force?);
     let (position, orientation, velocity) = (now.centre(body)?, now.orientation()?, now.velocity(body)?);
     let other = now.other_rim.filter(|_| touch.both).map_or(0.0, |other| other[2]);
     let normal = force.normal + other;
@@ -246,7 +258,7 @@ fn body_at(m: &Motion<State>, body: &Body, ask: &Ask, i: usize) -> Option<Known>
 
 fn stone_at(m: &Motion<StoneState>, of: &Ellipsoid, ask: &Ask, i: usize) -> Option<Known> {
     let now = m.sample(i);
-    let (pose, touch, force) = (now.pose?, Touching::of(&now), now.force?);
+    let (pose, touch, force) = (now.pose?, TouchNow::of(&now), now.force?);
     let position = Point3::from(pose.centre);
     let [a, b, c, d] = now.state.orientation();
     let least = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d));

@@ -21,7 +21,9 @@ const OF_SEVERAL: &str = "the convex hull of the circles, each with all within i
 
 /// The ratio of inner to outer radius of the uniform tube with the moments of a body; `None` if there is no such tube.
 fn bore(body: &Body) -> Option<f64> {
-    let moments = |bore: f64| Body::tube_on(body.ell().max(0.0), bore, body.fillet()).ok().map(|tube| [tube.i1(), tube.i3()]);
+    let moments = |bore: f64| {
+        Body::tube_on(body.ell().max(0.0), bore, body.fillet()).ok().map(|tube| [tube.i1(), tube.i3()])
+    };
     let alike = |[i1, i3]: [f64; 2]| {
         (i1 - body.i1()).abs() <= ALIKE * body.i1() && (i3 - body.i3()).abs() <= ALIKE * body.i3()
     };
@@ -76,7 +78,7 @@ pub(super) fn shape_of(body: &Body, metre: f64) -> CirclesShape {
         inner_radius: bore.map(|bore| bore.min(0.98) * metre),
         circles: heights.into_iter().map(circle).collect(),
         swollen_by: Some(fillet * metre),
-        half_length: both.then(|| (ell + fillet) * metre),
+        half_length: both.then_some((ell + fillet) * metre),
         lands_at: body.theta_end(),
         explained: EXPLAINED.into(),
         outline: if 0.0 < fillet && fillet < 1.0 { scaled(rounded(body, bore)) } else { Vec::new() },

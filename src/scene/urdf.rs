@@ -8,7 +8,8 @@ use super::contents::{CirclesShape, Contents, SceneCircle, SceneShape, ShapeKind
 use super::mjcf::THIN;
 use super::words::{shortest, words};
 
-const NO_SHAPE: &str = "urdf: expected a body with sharp rims, a ball, balls or a capsule; URDF has no other shape";
+const NO_SHAPE: &str =
+    "urdf: expected a body with sharp rims, a ball, balls or a capsule; URDF has no other shape";
 
 fn cylinder(radius: f64, long: f64) -> String {
     format!(r#"<cylinder radius="{}" length="{}"/>"#, shortest(radius), shortest(long))
@@ -50,7 +51,9 @@ pub(super) fn urdf(of: &Contents) -> Result<String, SceneError> {
         .into_iter()
         .map(|(height, geometry)| {
             let place = format!(r#"<origin xyz="{}" rpy="0 0 0"/>"#, words([0.0, 0.0, height]));
-            ["visual", "collision"].map(|kind| format!("    <{kind}>{place}<geometry>{geometry}</geometry></{kind}>")).join("\n")
+            ["visual", "collision"]
+                .map(|kind| format!("    <{kind}>{place}<geometry>{geometry}</geometry></{kind}>"))
+                .join("\n")
         })
         .collect();
     let name = of.body.name.replace("--", "- -");

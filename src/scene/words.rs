@@ -3,7 +3,8 @@
 /// The shortest digits that give the number again, as `repr` of Python writes them.
 pub(super) fn shortest(x: f64) -> String {
     let told = format!("{x:e}");
-    let Some((digits, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?))) else {
+    let Some((digits, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?)))
+    else {
         return if x.is_nan() { "nan".into() } else { told };
     };
     placed(digits, power, (-4, 16), true)
@@ -12,7 +13,8 @@ pub(super) fn shortest(x: f64) -> String {
 /// The number with this many digits, as `:.6g` of Python writes it.
 pub(super) fn general(x: f64, digits: usize) -> String {
     let told = format!("{x:.*e}", digits - 1);
-    let Some((mut kept, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?))) else {
+    let Some((mut kept, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?)))
+    else {
         return told;
     };
     if kept.contains('.') {

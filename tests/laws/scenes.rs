@@ -7,7 +7,7 @@ use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::Ask;
-use spincyl::scene::{Contents, Doubt, Natural, TrajectoryRow, Scene, SceneError, SceneFriction};
+use spincyl::scene::{Contents, Doubt, Natural, Scene, SceneError, SceneFriction, TrajectoryRow};
 use spincyl::{Body, Scale, State, roll, steady};
 use std::collections::BTreeMap;
 
@@ -30,7 +30,8 @@ fn records() -> BTreeMap<String, Record> {
 /// The hash FNV-1a of a text.
 fn hashed(text: &str) -> String {
     let start = 0xcbf2_9ce4_8422_2325u64;
-    let found = text.bytes().fold(start, |found, byte| (found ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    let found =
+        text.bytes().fold(start, |found, byte| (found ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
     format!("{found:016x}")
 }
 
@@ -86,7 +87,11 @@ fn assert_alike(name: &str, path: &str, a: &Value, b: &Value, allowed: &dyn Fn(&
         }
         _ => {
             let off = apart(a, b);
-            assert!(off <= allowed(path), "{name}: {path} differs by {off:e}, allowed {:e}: {a} {b}", allowed(path));
+            assert!(
+                off <= allowed(path),
+                "{name}: {path} differs by {off:e}, allowed {:e}: {a} {b}",
+                allowed(path)
+            );
         }
     }
 }
@@ -113,7 +118,9 @@ fn python_and_this_crate_write_the_same_file() {
                 "table" => 1e-9 * told["table"]["friction"][key].as_f64().unwrap_or(1.0) + 1e-14,
                 "natural" => 1e-13,
                 "expected" | "start" => match key {
-                    "position" | "contact_point" => error("position").max(error("contact_point")) + quick * radius,
+                    "position" | "contact_point" => {
+                        error("position").max(error("contact_point")) + quick * radius
+                    }
                     "height" => error("position") + quick * radius,
                     "orientation" | "theta" => error("angle") + quick,
                     "velocity" => error("velocity") + quick * radius / second,
@@ -133,7 +140,12 @@ fn python_and_this_crate_write_the_same_file() {
         // An axis of inertia has no sign, and any axis across that of a body of revolution is one.
         let plain = |of: &Value| {
             let mut of = of.clone();
-            for (at, key) in [("/body", "principal_axes"), ("/body/shape", "inner_radius"), ("/natural/body", "excess"), ("/natural/body", "theta_end")] {
+            for (at, key) in [
+                ("/body", "principal_axes"),
+                ("/body/shape", "inner_radius"),
+                ("/natural/body", "excess"),
+                ("/natural/body", "theta_end"),
+            ] {
                 of.pointer_mut(at).and_then(Value::as_object_mut).map(|of| of.remove(key));
             }
             of["natural"]["ask"] = Value::Null;
@@ -142,9 +154,13 @@ fn python_and_this_crate_write_the_same_file() {
         };
         assert_alike(&name, "", &plain(told), &plain(&own), &allowed);
         // What both are computed from, with the defaults that Python leaves out.
-        assert_eq!(again(&scene).contents().natural.as_ref().unwrap().ask().losses, scene.contents().natural.as_ref().unwrap().ask().losses);
+        assert_eq!(
+            again(&scene).contents().natural.as_ref().unwrap().ask().losses,
+            scene.contents().natural.as_ref().unwrap().ask().losses
+        );
         let body = &scene.contents().body;
-        for (moment, axis) in body.principal_moments.iter().zip(again(&scene).contents().body.principal_axes) {
+        for (moment, axis) in body.principal_moments.iter().zip(again(&scene).contents().body.principal_axes)
+        {
             let off = (body.inertia * axis - *moment * axis).norm();
             assert!(off < 1e-10 * body.principal_moments[2], "{name}: {off}");
         }
@@ -236,7 +252,8 @@ fn an_engine_is_compared_at_its_own_times() {
 #[test]
 fn rows_after_the_end_of_a_motion_are_left_out() {
     let can = Measured::new(Body::solid(1.0).unwrap(), Scale::new(0.05, 0.2, 9.81).unwrap());
-    let scene = Scene::of(&can, State::from_rates(0.3, 0.0, 0.0, 0.0), &[0.05, 0.1, 2.0], &Ask::default()).unwrap();
+    let scene =
+        Scene::of(&can, State::from_rates(0.3, 0.0, 0.0, 0.0), &[0.05, 0.1, 2.0], &Ask::default()).unwrap();
     let end = &scene.contents().expected.ending;
     assert_eq!((end.kind.as_str(), scene.contents().expected.time.len()), ("FACE", 3));
     let place = scene.contents().expected.position[0];
@@ -261,7 +278,8 @@ fn a_scene_is_refused_for_a_motion_that_no_engine_can_have() {
 fn the_couple_of_a_scene_is_that_of_its_laws() {
     let (coin, _) = coin();
     let scale = coin.scale();
-    let [arm, air] = [(Law::DryContour, 1e-4), (Law::AirLinear, 2e-9)].map(|(law, x)| scale.coefficient(law, x));
+    let [arm, air] =
+        [(Law::DryContour, 1e-4), (Law::AirLinear, 2e-9)].map(|(law, x)| scale.coefficient(law, x));
     let ask = Ask::default().with_losses(Losses::of(Law::DryContour, arm).with(Law::AirLinear, air));
     let start = steady::state(coin.body(), 0.7).unwrap();
     let scene = Scene::of(&coin, start, &[0.0, 0.1], &ask).unwrap();
@@ -304,7 +322,10 @@ fn the_scene_of_the_example_obeys_newton() {
             assert!(gained.abs() < 1e-13 && moved.abs() < 1e-14);
             flies += 1;
         } else {
-            assert!((gained - pushed).abs() < 0.02 * of.body.mass * 9.8 * (to - from), "{i}: {gained} {pushed}");
+            assert!(
+                (gained - pushed).abs() < 0.02 * of.body.mass * 9.8 * (to - from),
+                "{i}: {gained} {pushed}"
+            );
             assert!(moved.abs() < 1e-6, "{i} {moved}");
             touches += 1;
         }

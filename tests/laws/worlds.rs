@@ -119,7 +119,10 @@ fn a_body_touches_the_table_or_is_above_it() {
     };
     assert_eq!(at(height, 0.0).unwrap().aloft, None);
     let [up, lift] = at(height + 0.05, 0.2).unwrap().aloft.unwrap();
-    assert!((can.scale().metres(up) - 0.05).abs() < 1e-15 && (can.scale().metres_per_second(lift) - 0.2).abs() < 1e-15);
+    assert!(
+        (can.scale().metres(up) - 0.05).abs() < 1e-15
+            && (can.scale().metres_per_second(lift) - 0.2).abs() < 1e-15
+    );
     assert!(at(height, 0.2).unwrap().aloft.unwrap()[1] > 0.0); // it leaves the table
     assert!(at(height - 1e-3, 0.0).unwrap_err().to_string().starts_with("position"));
     assert!(at(height, -0.2).unwrap_err().to_string().starts_with("velocity"));
