@@ -149,11 +149,13 @@ class Scene:
 
         Examples
         --------
+        >>> import tempfile
         >>> import spincyl as sc
         >>> body = sc.Body.solid(2.5)
         >>> scene = sc.scene(sc.roll(body, body.steady(1.3), [0.0, 1.0, 2.0]))
-        >>> _ = scene.save("nutation.json")
-        >>> sc.Scene.read("nutation.json").data == scene.data
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     (path,) = scene.save(f"{folder}/nutation.json")
+        ...     sc.Scene.read(path).data == scene.data
         True
         """
         try:

@@ -32,7 +32,7 @@ def natural_data(m: Motion) -> dict[str, Any]:
     asked, stone = m._asked, isinstance(m.body, Ellipsoid)
     start: dict[str, Any] = {"state": _state_data(m.start), "slip": _slip(m), "time": 0.0, "aloft": None}
     if m.start.height is not None:
-        start["aloft"] = [float(m.start.height), float(m.start.lift)]
+        start["aloft"] = [float(np.asarray(x)) for x in (m.start.height, m.start.lift)]
     ask: dict[str, Any] = {
         "table": _table_data(m.contact, asked.mu),
         "losses": {type(law).__name__: float(law.coefficient) for law in m.losses.laws} if m.losses else {},
@@ -108,7 +108,7 @@ def motion_of(data: dict[str, Any]) -> tuple[Motion, Scale]:
     times, ending = known["time"], known["ending"]
     if ending["kind"] != "DONE":  # a time after the end, which the motion does not reach
         times = [*times, _AFTER * max(ending["time"], times[-1])]
-    m = roll(  # type: ignore[call-overload]
+    m = roll(
         body,
         _state(start, body, contact),
         np.array(times) / scale.seconds(1.0),
