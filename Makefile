@@ -56,13 +56,13 @@ rust:
 	SPINCYL_COMPILED_LANES=none nice -n 10 cargo check --quiet --lib --no-default-features --features serde
 	if rustup target list --installed 2>/dev/null | grep -q wasm32; then \
 	  nice -n 10 cargo check --quiet -p spincyl-web --target wasm32-unknown-unknown; fi
-	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,serde -- -D warnings
+	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,scene -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(SLOW) nice -n 10 cargo test --lib --no-run
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(AWAKE) nice -n 10 cargo test --lib
-	$(SLOW) nice -n 10 cargo test --features serde --test '*' --no-run
-	$(AWAKE) nice -n 10 cargo test --features serde --test '*'
-	$(SLOW) nice -n 10 cargo test --features serde --doc
-	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --features serde --no-deps --quiet
+	$(SLOW) nice -n 10 cargo test --features scene --test '*' --no-run
+	$(AWAKE) nice -n 10 cargo test --features scene --test '*'
+	$(SLOW) nice -n 10 cargo test --features scene --doc
+	RUSTDOCFLAGS='-D warnings' nice -n 10 cargo doc --features scene --no-deps --quiet
 
 # In one process: a second one would take a fifth more of the processor, and the tests of pages and docs run beside it.
 # Rust and docs give way to both. The docs test the numbers of their note.

@@ -27,11 +27,13 @@
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
 //! | | [`measured`] | bodies with a size and a mass, and their motions in SI | I1 = i1/(M R^2) |
+//! | | [`world`] | a start anywhere in the world, and readings there | q = axes(phi, theta) Rz(psi) |
 //! | | [`turning`] | least spin with which a tippe top turns over or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
 //! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |
 //! | | [`ensemble`] | many motions at once, on lanes and threads | |
+//! | `scene` | [`scene`] | scenes with a known answer for contact engines | |
 //!
 //! All layers may use `error`, and `python` uses all of them. Rolling and smooth share `contact::reduced`:
 //! J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
@@ -51,13 +53,15 @@ mod motions;
 mod numbers;
 #[cfg(feature = "python")]
 mod python;
+#[cfg(feature = "scene")]
+pub mod scene;
 mod states;
 
 pub use laws::{body, contact, loss, newton, pose, scale, state, steep, throw, topple};
 #[cfg(feature = "many")]
 pub use many::{maps as sweep, motions as ensemble};
 pub use methods::rk4;
-pub use motions::{exact, measured, motion, turning};
+pub use motions::{exact, measured, motion, turning, world};
 pub use states::{sideways, stability, steady};
 
 #[cfg(feature = "many")]
@@ -101,6 +105,7 @@ pub mod custom {
     //! Source of the example: Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1083 (1994), for Stribeck's law.
 
     pub use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+    pub use crate::laws::custom_si::{InSi, TurningInSi};
     pub use crate::motions::custom::{roll_stone, roll_with};
 }
 

@@ -37,7 +37,7 @@ def test_the_files_hold_strict_json_with_a_version_and_a_line_for_each_entry(tmp
         assert (
             data == scene_of(name).data and next(iter(data)) == "spincyl-scene" and data["spincyl-scene"] == 1
         )
-        assert max(map(len, text.splitlines())) > 1000 and len(text.splitlines()) < 120
+        assert max(map(len, text.splitlines())) > 1000 and len(text.splitlines()) < 140
         lengths = {
             len(x)
             for k, x in data["expected"].items()

@@ -3,6 +3,7 @@
 pub mod body;
 pub mod contact;
 pub(crate) mod custom;
+pub(crate) mod custom_si;
 pub mod loss;
 pub mod newton;
 pub mod pose;

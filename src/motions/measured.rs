@@ -153,6 +153,10 @@ pub struct MeasuredMotion {
     pub of: Measured,
     /// The requested times in seconds.
     pub seconds: Vec<f64>,
+    /// The turn of the body about its axis at the start, in radians: 0 unless it started in the world
+    /// ([`world`](super::world)).
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub turn: f64,
 }
 
 impl Measured {
@@ -231,7 +235,7 @@ impl Measured {
         let times: Vec<f64> = seconds.iter().map(|t| self.scale.time(*t)).collect();
         let ask = ask.with_pose(true).with_force(true);
         let found = motion::roll_with(&self.body, start, &times, &ask, go_on)?;
-        Ok(found.map(|natural| MeasuredMotion { natural, of: *self, seconds: seconds.to_vec() }))
+        Ok(found.map(|natural| MeasuredMotion { natural, of: *self, seconds: seconds.to_vec(), turn: 0.0 }))
     }
 }
 
@@ -240,6 +244,7 @@ impl MeasuredMotion {
     pub fn readings(&self) -> impl Iterator<Item = Reading> {
         let Measured { body, scale } = &self.of;
         let length = |x: f64| scale.metres(x);
+        let own = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.turn);
         self.natural.samples().zip(&self.seconds).filter_map(move |(now, seconds)| {
             let pose = now.pose?;
             let lowest = Point3::new(pose.contact_point.x, pose.contact_point.y, pose.height);
@@ -247,7 +252,7 @@ impl MeasuredMotion {
                 time: *seconds,
                 theta: now.state.theta,
                 position: now.centre(body)?.map(length),
-                orientation: now.orientation()?,
+                orientation: now.orientation()? * own,
                 velocity: now.velocity(body)?.map(|v| scale.metres_per_second(v)),
                 angular_velocity: now.angular_velocity()?.map(|w| scale.radians_per_second(w)),
                 contact_point: lowest.map(length),

@@ -15,6 +15,7 @@ pub(crate) mod slope;
 pub(crate) mod stone;
 pub mod turning;
 pub(crate) mod walk;
+pub mod world;
 
 pub use ask::bounds::Bounds;
 pub use ask::moving::Moving;

@@ -14,9 +14,6 @@ use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Scale, State, steady};
 use std::fmt::Debug;
 
-#[path = "../../examples/scene.rs"]
-mod scene;
-
 fn again<T: Serialize + DeserializeOwned>(x: &T) -> T {
     from_str(&to_string(x).unwrap()).unwrap()
 }
@@ -266,63 +263,4 @@ fn a_motion_from_a_file_that_lost_a_part_is_shorter_and_never_panics() {
     }
     let less = Motion::<State>::deserialize(&file).unwrap();
     assert!(less.samples().all(|now| now.pose.is_none() && now.slip.is_none() && now.time.is_nan()));
-}
-
-/// Newton's law over each interval without an impact, from what the file says alone.
-#[test]
-fn the_scene_of_the_example_obeys_newton() {
-    let (motion, told) = scene::thrown().unwrap();
-    let rows = |name: &str| -> Vec<Vec<Option<f64>>> {
-        serde_json::from_value(told["expected"][name].clone()).unwrap()
-    };
-    let time: Vec<f64> = serde_json::from_value(told["expected"]["time"].clone()).unwrap();
-    let (place, v, force) = (rows("position"), rows("velocity"), rows("contact_force"));
-    let (mass, g) = (told["body"]["mass"].as_f64().unwrap(), -told["gravity"][2].as_f64().unwrap());
-    let times = |of: &str| {
-        told["expected"][of]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|x| x["time"].as_f64().unwrap())
-            .collect::<Vec<_>>()
-    };
-    let changes: Vec<f64> = [times("impacts"), times("phases")].concat();
-    assert_eq!((time.len(), changes.len() > 10), (401, true));
-    let (mut flies, mut touches) = (0, 0);
-    for i in 1..time.len() - 1 {
-        let [from, to] = [time[i - 1], time[i + 1]];
-        if changes.iter().any(|t| from <= *t && *t <= to) {
-            continue;
-        }
-        let gained = mass * (v[i + 1][2].unwrap() - v[i - 1][2].unwrap() + g * (to - from));
-        let moved = place[i + 1][2].unwrap() - place[i - 1][2].unwrap();
-        let by = |x: [f64; 3]| (x[0] + 4.0 * x[1] + x[2]) / 6.0 * (to - from); // Simpson
-        let speeds = [i - 1, i, i + 1].map(|i| v[i][2].unwrap());
-        match [i - 1, i, i + 1].map(|i| force[i][2]) {
-            [Some(0.0), Some(0.0), Some(0.0)] => {
-                assert!(gained.abs() < 1e-13 && (moved - by(speeds)).abs() < 1e-14);
-                flies += 1;
-            }
-            [Some(a), Some(b), Some(c)] => {
-                let weight = mass * g * (to - from);
-                assert!(
-                    (gained - by([a, b, c])).abs() < 0.02 * weight,
-                    "{i}: {}",
-                    (gained - by([a, b, c])) / weight
-                );
-                assert!((moved - by(speeds)).abs() < 1e-6, "{i} {}", moved - by(speeds));
-                touches += 1;
-            }
-            _ => {}
-        }
-    }
-    assert!(flies > 3 && touches > 50, "{flies} {touches}");
-    assert!(motion.bounds().position < 1e-8);
-    let q: nalgebra::UnitQuaternion<f64> =
-        serde_json::from_value(told["start"]["orientation"].clone()).unwrap();
-    let w: nalgebra::Vector3<f64> =
-        serde_json::from_value(told["start"]["angular_velocity"].clone()).unwrap();
-    let y = State::from_twist(&q, w);
-    assert!((y.theta.to_degrees() - 80.0).abs() < 1e-12);
-    assert!((y.precession() - 20.0).abs() < 1e-11 && (y.spin() - 30.0).abs() < 1e-11, "{y}");
 }

@@ -44,6 +44,8 @@ mod references;
 mod resting;
 mod restitution;
 mod rounded_motions;
+#[cfg(feature = "scene")]
+mod scenes;
 mod several_held;
 mod slip;
 mod slope;
@@ -70,5 +72,6 @@ mod uniform;
 mod units;
 mod upright;
 mod whirrs;
+mod worlds;
 
 use common::rim::{Place, ULP, condition, place, sharp, steady_end};

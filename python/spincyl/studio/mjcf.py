@@ -26,12 +26,15 @@ _SEEN = 'contype="0" conaffinity="0"'
 _UNSEEN = f'{_SEEN} group="3"'
 #: Half the thickness of a circle, over the radius.
 _THIN = 1e-6
+#: Of a mesh for display: number of points round the axis.
+_AROUND = 48
 #: Torsional friction of an evenly turning patch under the pressure of Hertz, over mu times its radius.
 _TURNS = 3 * math.pi / 16
 
 
-def mjcf(data: dict[str, Any], looks: Floats) -> str:
-    """The model of a scene; `looks` are points (n, 3) on a surface that MuJoCo has no shape for."""
+def mjcf(data: dict[str, Any]) -> str:
+    """The model of a scene; the convex hull of its outline shows a body that MuJoCo has no shape for."""
+    looks = _hull_points(data["body"]["shape"].get("outline", []))
     body, start, metre = data["body"], data["start"], data["scale"]["R"]
     second = data["scale"]["second"]
     grip, notes = _laws(data["table"])
@@ -75,6 +78,13 @@ def mjcf(data: dict[str, Any], looks: Floats) -> str:
   </keyframe>
 </mujoco>
 """
+
+
+def _hull_points(outline: list[list[float]]) -> Floats:
+    """Points (n, 3) on the body whose profile has these radii and heights."""
+    angle = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)[:, np.newaxis]
+    r, z = np.array(outline, np.float64).reshape(-1, 2).T
+    return np.stack([r * np.cos(angle), r * np.sin(angle), z + 0 * angle], -1).reshape(-1, 3)
 
 
 def _laws(table: dict[str, Any]) -> tuple[tuple[float, float], list[str]]:

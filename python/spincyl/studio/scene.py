@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._body import Body
 from spincyl._input.equality import compared_by_value
 from spincyl._input.files import path_of, writing_whole
 from spincyl._input.numbers import (
@@ -30,11 +29,13 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State
 from spincyl.studio.mjcf import mjcf
-from spincyl.studio.scene_data import bounds, inclination, scene_data
-from spincyl.studio.shape import profiles, rotations
+from spincyl.studio.scene_again import motion_of
+from spincyl.studio.scene_data import VERSION, bounds, inclination, scene_data
+from spincyl.studio.shape import rotations
+from spincyl.studio.urdf import urdf
 
-#: Of a mesh for display: number of pieces of a profile that become one, and number of points round the axis.
-_PIECES, _AROUND = 4, 48
+#: An answer may differ from itself by this much where its error is below rounding, in R or radians.
+_ROUNDING = 1e-13
 #: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
 _UNIT, _DOUBTED = 1e-3, 0.1
 #: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
@@ -97,6 +98,8 @@ class Scene:
     mjcf : str
         The scene in the format of MuJoCo (MJCF), with the initial state as the keyframe "start". A comment at
         its top names the laws that MuJoCo does not have.
+    urdf : str
+        The body in the format URDF, where that has its shape.
     """
 
     def __init__(self, motion: Motion, scale: Scale) -> None:
@@ -111,7 +114,69 @@ class Scene:
     @property
     def mjcf(self) -> str:
         """The scene as MJCF, with contacts as stiff and friction as steady as MuJoCo's solver allows."""
-        return mjcf(self.data, self.scale.radius * _hull_points(self.motion.body))
+        return mjcf(self.data)
+
+    @property
+    def urdf(self) -> str:
+        """The body as URDF: mass, inertia, and what touches the table.
+
+        URDF has no friction, no initial state and no table: an engine takes these from the JSON file. A
+        ValueError says that URDF does not have the shape of the body, as of one with a fillet.
+        """
+        return urdf(self.data)
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> "Scene":
+        """Read the JSON file of a scene, written in Python or by the Rust crate.
+
+        Parameters
+        ----------
+        path : path-like
+            Path of the file.
+
+        Returns
+        -------
+        Scene
+            The scene; its motion is computed again from the key ``natural`` of the file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        ValueError
+            If it is not the file of a scene, or if its answer differs by more than its errors from the motion
+            that it is computed from.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import spincyl as sc
+        >>> body = sc.Body.solid(2.5)
+        >>> scene = sc.scene(sc.roll(body, body.steady(1.3), [0.0, 1.0, 2.0]))
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     (path,) = scene.save(f"{folder}/nutation.json")
+        ...     sc.Scene.read(path).data == scene.data
+        True
+        """
+        try:
+            data = json.loads(path_of("path", path).read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"path = {str(path)!r}: expected the JSON file of a scene: {error}") from None
+        if not isinstance(data, dict) or data.get("spincyl-scene") != VERSION:
+            raise ValueError(f"path = {str(path)!r}: expected the JSON file of a scene of version {VERSION}")
+        motion, units = motion_of(data)
+        found = cls(motion, units)
+        found.__dict__["data"] = data
+        told = data["expected"]
+        if len(told["time"]) != motion.t.size:
+            raise ValueError(f"path = {str(path)!r}: its motion ends at another time: {motion.message}")
+        apart = found.compare(told["time"], told["position"], told["orientation"])
+        most = data["error"]["position"] + apart.position_error, data["error"]["angle"] + apart.angle_error
+        allowed = most[0] + _ROUNDING * units.radius, most[1] + _ROUNDING
+        if apart.position.max() > allowed[0] or apart.angle.max() > allowed[1]:
+            why = f"its answer is not that of its body, start and table: {apart}"
+            raise ValueError(f"path = {str(path)!r}: {why}")
+        return found
 
     def save(self, path: str | PathLike[str]) -> list[Path]:
         """Write the scene as JSON, as MJCF or both, and return the paths.
@@ -364,15 +429,3 @@ def _checked_array(
     if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
         raise ValueError(f"{name}: expected unit quaternions")
     return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found
-
-
-def _hull_points(body: Any) -> Floats:
-    """Points (n, 3) on a body that MuJoCo has no shape for; MuJoCo draws their convex hull."""
-    rounded = isinstance(body, Body) and 0 < body.fillet < 1
-    if not (isinstance(body, Body) and (body._parts or body.rims is not None or rounded)):
-        return np.empty((0, 3))
-    every = ((skin.corners, _PIECES if skin.normals else 1) for skin in profiles(body))
-    corners = np.array([x for found, step in every for x in (*found[::step], found[-1])])
-    angle = np.linspace(0, 2 * np.pi, _AROUND, endpoint=False)[:, np.newaxis]
-    r, z = corners.T
-    return np.stack([r * np.cos(angle), r * np.sin(angle), z + 0 * angle], -1).reshape(-1, 3)

@@ -20,9 +20,10 @@ from spincyl._input.numbers import Floats
 from spincyl._loss import LAWS
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, has_two_rims
-from spincyl._restitution import restitution_as_words
+from spincyl._restitution import coefficient_of, law_for_core
 from spincyl._scale import Scale
-from spincyl.studio.shape import kind, landing, reach, rotations, skin, tensor
+from spincyl.studio.scene_again import natural_data
+from spincyl.studio.shape import kind, landing, profiles, reach, rotations, skin, tensor
 
 VERSION = 1
 _SYMBOLS = (
@@ -34,15 +35,13 @@ _SYMBOLS = (
     " sign(0), and t/norm(t) of t = 0, is what keeps it 0, of at most the size 1."
 )
 _SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
-_RESTITUTION_IS = dict.fromkeys(
-    ("NoneType", "float", "int"),
-    "its square is the share of the work of compression that the normal force gives back (Stronge); null:"
-    " nothing strikes the table",
-) | {
+_RESTITUTION_IS = {
+    "Stronge": "its square is the share of the work of compression that the normal force gives back (Stronge);"
+    " null: nothing strikes the table",
     "Newton": "the normal velocity after an impact is minus this times that before (Newton)",
     "Poisson": "the normal impulse after compression is this times that of compression (Poisson)",
     "Walton": "the normal velocity of the ball after an impact is minus this times that before, its slip"
-    " minus `tangential` times that before if that takes at most mu times the normal impulse (Walton)",
+    " minus {!r} times that before if that takes at most mu times the normal impulse (Walton)",
 }
 _ROLLS = "what keeps the contact point at rest; any coefficient from `needed` on does"
 _PATCH = (
@@ -53,6 +52,8 @@ _PATCH = (
 _LEAST = 1e-11
 #: Friction of a scene of rolling whose motion has no `mu`: least value, ratio to the needed value, largest.
 _MU = 1.0, 1.5, 1e3
+#: Of an outline for display: number of pieces of a profile that become one.
+_PIECES = 4
 
 
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
@@ -76,6 +77,7 @@ def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
         },
         "expected": known,
         "error": _errors(m, metre, second, joule, w, v),
+        "natural": natural_data(m),
     }
 
 
@@ -166,7 +168,14 @@ def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "all within swollen_by of the convex hull of the circles, which are about axis 3, at these"
         " heights over the centre of mass; at the inclination lands_at something else touches the table",
+        "outline": _outline(body, metre) if 0 < body.fillet < 1 or body._parts else [],
     }
+
+
+def _outline(body: Body, metre: float) -> list[list[float]]:
+    """Radius and height of points of a profile whose convex hull shows a body."""
+    every = ((skin.corners, _PIECES if skin.normals else 1) for skin in profiles(body))
+    return [[metre * r, metre * z] for found, step in every for r, z in (*found[::step], found[-1])]
 
 
 def _several_circles(body: Body, metre: float) -> dict[str, Any]:
@@ -182,6 +191,7 @@ def _several_circles(body: Body, metre: float) -> dict[str, Any]:
         "lands_at": landing(body),
         "is": "the convex hull of the circles, each with all within its swollen_by, about axis 3 at these"
         " heights over the centre of mass; at the inclination lands_at the second one touches the table",
+        "outline": _outline(body, metre),
     }
 
 
@@ -214,6 +224,8 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         least, over, most = _MU
         mu = m._asked.mu if m._asked.mu < math.inf else min(max(least, over * needed), most)
         friction = {"law": "rolling", "mu": mu, "needed": needed, "force": _ROLLS}
+    bounce = m._asked.restitution
+    kind, tangential = law_for_core(bounce) or ("Stronge", 0.0)
     losses = []
     for law in laws:
         value = float(np.asarray(law.coefficient))
@@ -225,9 +237,8 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         "point": [0.0, 0.0, 0.0],
         "normal": [0.0, 0.0, 1.0],
         "friction": friction,
-        "restitution": None,
-        **restitution_as_words(m._asked.restitution),
-        "restitution_is": _RESTITUTION_IS.get(type(m._asked.restitution).__name__, _RESTITUTION_IS["float"]),
+        "restitution": None if bounce is None else coefficient_of(bounce),
+        "restitution_is": _RESTITUTION_IS[kind].format(tangential),
         "losses": losses,
         "symbols": _SYMBOLS,
     }

@@ -41,7 +41,7 @@ pub(crate) enum Unit {
 impl Unit {
     /// What a unit measures, the unit in natural units and in SI, and the unit in which a coefficient is printed and
     /// read again: C is the number of order 0.1 with which a boundary layer is given.
-    #[cfg(feature = "python")]
+    #[cfg(any(feature = "python", feature = "scene"))]
     pub const fn texts(self) -> [&'static str; 4] {
         match self {
             Self::Length => ["length", "R", "m", "mm"],

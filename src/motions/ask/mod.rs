@@ -22,7 +22,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub const FINE: f64 = 1e-14;
 
 /// Share of the velocities below which a vertical velocity of the lowest point counts as a rounding error of the input.
-const NO_RISE: f64 = 1e-9;
+pub(crate) const NO_RISE: f64 = 1e-9;
 /// Share of the velocities below which a slip counts as zero: 16 ulp.
 const NO_SLIP: f64 = 16.0 * f64::EPSILON;
 

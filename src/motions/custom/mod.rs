@@ -9,6 +9,7 @@
 //! body turns. Error: as for any motion that is integrated, from a second run with a larger tolerance.
 
 mod laws;
+mod measured;
 
 use super::ask::check_times_after;
 use super::walk::two_runs::{Followed, judged};

@@ -1,0 +1,73 @@
+//! User-defined laws in metres, kilograms and seconds.
+//!
+//! ```text
+//! F(m/s) -> mu        a coefficient of friction at a speed
+//! m(theta, w, N)      a couple in N m along e1, e2, e3, from rad/s and newtons
+//! ```
+//! Error: a few roundings of the conversions.
+
+use super::body::Body;
+use super::custom::{CoupleLaw, FrictionLaw};
+use super::scale::Scale;
+use super::state::State;
+use nalgebra::Vector3;
+
+/// How a body turns and is pressed on the table, in SI: what a couple in SI depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TurningInSi {
+    /// The inclination in radians.
+    pub theta: f64,
+    /// The angular velocity along e1, e2, e3, in rad/s.
+    pub w: Vector3<f64>,
+    /// The normal force in newtons; 0 in the air.
+    pub normal: f64,
+}
+
+/// A law in SI, for a body of this scale. It is a [`FrictionLaw`] if `law` is a function of a speed in m/s, and a
+/// [`CoupleLaw`] if it is a function of a [`TurningInSi`], which returns a couple along e1, e2, e3 in N m.
+///
+/// ```
+/// use spincyl::contact::Friction;
+/// use spincyl::custom::{Custom, InSi, TurningInSi};
+/// use spincyl::measured::{Measured, Tube};
+/// use spincyl::motion::Ask;
+/// use spincyl::steady;
+///
+/// let coin = Measured::tube(&Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() })?;
+/// // Friction that falls from 0.4 at rest to 0.2 at some 0.1 m/s, and air that takes 2e-8 N m s of each rotation.
+/// let stribeck = InSi::new(coin.scale(), |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp());
+/// let air = InSi::new(coin.scale(), |of: &TurningInSi| -2e-8 * of.w);
+/// let laws = Custom::default().with_friction(&stribeck).with_couple(&air);
+/// let (start, ask) = (steady::state(coin.body(), 1.2)?, Ask::on(Friction::coulomb(0.4)));
+/// let motion = coin.roll_under(start, &[0.0, 0.5], &ask, laws, || true)?.unwrap();
+/// let energies: Vec<f64> = motion.readings().map(|now| now.energy).collect();
+/// assert!(energies[1] < energies[0]);
+/// # Ok::<(), spincyl::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct InSi<L> {
+    scale: Scale,
+    law: L,
+}
+
+impl<L> InSi<L> {
+    /// The law for a body of this scale.
+    pub fn new(scale: &Scale, law: L) -> Self {
+        Self { scale: *scale, law }
+    }
+}
+
+impl<L: Fn(f64) -> f64> FrictionLaw for InSi<L> {
+    fn coefficient(&self, speed: f64) -> f64 {
+        (self.law)(self.scale.metres_per_second(speed))
+    }
+}
+
+impl<L: Fn(&TurningInSi) -> Vector3<f64>> CoupleLaw for InSi<L> {
+    fn couple(&self, _: &Body, y: &State, normal: f64) -> [f64; 3] {
+        let w = y.angular_velocity().map(|w| self.scale.radians_per_second(w));
+        let turning = TurningInSi { theta: y.theta, w, normal: self.scale.newtons(normal) };
+        (self.law)(&turning).map(|m| self.scale.couple(m)).into()
+    }
+}

@@ -1,0 +1,434 @@
+//! The contents of the file of a scene, with the names of its keys.
+//!
+//! All numbers are in SI, along the axes of the table. A number that does not exist is null in the file, and here NaN, or
+//! `None` where it may be infinite.
+
+use super::natural::Natural;
+use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// The contents of the file of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Contents {
+    /// The version of the format.
+    #[serde(rename = "spincyl-scene")]
+    pub version: u32,
+    pub(super) units: String,
+    pub(super) axes: String,
+    /// The natural units.
+    pub scale: NaturalUnits,
+    /// The acceleration of gravity, in m/s^2.
+    pub gravity: Vector3<f64>,
+    /// The body.
+    pub body: SceneBody,
+    /// The table.
+    pub table: SceneTable,
+    /// The initial state.
+    pub start: SceneStart,
+    /// The known answer.
+    pub expected: Expected,
+    /// Bounds of its errors at any time.
+    pub error: SceneErrors,
+    /// What the answer is computed from, in natural units: with it the answer is known at any time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub natural: Option<Natural>,
+}
+
+/// The natural units of a scene in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct NaturalUnits {
+    /// The radius R in metres, for a stone the largest semi-axis.
+    #[serde(rename = "R")]
+    pub radius: f64,
+    /// The mass M in kilograms.
+    #[serde(rename = "M")]
+    pub mass: f64,
+    /// The acceleration of gravity g in m/s^2.
+    #[serde(rename = "g")]
+    pub gravity: f64,
+    /// The unit of time, sqrt(R/g), in seconds.
+    pub second: f64,
+}
+
+/// The body of a scene. The origin of its axes is the centre of mass.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneBody {
+    /// The body in words.
+    pub name: String,
+    /// The mass in kilograms.
+    pub mass: f64,
+    /// The rows of the tensor of inertia about the centre of mass along the axes of the body, in kg m^2.
+    #[serde(with = "rows")]
+    pub inertia: Matrix3<f64>,
+    pub(super) inertia_is: String,
+    /// The principal moments in ascending order, in kg m^2.
+    pub principal_moments: [f64; 3],
+    /// The principal axes, a unit vector for each moment.
+    pub principal_axes: [Vector3<f64>; 3],
+    /// The part of the surface that can touch the table.
+    pub shape: SceneShape,
+}
+
+/// What can touch the table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+#[non_exhaustive]
+pub enum SceneShape {
+    /// An ellipsoid.
+    Ellipsoid(EllipsoidShape),
+    /// The hull of circles about axis 3.
+    Circles(CirclesShape),
+}
+
+/// An ellipsoid along the axes of the body, in metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct EllipsoidShape {
+    #[serde(rename = "type")]
+    pub(super) kind: String,
+    /// The largest semi-axis.
+    pub radius: f64,
+    /// The semi-axes.
+    pub semi_axes: Vector3<f64>,
+    /// The centre of the ellipsoid, from the centre of mass.
+    pub centre: Vector3<f64>,
+    /// The inclination of axis 3 at which an edge lands; `None` without an edge.
+    pub lands_at: Option<f64>,
+}
+
+/// All points within a distance of the convex hull of circles about axis 3, in metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CirclesShape {
+    /// The kind of the body.
+    #[serde(rename = "type")]
+    pub kind: ShapeKind,
+    /// The unit R of length.
+    pub radius: f64,
+    /// The radius of the bore of a tube; `None` for a body of unknown inside.
+    pub inner_radius: Option<f64>,
+    /// The circles, from the lower end up.
+    pub circles: Vec<SceneCircle>,
+    /// The distance from the hull of all circles; `None` if each circle has its own.
+    pub swollen_by: Option<f64>,
+    /// Half the length of a body with two equal rims.
+    pub half_length: Option<f64>,
+    /// The inclination at which something other than the lowest circle lands.
+    pub lands_at: f64,
+    #[serde(rename = "is")]
+    pub(super) explained: String,
+    /// Radius and height of points of a profile whose convex hull shows the body; empty where an engine has a shape for it.
+    #[serde(default)]
+    pub outline: Vec<[f64; 2]>,
+}
+
+/// The kind of a body of revolution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ShapeKind {
+    /// A cylinder or tube, sharp or rounded.
+    Cylinder,
+    /// A single circle.
+    Rim,
+    /// A cylinder with hemispheres at its ends.
+    Capsule,
+    /// Two equal balls.
+    Balls,
+    /// One ball.
+    Ball,
+    /// Any other circles.
+    Circles,
+}
+
+/// A circle about axis 3, in metres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneCircle {
+    /// The height above the centre of mass, along axis 3.
+    pub height: f64,
+    /// The radius; 0 for a ball or a tip.
+    pub radius: f64,
+    /// The radius of the fillet, where the circles differ in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub swollen_by: Option<f64>,
+}
+
+/// The table of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneTable {
+    /// A point of the table.
+    pub point: Point3<f64>,
+    /// The normal of the table.
+    pub normal: Vector3<f64>,
+    /// The law of friction.
+    pub friction: SceneFriction,
+    /// The coefficient of restitution; `None` if nothing strikes the table.
+    pub restitution: Option<f64>,
+    pub(super) restitution_is: String,
+    /// The losses.
+    pub losses: Vec<SceneLoss>,
+    pub(super) symbols: String,
+}
+
+/// The law of friction of a scene, with its formula.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "law", rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum SceneFriction {
+    /// The contact point is at rest.
+    #[non_exhaustive]
+    Rolling {
+        /// A coefficient with which the body rolls.
+        mu: f64,
+        /// The least coefficient that rolling needs; `None` if impacts need more than any.
+        needed: Option<f64>,
+        /// The force.
+        force: String,
+    },
+    /// No friction.
+    #[non_exhaustive]
+    Smooth {
+        /// 0.
+        mu: f64,
+        /// The force.
+        force: String,
+    },
+    /// Dry friction.
+    #[non_exhaustive]
+    Coulomb {
+        /// The coefficient of sliding friction.
+        mu: f64,
+        /// The coefficient of static friction; `None` if it is infinite.
+        #[serde(rename = "static")]
+        fixed: Option<f64>,
+        /// The radius of the patch of contact in metres.
+        patch: f64,
+        /// The force.
+        force: String,
+    },
+    /// A viscous film.
+    #[non_exhaustive]
+    Viscous {
+        /// The coefficient in s/m.
+        c: f64,
+        /// Its unit.
+        unit: String,
+        /// The force.
+        force: String,
+    },
+}
+
+/// A loss law of a scene, with its couple on the body in the symbols of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneLoss {
+    /// The name of the law.
+    pub law: String,
+    /// The name of its coefficient.
+    pub coefficient: String,
+    /// The coefficient in SI.
+    pub value: f64,
+    /// The unit of the coefficient.
+    pub unit: String,
+    /// The couple.
+    pub couple: String,
+}
+
+/// The initial state of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneStart {
+    /// The centre of mass in metres.
+    pub position: Point3<f64>,
+    /// The rotation from the axes of the body to those of the table; x, y, z, w in the file.
+    pub orientation: UnitQuaternion<f64>,
+    /// The velocity of the centre of mass in m/s.
+    pub velocity: Vector3<f64>,
+    /// The angular velocity in rad/s.
+    pub angular_velocity: Vector3<f64>,
+    /// The angular velocity along the axes of the body, in rad/s.
+    pub angular_velocity_in_body_axes: Vector3<f64>,
+}
+
+/// The known answer, a number or a vector for each time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Expected {
+    /// The times in seconds; the first is 0.
+    pub time: Vec<f64>,
+    /// The centre of mass in metres.
+    pub position: Vec<Point3<f64>>,
+    /// The rotation from the axes of the body to those of the table.
+    pub orientation: Vec<UnitQuaternion<f64>>,
+    /// The velocity of the centre of mass in m/s.
+    pub velocity: Vec<Vector3<f64>>,
+    /// The angular velocity in rad/s.
+    pub angular_velocity: Vec<Vector3<f64>>,
+    /// The angle from the vertical to axis 3 in radians.
+    pub theta: Vec<f64>,
+    /// Kinetic and potential energy in joules.
+    pub energy: Vec<f64>,
+    /// The normal force in newtons, of all points of contact together; NaN where it is not determined.
+    #[serde(with = "null_numbers")]
+    pub normal_force: Vec<f64>,
+    /// The force of the table in newtons; NaN where the body touches it with both rims.
+    #[serde(with = "nulls")]
+    pub contact_force: Vec<Vector3<f64>>,
+    /// The contact point in metres; NaN where there is none or more than one.
+    #[serde(with = "nulls")]
+    pub contact_point: Vec<Vector3<f64>>,
+    /// The heat of friction up to each time in joules, under a law of friction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat_of_slip: Option<Vec<f64>>,
+    /// The energy lost to the losses up to each time in joules, with losses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lost_by_losses: Option<Vec<f64>>,
+    pub(super) theta_is: String,
+    pub(super) contact_is: String,
+    /// The height of the lowest point in metres, with a restitution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height: Option<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) height_is: Option<String>,
+    /// The energy lost in impacts before each time in joules, with a restitution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lost_in_impacts: Option<Vec<f64>>,
+    /// The impacts, with a restitution.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub impacts: Option<Vec<SceneImpact>>,
+    /// The phases and the times at which they begin.
+    pub phases: Vec<ScenePhase>,
+    /// How the motion ends.
+    pub ending: SceneEnding,
+}
+
+/// An impact on the table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneImpact {
+    /// The time in seconds.
+    pub time: f64,
+    /// The motion of the contact point in the impact.
+    pub kind: String,
+    /// The normal impulse in N s.
+    pub normal_impulse: f64,
+    /// The energy lost in joules.
+    pub energy_lost: f64,
+}
+
+/// A phase of the motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ScenePhase {
+    /// The time at which it begins, in seconds.
+    pub time: f64,
+    /// The kind in words, such as "rolling".
+    pub kind: String,
+}
+
+/// How the motion ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneEnding {
+    /// The kind, such as `DONE` or `FACE`.
+    pub kind: String,
+    /// The time in seconds.
+    pub time: f64,
+    /// The reason in words.
+    pub why: String,
+}
+
+/// Bounds of the errors of the known answer at any time, in SI.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SceneErrors {
+    /// Of the centre of mass.
+    pub position: f64,
+    /// Of the angle between orientations.
+    pub angle: f64,
+    /// Of the inclination.
+    pub theta: f64,
+    /// Of the angular velocity.
+    pub angular_velocity: f64,
+    /// Of the velocity of the centre of mass.
+    pub velocity: f64,
+    /// Of the energy.
+    pub energy: f64,
+    /// Of the normal force; NaN if it is unknown.
+    #[serde(with = "null_number")]
+    pub normal_force: f64,
+    /// Of the force of the table; NaN if it is unknown.
+    #[serde(with = "null_number")]
+    pub contact_force: f64,
+    /// Of the contact point.
+    pub contact_point: f64,
+    /// Of the times of phases and impacts.
+    pub times_of_phases_and_impacts: f64,
+    /// Of the heat of slip and of the lost energies.
+    pub heat_and_losses: f64,
+    #[serde(rename = "is")]
+    pub(super) explained: String,
+}
+
+/// A matrix by its rows.
+mod rows {
+    use nalgebra::Matrix3;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(of: &Matrix3<f64>, to: S) -> Result<S::Ok, S::Error> {
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| of[(i, j)])).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Matrix3<f64>, D::Error> {
+        let rows = <[[f64; 3]; 3]>::deserialize(from)?;
+        Ok(Matrix3::from_fn(|i, j| rows[i][j]))
+    }
+}
+
+/// Vectors whose missing numbers are null in the file and NaN here.
+mod nulls {
+    use nalgebra::Vector3;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(of: &[Vector3<f64>], to: S) -> Result<S::Ok, S::Error> {
+        let known = |x: f64| (!x.is_nan()).then_some(x);
+        to.collect_seq(of.iter().map(|v| [known(v.x), known(v.y), known(v.z)]))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Vector3<f64>>, D::Error> {
+        let all = Vec::<[Option<f64>; 3]>::deserialize(from)?;
+        Ok(all.into_iter().map(|v| Vector3::from(v.map(|x| x.unwrap_or(f64::NAN)))).collect())
+    }
+}
+
+/// A number that is null in the file and NaN here.
+mod null_number {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(of: &f64, to: S) -> Result<S::Ok, S::Error> {
+        (!of.is_nan()).then_some(*of).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+    }
+}
+
+/// Numbers of which some are null in the file and NaN here.
+mod null_numbers {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(of: &[f64], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(of.iter().map(|x| (!x.is_nan()).then_some(*x)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        let all = Vec::<Option<f64>>::deserialize(from)?;
+        Ok(all.into_iter().map(|x| x.unwrap_or(f64::NAN)).collect())
+    }
+}
