@@ -447,7 +447,11 @@ def measurements():
         "data.Columns": (sc.data.Columns, {"columns": [("t", np.ones(2))]}),
         "data.fit_stop": (
             sc.data.fit_stop,
-            {"body": TUBE, "law": sc.loss.DryContour, "from_": 1.4, "seconds": [2.0, 2.2], "error": None, "from_err": 0.01, "centre": "rest"},
+            {"body": TUBE, "law": sc.loss.DryContour, "from_": 1.4, "seconds": [2.0, 2.2], "error": None, "from_err": 0.01, "centre": "rest", "names": None},
+        ),
+        "data.fit_stop of a class": (
+            sc.data.fit_stop,
+            {"body": TUBE, "law": None, "from_": [1.35, 1.4], "seconds": [[2.0, 2.2], [2.1, 2.1]], "centre": "rest", "names": ["a", "b"]},
         ),
         "data.LossFit.of": (lossfit().of, {"law": sc.loss.DryContour}),
         **{

@@ -141,3 +141,20 @@ with wave.open(str(ROOM / "whirr.wav"), "wb") as file:
     file.setsampwidth(1)
     file.setframerate(hertz)
     file.writeframes((128 + 127 * noisy.clip(-1, 1)).astype(np.uint8).tobytes())
+
+# a class with stopwatches: twelve students, three angles, gaps, and a watch that was stopped much too late
+coin = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
+rng = np.random.default_rng(71)
+angles = (25, 40, 60)
+law = sc.loss.DryContour.from_si("0.04mm", scale=coin)
+lasts = [float(sc.drift(coin, np.radians(angle), law).stops_at) for angle in angles]
+lines = ["Name;" + ";".join(f"{angle}°" for angle in angles)]
+students = ("Anna", "Ben", "Cem", "Dora", "Elif", "Finn", "Gül", "Hana", "Ida", "Jan", "Kim", "Lea")
+for name in students:
+    cells = [f"{t:.1f}".replace(".", ",") for t in rng.normal(lasts, 0.06 * np.array(lasts))]
+    if name in ("Ben", "Kim"):
+        cells[1] = ""
+    if name == "Dora":
+        cells[2] = "70,2"
+    lines.append(";".join([name, *cells]))
+(ROOM / "class.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
