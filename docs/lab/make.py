@@ -158,3 +158,22 @@ for name in students:
         cells[2] = "70,2"
     lines.append(";".join([name, *cells]))
 (ROOM / "class.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+# a golf ball dropped from 0.6 m: silence, noise, hum, a knock, and a click that is too soft
+rng = np.random.default_rng(17)
+seconds = np.arange(int(5.4 * hertz)) / hertz
+at, lasts = 0.9 + np.sqrt(2 * 0.6 / scale.gravity), 2 * np.sqrt(2 * 0.6 / scale.gravity)
+sound = rng.normal(0, 0.004, seconds.size) + 0.01 * np.sin(2 * np.pi * 50 * seconds)
+blows, loud = [(0.31, 0.15)], 0.8
+for k in range(12):
+    blows.append((at, 0.0 if k == 4 else loud))
+    lasts *= rng.normal(0.88, 0.006)
+    at, loud = at + lasts, loud * 0.88
+for begin, size in blows:
+    after = np.clip(seconds - begin, 0, None)
+    sound += (seconds >= begin) * size * np.exp(-after / 0.012) * np.sin(2 * np.pi * 1700 * after)
+with wave.open(str(ROOM / "bounces.wav"), "wb") as file:
+    file.setnchannels(1)
+    file.setsampwidth(1)
+    file.setframerate(hertz)
+    file.writeframes((128 + 127 * sound.clip(-1, 1)).astype(np.uint8).tobytes())

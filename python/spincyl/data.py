@@ -1,6 +1,7 @@
 """Measured data: read tables and sound, and compare steady states and spin-downs with those of a body."""
 
 from spincyl.lab._above import Filmed, from_above
+from spincyl.lab._bounces import Bounces, fit_bounces
 from spincyl.lab._columns import Columns
 from spincyl.lab._compare import Comparison, compare
 from spincyl.lab._contents import MOST_BYTES as MOST_BYTES
@@ -14,6 +15,7 @@ from spincyl.lab._tracker import read_table, read_tracker
 from spincyl.lab._wobble import Wobble, wobble
 
 __all__ = [
+    "Bounces",
     "Columns",
     "Comparison",
     "Filmed",
@@ -25,6 +27,7 @@ __all__ = [
     "Wobble",
     "compare",
     "example",
+    "fit_bounces",
     "fit_losses",
     "fit_stop",
     "from_above",

@@ -146,7 +146,7 @@ class StopFit(NamedTuple):
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
     def of(self, centre: str, law: Any = None) -> FittedStop:
-        """Return the fit for the drift "rest" or "rolling" of a law, given by its class; else of the best law.
+        """Return the fit for the drift "rest" or "rolling", of a law given by its class, or of the best.
 
         Raises KeyError with the reason if there is none.
         """
@@ -179,7 +179,7 @@ class StopFit(NamedTuple):
         return rows + [("left out", one.told()) for one in self.wild]
 
     def table(self) -> str:
-        """Return a table of the fits: coefficients, and by how many seconds each law misses the mean times."""
+        """Return a table of the fits: coefficients, and what each law misses the mean times by."""
         many = self._many > 1
         head = ["law", "centre", "coefficient"]
         rows = [head + (["misses by (s)", "chi2", "dAIC"] if many else [])]
