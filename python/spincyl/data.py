@@ -9,6 +9,7 @@ from spincyl.lab._examples import example
 from spincyl.lab._line import Line
 from spincyl.lab._losses import fit_losses
 from spincyl.lab._lossfit import FittedLoss, LossFit
+from spincyl.lab._motionfit import MotionFit, fit_motion
 from spincyl.lab._sound import read_phyphox, read_sound
 from spincyl.lab._stop import FittedStop, StopFit, fit_stop
 from spincyl.lab._tracker import read_table, read_tracker
@@ -23,12 +24,14 @@ __all__ = [
     "FittedStop",
     "Line",
     "LossFit",
+    "MotionFit",
     "StopFit",
     "Wobble",
     "compare",
     "example",
     "fit_bounces",
     "fit_losses",
+    "fit_motion",
     "fit_stop",
     "from_above",
     "read_phyphox",

@@ -240,10 +240,7 @@ class StopFit(NamedTuple):
         rows = self._about() + [
             (f"{for_law[id(one)]}{CENTRE[one.centre]}", repr(one)[1:-1].split(": ")[1]) for one in self.fits
         ]
-        rows += [
-            (f"{no.name}, {no.centre}" if several else no.centre, f"not fitted: {no.why}")
-            for no in self.refused
-        ]
+        rows += [(f"{no.name}, {no.centre}", f"not fitted: {no.why}") for no in self.refused]
         return framed("StopFit", rows, drawing(self.body, float(np.max(self.theta)), "θ"))
 
 

@@ -164,7 +164,7 @@ def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | No
     if not columns:
         raise ValueError("from_: expected at least one column of times, called by its inclination: '20deg'")
     theta = [_angle_of_column(name, getattr(table, "units", {}).get(name, "")) for name in columns]
-    errors = np.broadcast_to(_errors(from_err, (len(columns),)), len(columns))
+    errors = np.broadcast_to(_angle_errors(from_err, (len(columns),)), len(columns))
     trials = []
     for name, angle, err in zip(columns, theta, errors, strict=True):
         times = np.atleast_1d(_seconds(f"from_[{name!r}]", table[name]))
@@ -195,7 +195,7 @@ def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | N
         raise TypeError("seconds: expected the measured times; only a table in from_ has its own")
     times = _seconds("seconds", seconds)
     theta = np.asarray(radians("from_", _each("from_", from_)), np.float64)
-    errors = _errors(from_err, theta.shape)
+    errors = _angle_errors(from_err, theta.shape)
     if times.ndim > 2 or theta.ndim > 1:
         shapes = f"shapes {theta.shape} and {times.shape}"
         raise ValueError(
@@ -270,7 +270,7 @@ def _inclination(name: str, theta: Any) -> Any:
     return theta
 
 
-def _errors(from_err: Any, shape: tuple[int, ...]) -> Floats:
+def _angle_errors(from_err: Any, shape: tuple[int, ...]) -> Floats:
     """Standard errors of the inclinations."""
     errors = np.asarray(radians("from_err", _each("from_err", from_err)), np.float64)
     if errors.shape not in ((), shape):
