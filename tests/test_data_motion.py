@@ -178,7 +178,7 @@ def test_what_the_points_do_not_determine_is_said():
     with pytest.warns(UserWarning, match="^mu: not determined, the points do not depend on it"):
         found = sc.data.fit_motion(guess, track, free=["mu", "height"])
     assert math.isinf(found.errors["mu"]) and math.isfinite(found.errors["height"])
-    assert "mu: not determined" in found.doubts[0] and "not determined" in found.report()
+    assert "mu: not determined" in found.undetermined[0] and "not determined" in found.report()
     # of a ball that flies only the velocity of the centre is seen, not its slip and spin
     with pytest.warns(UserWarning, match="^w3, slip_2: (the points do not determine them|.*correlation)"):
         sc.data.fit_motion(guess, track, free=["w3", "slip_2", "height"])

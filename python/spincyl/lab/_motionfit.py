@@ -51,7 +51,7 @@ class MotionFit(NamedTuple):
         Sum of the squared residuals in units of their errors, per degree of freedom.
     estimated : tuple of str
         Names of the outputs whose errors were estimated from their scatter.
-    doubts : tuple of str
+    undetermined : tuple of str
         Numbers that the points do not determine, with the reason.
     units : dict of str
         Unit of each number; "" for a pure number.
@@ -65,7 +65,7 @@ class MotionFit(NamedTuple):
     residual: dict[str, Floats]
     chi2: float
     estimated: tuple[str, ...]
-    doubts: tuple[str, ...]
+    undetermined: tuple[str, ...]
     units: dict[str, str]
 
     def correlation(self, one: str, other: str) -> float:
@@ -96,7 +96,12 @@ class MotionFit(NamedTuple):
         if pairs:
             lines += section("Correlations", [(f"C({a}, {b})", f"{c:+.3f}") for a, b, c in pairs])
         return "\n".join(
-            lines + (section("Doubts", [("", one) for one in self.doubts], "") if self.doubts else [])
+            lines
+            + (
+                section("Not determined", [("", one) for one in self.undetermined], "")
+                if self.undetermined
+                else []
+            )
         )
 
     def _note(self, name: str) -> str:
@@ -108,7 +113,7 @@ class MotionFit(NamedTuple):
             f"{name} {with_error(self.values[name], self.errors[name])} {self.units[name]}".rstrip()
             for name in self.names
         )
-        more = f"; {len(self.doubts)} doubts" if self.doubts else ""
+        more = f"; {len(self.undetermined)} not determined" if self.undetermined else ""
         return f"<MotionFit: {told}; chi2 {self.chi2:.3g}{more}>"
 
 
@@ -219,7 +224,7 @@ def fit_motion(
         if share == 1 and k + 1 < len(_SHARES):
             fit.estimate_errors(at)
     result = fit.result(at, found.jac, loss)
-    for doubt in (*result.doubts, *fit.warnings(at, result)):
+    for doubt in (*result.undetermined, *fit.warnings(at, result)):
         warnings.warn(doubt, UserWarning, stacklevel=2)
     return result
 
@@ -350,9 +355,9 @@ class _Fit:
             (),
             {n: x.unit for n, x in self.numbers.items()},
         )
-        return found._replace(doubts=tuple(self.doubts(at, found, jacobian)))
+        return found._replace(undetermined=tuple(self.undetermined(at, found, jacobian)))
 
-    def doubts(self, at: Floats, found: MotionFit, jacobian: Floats) -> list[str]:
+    def undetermined(self, at: Floats, found: MotionFit, jacobian: Floats) -> list[str]:
         """Why the points do not determine some of the numbers."""
         said = []
         effect = np.linalg.norm(jacobian, axis=0)
@@ -377,7 +382,7 @@ class _Fit:
         return said
 
     def warnings(self, at: Floats, found: MotionFit) -> list[str]:
-        """Doubts about the fit as a whole."""
+        """Warnings about the fit as a whole."""
         said = []
         motion = found.motion.natural
         if motion.t[-1] < self.data.t[-1] and motion.status.name != "STOPS":
