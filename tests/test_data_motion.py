@@ -239,7 +239,7 @@ def test_what_has_a_wrong_type_is_refused_by_its_name():
     for change, told in (
         ({"guess": None}, "^guess: expected a Motion"),
         ({"measured": [1, 2]}, "^measured: expected a table"),
-        ({"free": "mu"}, "^free: expected names"),
+        ({"free": "mu"}, "^free: expected a list of names"),
         ({"free": {"mu": 0.3}}, "^free\\['mu'\\]: expected None or a pair"),
     ):
         with pytest.raises(TypeError, match=told):

@@ -231,9 +231,12 @@ def fit_motion(
 
 def _free(known: dict[str, Number], free: Any) -> dict[str, Number]:
     """The free numbers with the bounds of the user."""
-    if isinstance(free, str) or not hasattr(free, "__iter__"):
-        raise TypeError(f"free: expected names such as ['mu', 'w3'], not {free!r}")
-    bounds = dict(free) if hasattr(free, "keys") else dict.fromkeys(free)
+    pairs = free.items() if isinstance(free, Mapping) else None
+    listed = isinstance(free, Mapping | list | tuple | set | frozenset)
+    names = [*free] if listed else []
+    if not listed or not all(isinstance(name, str) for name in names):
+        raise TypeError(f"free: expected a list of names such as ['mu', 'w3'], not {free!r}")
+    bounds = dict.fromkeys(names) if pairs is None else dict(pairs)
     if not bounds:
         raise ValueError("free: expected at least one name")
     found = {}

@@ -86,6 +86,8 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
             raise ValueError(f"measured: {name!r} has an infinite value")
         values[name], factors[name] = wide[order], factor
     followed = frozenset(name for name in _TURNS & set(values) if _count_turns(values[name][:, 0]))
+    if errors is not None and not isinstance(errors, Mapping):
+        raise TypeError(f"errors: expected a dict with errors by name, not {type(errors).__name__}")
     given = {} if errors is None else dict(errors)
     found = {}
     for name in given:

@@ -230,7 +230,7 @@ def _trials(
 
 
 def _checked_names(names: Sequence[str], many: int) -> list[str]:
-    if isinstance(names, str) or not hasattr(names, "__len__") or not hasattr(names, "__iter__"):
+    if isinstance(names, str) or not hasattr(names, "__len__") or np.ndim(np.asarray(names, object)) != 1:
         raise TypeError(f"names: expected a list of names, one for each row, not {type(names).__name__}")
     if len(names) != many:
         raise ValueError(f"names: expected {many} names, one for each row of times, not {len(names)}")
