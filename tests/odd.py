@@ -450,7 +450,18 @@ def measurements():
         "data.Columns": (sc.data.Columns, {"columns": [("t", np.ones(2))]}),
         "data.fit_stop": (
             sc.data.fit_stop,
-            {"body": TUBE, "law": sc.loss.DryContour, "from_": 1.4, "seconds": [2.0, 2.2], "error": None, "from_err": 0.01, "centre": "rest"},
+            {"body": TUBE, "law": sc.loss.DryContour, "from_": 1.4, "seconds": [2.0, 2.2], "error": None, "from_err": 0.01, "centre": "rest", "names": None},
+        ),
+        "data.fit_stop of a class": (
+            sc.data.fit_stop,
+            {"body": TUBE, "law": None, "from_": [1.35, 1.4], "seconds": [[2.0, 2.2], [2.1, 2.1]], "centre": "rest", "names": ["a", "b"]},
+        ),
+        "data.fit_motion": (
+            sc.data.fit_motion,
+            {"guess": motion(), "measured": {"t": motion().t[:9], "theta": motion().theta[:9]}, "free": ["w1", "w3"], "errors": {"theta": 0.01}, "loss": "linear"},
+        ),
+        "data.fit_bounces": (
+            sc.data.fit_bounces, {"t": [0.0, 1.0, 1.9, 2.71, 3.439], "sound": None, "error": None, "released": -0.55, "gravity": 9.81},
         ),
         "data.LossFit.of": (lossfit().of, {"law": sc.loss.DryContour}),
         **{

@@ -162,7 +162,13 @@ class Labelled:
 
 def test_a_column_of_names_is_named(tmp_path):
     (tmp_path / "class.csv").write_text("student;angle (deg);time (s)\nS1;10;0,38\nS2;20;0,85\nS3;30;1,84\n")
+    table = sc.data.read_table(tmp_path / "class.csv")
+    assert list(table) == ["angle", "time"] and table["time"].tolist() == [0.38, 0.85, 1.84]
+    assert table.texts == {"student": ("S1", "S2", "S3")} and table.units["angle"] == "deg"
+    with pytest.raises(KeyError, match="'student': a column of text; .texts\\['student'\\] has its cells"):
+        table["student"]
+    (tmp_path / "class.csv").write_text("student;angle (deg);time (s)\nS1;10;0,38\nS2;late;0,85\n")
     with pytest.raises(
-        ValueError, match="line 2 has the text 'S1' in the column 'student': expected only numbers"
+        ValueError, match="line 3 has the text 'late' in the column 'angle .deg.': expected only"
     ):
         sc.data.read_table(tmp_path / "class.csv")

@@ -20,6 +20,8 @@ def test_the_examples_are_in_the_package_and_a_wrong_name_is_told_which_there_ar
     assert list(sc.data.read_table(sc.data.example("flicks"))) == ["degrees", "hertz"]
     assert next(iter(sc.data.read_table(sc.data.example("spin_down")))) == "seconds"
     assert sc.data.read_sound(sc.data.example("whirr"))[1].size > 60_000
+    assert sc.data.read_sound(sc.data.example("bounces"))[1].size > 40_000
+    assert list(sc.data.read_table(sc.data.example("class"))) == ["25°", "40°", "60°"]
     for name in ("tube_from_above", "flicks", "spin_down", "whirr"):
         with pytest.raises(ValueError, match=f"expected one of .*'{name}'"):
             sc.data.example("tube")

@@ -24,7 +24,7 @@ MADE = {
         "custom", "data", "loss", "parts", "plot", "sweep",
     },
     "custom.": set(),
-    "data.": {"Comparison", "Filmed", "FittedLoss", "FittedStop", "Line", "LossFit", "StopFit", "Wobble"},
+    "data.": {"Bounces", "MotionFit", "Comparison", "Filmed", "FittedLoss", "FittedStop", "Line", "LossFit", "StopFit", "Wobble"},
     "loss.": {"Loss"},
     "parts.": {"Part"},
     "plot.": {"Landmark"},

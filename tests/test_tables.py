@@ -109,7 +109,7 @@ def test_one_column_is_a_table_and_no_track(tmp_path):
         ("a;b\n1;2\n3;4 deg\n", "line 3 has a cell that is not a number: '3;4 deg'"),
         ("t (s),theta\n1,abc\n2,3\n", "line 2 has a cell that is not a number: '1,abc'"),
         ("t theta\n1 abc\n2 3\n", "line 2 has a cell that is not a number: '1 abc'"),
-        ("a;b\n1;Anna\n", "line 2 has the text 'Anna' in the column 'b'"),
+        ("a;b;c\n1;Anna;2\n2;Ben;x\n", "line 3 has the text 'x' in the column 'c'"),
         ("a b c\n1 2\n3 4\n", "line 2 has 2 numbers under 3 column names"),
         (
             "#multi:\n\tO\t\tX\t\nt\tx\ty\tx\ty\n0\t1\t2\t3\t4\n",

@@ -141,3 +141,39 @@ with wave.open(str(ROOM / "whirr.wav"), "wb") as file:
     file.setsampwidth(1)
     file.setframerate(hertz)
     file.writeframes((128 + 127 * noisy.clip(-1, 1)).astype(np.uint8).tobytes())
+
+# a class with stopwatches: twelve students, three angles, gaps, and a watch that was stopped much too late
+coin = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass="8.5g")
+rng = np.random.default_rng(71)
+angles = (25, 40, 60)
+law = sc.loss.DryContour.from_si("0.04mm", scale=coin)
+lasts = [float(sc.drift(coin, np.radians(angle), law).stops_at) for angle in angles]
+lines = ["Name;" + ";".join(f"{angle}°" for angle in angles)]
+students = ("Anna", "Ben", "Cem", "Dora", "Elif", "Finn", "Gül", "Hana", "Ida", "Jan", "Kim", "Lea")
+for name in students:
+    cells = [f"{t:.1f}".replace(".", ",") for t in rng.normal(lasts, 0.06 * np.array(lasts))]
+    if name in ("Ben", "Kim"):
+        cells[1] = ""
+    if name == "Dora":
+        cells[2] = "70,2"
+    lines.append(";".join([name, *cells]))
+(ROOM / "class.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+# a golf ball dropped from 0.6 m: silence, noise, hum, a knock, and a click that is too soft
+rng = np.random.default_rng(17)
+seconds = np.arange(int(5.4 * hertz)) / hertz
+at, lasts = 0.9 + np.sqrt(2 * 0.6 / scale.gravity), 2 * np.sqrt(2 * 0.6 / scale.gravity)
+sound = rng.normal(0, 0.004, seconds.size) + 0.01 * np.sin(2 * np.pi * 50 * seconds)
+blows, loud = [(0.31, 0.15)], 0.8
+for k in range(12):
+    blows.append((at, 0.0 if k == 4 else loud))
+    lasts *= rng.normal(0.88, 0.006)
+    at, loud = at + lasts, loud * 0.88
+for begin, size in blows:
+    after = np.clip(seconds - begin, 0, None)
+    sound += (seconds >= begin) * size * np.exp(-after / 0.012) * np.sin(2 * np.pi * 1700 * after)
+with wave.open(str(ROOM / "bounces.wav"), "wb") as file:
+    file.setnchannels(1)
+    file.setsampwidth(1)
+    file.setframerate(hertz)
+    file.writeframes((128 + 127 * sound.clip(-1, 1)).astype(np.uint8).tobytes())

@@ -1,6 +1,7 @@
 """The cells of a line of a table, and the numbers in them."""
 
 import math
+from typing import NamedTuple
 
 #: Cells without a number, in lower case; float() accepts "nan" by itself.
 MISSING = frozenset(
@@ -91,3 +92,67 @@ def missing_in(line: str, delimiter: str | None) -> list[float] | None:
     except ValueError:
         return None
     return [math.nan] * len(cells) if all(cell.strip().lower() in MISSING for cell in cells) else None
+
+
+class Split(NamedTuple):
+    """A table without its columns of text."""
+
+    lines: list[tuple[int, str]]  #: numbered lines of the columns of numbers
+    texts: list[tuple[str, tuple[str, ...]]]  #: columns of text: names and cells
+
+
+def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset[str]) -> Split | None:
+    """Separate the columns in which no cell is a number, such as names; None if there are none, or only such.
+
+    The line of names is the first that is as wide as the table. ValueError if a column has numbers and texts.
+    """
+    try:
+        rows = [(at, [cell.strip() for cell in split(line, delimiter)]) for at, line in lines]
+    except ValueError:
+        return None
+    wide = max((len(cells) for _, cells in rows), default=0)
+    top = next((k for k, (_, cells) in enumerate(rows) if len(cells) == wide), 0)
+    names = rows[top][1] if rows else []
+    if wide < 2 or not all(names) or any(map(is_number, names)):
+        return None
+    below = top + 1
+    while below < len(rows) and all(x.strip("()[]").lower() in units for x in rows[below][1] if x):
+        below += 1  # a line of units
+    body = [(at, cells) for at, cells in rows[below:] if cells and cells[0][:1] not in ("#", "%")]
+    text = [
+        all(not _reads_as_number(x) for x in column) and any(x.lower() not in MISSING for x in column)
+        for column in ([cells[k] if k < len(cells) else "" for _, cells in body] for k in range(wide))
+    ]
+    if all(text) or not any(text):
+        return None
+    numbers = [k for k, is_text in enumerate(text) if not is_text]
+    for at, cells in body:
+        for name, cell, is_text in zip(names, cells, text, strict=False):
+            if not (is_text or cell.lower() in MISSING or _reads_as_number(cell)):
+                raise ValueError(
+                    f"line {at} has the text {cell!r} in the column {name!r}: expected only numbers"
+                )
+
+    def joined(cells: list[str]) -> str:
+        kept = [(cells[k] if k < len(cells) else "") or "NA" for k in numbers]
+        return delimiter.join(f'"{x}"' if delimiter in x else x for x in kept)
+
+    found = [(at, joined(cells)) for at, cells in [*rows[top:below], *body]]
+    texts = [
+        (names[k], tuple(cells[k] if k < len(cells) else "" for _, cells in body))
+        for k, is_text in enumerate(text)
+        if is_text
+    ]
+    return Split(found, texts)
+
+
+def _reads_as_number(cell: str) -> bool:
+    """Whether a cell is a number, or one that is infinite or written in a way that tables must not have."""
+    bare = cell.strip(" \t\"'")
+    if bare.lower() in MISSING:
+        return False
+    try:
+        float(bare)
+    except ValueError:
+        return is_number(bare) or bare.lstrip("+-")[:1].isdecimal()
+    return True

@@ -53,9 +53,15 @@ class Columns(dict[str, Floats]):
     units : dict
         Unit of each column, by its name, as the file gives it in brackets; "" if there is none. The numbers
         are not converted.
+    texts : dict
+        Columns of text, such as the names of students: tuples of str, as long as the columns of numbers.
     """
 
-    def __init__(self, columns: Iterable[tuple[str, Floats]] = ()) -> None:
+    def __init__(
+        self,
+        columns: Iterable[tuple[str, Floats]] = (),
+        texts: Iterable[tuple[str, tuple[str, ...]]] = (),
+    ) -> None:
         try:
             pairs = [(name, values) for name, values in columns]
         except (TypeError, ValueError):
@@ -78,10 +84,13 @@ class Columns(dict[str, Floats]):
             self[name] = values
             self.units[name] = unit
             self._written[written] = name
+        self.texts: dict[str, tuple[str, ...]] = {cleaned(name)[0]: cells for name, cells in texts}
 
     def __missing__(self, name: object) -> Floats:
         if name in self._written:
             return self[self._written[str(name)]]
+        if name in self.texts:
+            raise KeyError(f"{name!r}: a column of text; .texts[{name!r}] has its cells")
         raise KeyError(f"{name!r}: expected one of {', '.join(map(repr, self))}")
 
     def __contains__(self, name: object) -> bool:
@@ -95,13 +104,14 @@ class Columns(dict[str, Floats]):
             return default
 
     def __eq__(self, other: object) -> bool:
-        """Whether names (in any order), numbers (NaN equal to NaN) and units are the same."""
+        """Whether names (in any order), numbers (NaN equal to NaN), units and texts are the same."""
         if not isinstance(other, Mapping):
             return NotImplemented
         same = dict(self).keys() == dict(other).keys() and equality_key(dict(self)) == equality_key(
             dict(other)
         )
-        return same and (not isinstance(other, Columns) or self.units == other.units)
+        own = (self.units, self.texts)
+        return same and (not isinstance(other, Columns) or own == (other.units, other.texts))
 
     def __ne__(self, other: object) -> bool:
         return not self == other

@@ -10,6 +10,8 @@ _EXAMPLES = {
     "flicks": ("flicks.csv", "inclination in degrees and turns per second of ten flicks of that tube"),
     "spin_down": ("spin_down.csv", "seconds, degrees and turns per second of a disk that spins down"),
     "whirr": ("whirr.wav", "eight seconds of the sound of that disk"),
+    "bounces": ("bounces.wav", "five seconds of the sound of a golf ball that bounces"),
+    "class": ("class.csv", "seconds until a 2-euro coin stops, from three angles, by twelve students"),
 }
 
 
@@ -18,13 +20,17 @@ def example(name: str) -> Path:
 
     Parameters
     ----------
-    name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr"}
+    name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr", "class",
+        "bounces"}
         "tube_from_above" has both ends of a tube, tracked in a film and exported by Tracker; "tube_project"
         is the project of Tracker (for `read_tracker` and `from_above`). "flicks" has the inclination in
         degrees and the turns per second of ten flicks of this tube (for `read_table` and `compare`).
         "spin_down" is a disk that spins down on film (for `read_table` and `fit_losses`), and "whirr" is its
-        sound (for `read_sound` and `wobble`). The tube has diameters of 0.625 and 0.5 inches and a length of
-        3.75 inches; the disk has a diameter of 75.1 mm and a thickness of 12.8 mm.
+        sound (for `read_sound` and `wobble`). "class" has the times in which a 2-euro coin stops, measured by
+        twelve students with stopwatches (for `read_table` and `fit_stop`). The tube has diameters of 0.625
+        and 0.5 inches and a length of 3.75 inches; the disk has a diameter of 75.1 mm and a thickness of
+        12.8 mm. "bounces" is the sound of a golf ball that is dropped from 0.6 m (for `read_sound` and
+        `fit_bounces`).
 
     Returns
     -------

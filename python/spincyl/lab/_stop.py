@@ -1,7 +1,10 @@
 """A coefficient of loss from a stopwatch: the time in which a spinning body stops."""
 
 import math
+import textwrap
 import warnings
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -9,28 +12,23 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._drift import Drift, drift
 from spincyl._input.equality import compared_by_value
-from spincyl._input.numbers import Floats, Reals, number, radians, reals, refuse_bad_value, si
+from spincyl._input.numbers import Floats, Reals
 from spincyl._loss import marked_as_si
 from spincyl._single import one_body
-from spincyl.lab._lossfit import CENTRE, Refused
-from spincyl.lab._report import section, student, variables
-from spincyl.lab._spindown import centres, known_law
+from spincyl.lab._lossfit import APART, CENTRE, Refused
+from spincyl.lab._report import WIDE, section, variables
+from spincyl.lab._spindown import centres, known_law, known_laws
+from spincyl.lab._times import Timed, WildTime, timed
 from spincyl.lab._typical import far_from_typical
 
 _UNIT = 1e-9  #: Coefficient so small that the law holds at all inclinations of the drift.
 _ENDS = ("face lands", "lies down")  #: Ends at which the body is seen to stop.
 _FEWEST_TURNS = 5.0  #: With fewer turns before the end the drift is not slow.
-_LONGEST = 1e9  #: Seconds.
-_MIXED_RATIO = 3.0  #: A larger ratio of the times causes a warning.
-_FEWEST_TIMES = 5  #: With fewer times their scatter does not show which of them is an outlier.
-#: Robust standard deviations from the median, and the least of these deviations as a share of the median. Of
-#: 1000 sets of five normal times one has a time that is farther.
-_OUTLIER, _STEADY = 9.0, 0.02
 
 
 @compared_by_value
 class FittedStop(NamedTuple):
-    """Coefficient of a loss for one of the two kinds of drift; returned by `fit_stop`.
+    """Coefficient of a loss for one law and one kind of drift; returned by `fit_stop`.
 
     Attributes
     ----------
@@ -41,13 +39,20 @@ class FittedStop(NamedTuple):
     coefficient : float
         Coefficient in natural units, as in the law.
     coefficient_err : float
-        Standard error of `coefficient`.
+        Standard error of `coefficient`; larger if the law misses the times by more than their errors.
     by_times : float
         Part of the standard error that is due to the times.
     by_angle : float
-        Part of the standard error that is due to the first inclination.
+        Part of the standard error that is due to the first inclinations.
     drift : Drift
-        Drift from the first inclination to the end, with this coefficient; it lasts the mean of the times.
+        Drift from the (largest) first inclination to the end, with this coefficient.
+    misses : ndarray, (k,)
+        Measured mean times minus those of the law, in seconds, for each first inclination; 0 for a single
+        one.
+    chi2 : float
+        Sum of the squares of `misses` in units of their errors, of the times and the inclinations together.
+    daic : float
+        Difference between `chi2` and that of the best law, which is the difference of Akaike's criterion.
     coefficient_si, coefficient_err_si : float
         Coefficient and standard error in the unit of `from_si`.
     """
@@ -59,6 +64,9 @@ class FittedStop(NamedTuple):
     by_times: float
     by_angle: float
     drift: Drift
+    misses: Floats
+    chi2: float
+    daic: float
 
     @property
     def coefficient_si(self) -> float:
@@ -83,92 +91,169 @@ class FittedStop(NamedTuple):
 
 @compared_by_value
 class StopFit(NamedTuple):
-    """Measured times until a body stops, and the coefficient of loss; returned by `fit_stop`.
+    """Measured times until a body stops, and the coefficients of loss; returned by `fit_stop`.
 
-    Methods: ``of(centre)`` and ``report()``.
+    Methods: ``of(centre, law)``, ``table()`` and ``report()``.
 
     Attributes
     ----------
     body : Body
         The measured body.
     name : str
-        Name of the law.
-    theta : float
-        First inclination, in radians.
-    theta_err : float
+        Name of the law, or of the laws, separated by commas.
+    theta : float or ndarray, (k,)
+        First inclination in radians; for several ones an array, ascending.
+    theta_err : float or ndarray, (k,)
         Standard error of `theta`.
     seconds : ndarray, (n,)
         Measured times in seconds, without missing ones.
-    stops_at : float
-        Mean of the times, in seconds.
-    stops_at_err : float
+    stops_at : float or ndarray, (k,)
+        Mean of the times from each inclination, in seconds, without `wild` ones.
+    stops_at_err : float or ndarray, (k,)
         Standard error of the mean.
     fits : tuple of FittedStop
-        One fit for each kind of drift: with the centre at rest, or rolling.
+        One fit for each law and each kind of drift. With several inclinations or laws the best comes first.
     refused : tuple of Refused
-        Kinds of drift that could not be fitted, with the reason.
+        Laws and kinds of drift that could not be fitted, with the reason.
+    wild : tuple of WildTime
+        Times that are left out since they are far from the others: each has ``where``, ``name`` (of the row),
+        ``theta``, ``seconds`` and ``deviations``.
+    best : FittedStop
+        The fit with the least chi2, ``fits[0]``.
+    told_apart : bool
+        Whether every other fit is at least twenty times less likely than the best.
     """
 
     body: Body
     name: str
-    theta: float
-    theta_err: float
+    theta: float | Floats
+    theta_err: float | Floats
     seconds: Floats
-    stops_at: float
-    stops_at_err: float
+    stops_at: float | Floats
+    stops_at_err: float | Floats
     fits: tuple[FittedStop, ...]
     refused: tuple[Refused, ...]
+    wild: tuple[WildTime, ...] = ()
 
-    def of(self, centre: str) -> FittedStop:
-        """Return the fit for the drift "rest" or "rolling"; KeyError with the reason if there is none."""
+    @property
+    def best(self) -> FittedStop:
+        """The fit with the least chi2; the first one, if there is a single inclination."""
+        return self.fits[0]
+
+    @property
+    def told_apart(self) -> bool:
+        """Whether every other fit is at least twenty times less likely: its AIC is larger by more than 6."""
+        return len(self.fits) < 2 or self.fits[1].daic > APART
+
+    def of(self, centre: str, law: Any = None) -> FittedStop:
+        """Return the fit for the drift "rest" or "rolling", of a law given by its class, or of the best.
+
+        Raises KeyError with the reason if there is none.
+        """
+        name = None if law is None else known_law("law", law).__name__
         for found in self.fits:
-            if found.centre == centre:
+            if found.centre == centre and name in (None, type(found.law).__name__):
                 return found
-        why = next((f": {no.why}" for no in self.refused if no.centre == centre), "")
-        raise KeyError(f"centre: {centre!r} was not fitted{why}")
+        laws = [no for no in self.refused if no.centre == centre and name in (None, no.name)]
+        why = next((f": {no.why}" for no in laws), "")
+        raise KeyError(f"centre: {centre!r} was not fitted{f' with {name}' if name else ''}{why}")
+
+    @property
+    def _many(self) -> int:
+        """Number of first inclinations."""
+        return int(np.size(self.theta))
 
     def _about(self) -> list[tuple[str, str]]:
         """The measurement in words."""
-        angle = f"{math.degrees(self.theta):.4g} +/- {math.degrees(self.theta_err):.2g} degrees"
-        return [
-            ("body", repr(self.body)),
-            ("law", self.name),
-            ("starts at", angle),
-            ("stops after", f"{self.stops_at:.4g} +/- {self.stops_at_err:.2g} s"),
-            ("# times", str(self.seconds.size)),
-        ]
+        rows = [("body", repr(self.body)), ("law" if "," not in self.name else "laws", self.name)]
+        told = zip(*map(np.atleast_1d, self[2:4]), *map(np.atleast_1d, self[5:7]), strict=True)
+        for theta, theta_err, mean, err in told:
+            angle = f"{math.degrees(theta):.4g} +/- {math.degrees(theta_err):.2g} degrees"
+            time = f"{mean:.4g} +/- {err:.2g} s"
+            rows += (
+                [("starts at", angle), ("stops after", time)]
+                if self._many == 1
+                else [("from", f"{angle}: stops after {time}")]
+            )
+        rows.append(("# times", str(self.seconds.size)))
+        return rows + [("left out", one.told()) for one in self.wild]
 
-    def report(self) -> str:
-        """Return a report in lmfit's style: the times, and the coefficient with the parts of its error."""
-        told = []
+    def table(self) -> str:
+        """Return a table of the fits: coefficients, and what each law misses the mean times by."""
+        many = self._many > 1
+        head = ["law", "centre", "coefficient"]
+        rows = [head + (["misses by (s)", "chi2", "dAIC"] if many else [])]
         for found in self.fits:
             value, error, unit = found._printed
-            name = f"{found.law._parameter} {CENTRE[found.centre]}" + (unit and f", in{unit}")
+            row = [type(found.law).__name__, found.centre, f"{value:.4g} +- {error:.1g}{unit}"]
+            if many:
+                near = "best" if found is self.best else "not told apart" if found.daic <= APART else ""
+                off = " ".join(f"{x:+.2f}" for x in found.misses)
+                row += [off, f"{found.chi2:.3g}", f"{found.daic:.1f} {near}".rstrip()]
+            rows.append(row)
+        wide = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        lines = ["  ".join(x.ljust(w) for x, w in zip(row, wide, strict=True)).rstrip() for row in rows]
+        if many:
+            start = ", ".join(f"{math.degrees(x):.4g}\N{DEGREE SIGN}" for x in np.atleast_1d(self.theta))
+            lines.append(f"misses by: mean times from {start} minus those of the law")
+        elif len({type(found.law) for found in self.fits}) > 1:
+            lines.append("one inclination cannot show which law holds")
+        return "\n".join(lines + self._not_fitted())
+
+    def _not_fitted(self) -> list[str]:
+        """Lines that say why laws or kinds of drift were not fitted."""
+        lines, several = [], "," in self.name
+        for why, same in groupby(self.refused, key=lambda no: (no.name, no.why)):
+            kept = " or ".join(no.centre for no in same)
+            name = f"{why[0]}, {kept}" if several else kept
+            lines += textwrap.wrap(f"{name}: not fitted: {why[1]}", WIDE - 4, subsequent_indent="  ")
+        return lines
+
+    def report(self) -> str:
+        """Return a report in lmfit's style: the times, the coefficients with the parts of their errors, laws.
+
+        The table of the laws follows if there are several inclinations or laws.
+        """
+        told, whole = [], self._many > 1 or "," in self.name
+        for found in self.fits[:1] if whole and self._many > 1 else self.fits:
+            value, error, unit = found._printed
+            law = f"{type(found.law).__name__} " if "," in self.name else ""
+            name = f"{law}{found.law._parameter} {CENTRE[found.centre]}" + (unit and f", in{unit}")
             times, angle = (100 * part / found.coefficient for part in (found.by_times, found.by_angle))
             told.append((name, value, error, f"(times {times:.2g}%, angle {angle:.2g}%)"))
         lines = section("Stopwatch", self._about()) + variables(told)
-        return "\n".join(lines + [f"    {no.centre}: not fitted: {no.why}" for no in self.refused])
+        if whole:
+            return "\n".join([*lines, "[[Laws]]", *("    " + line for line in self.table().splitlines())])
+        return "\n".join(lines + ["    " + line for line in self._not_fitted()])
 
     def __repr__(self) -> str:
-        return f"<StopFit: {'; '.join(repr(found)[1:-1] for found in self.fits)}; {self.seconds.size} times>"
+        shown = self.fits if self._many == 1 and len(self.fits) < 3 else self.fits[:1]
+        apart = "" if self._many == 1 or self.told_apart else ", not told apart from others"
+        told = "; ".join(repr(found)[1:-1] for found in shown)
+        return f"<StopFit: {told}{apart}; {self.seconds.size} times>"
 
     def _repr_html_(self) -> str:
         from spincyl.studio.cards import drawing, framed
 
-        rows = self._about() + [(CENTRE[one.centre], repr(one)[1:-1].split(": ")[1]) for one in self.fits]
-        rows += [(no.centre, f"not fitted: {no.why}") for no in self.refused]
-        return framed("StopFit", rows, drawing(self.body, self.theta, "θ"))
+        several = "," in self.name
+        for_law = {id(one): f"{type(one.law).__name__}, " if several else "" for one in self.fits}
+        rows = self._about() + [
+            (f"{for_law[id(one)]}{CENTRE[one.centre]}", repr(one)[1:-1].split(": ")[1]) for one in self.fits
+        ]
+        rows += [(f"{no.name}, {no.centre}", f"not fitted: {no.why}") for no in self.refused]
+        return framed("StopFit", rows, drawing(self.body, float(np.max(self.theta)), "θ"))
 
 
 def fit_stop(
     body: Body,
     law: Any,
-    from_: float,
-    seconds: Reals,
+    from_: float | Reals | Mapping[str, Reals],
+    seconds: Reals | None = None,
     *,
     error: float | None = None,
-    from_err: float = 0.0,
+    from_err: float | Reals = 0.0,
     centre: Literal["rest", "rolling"] | None = None,
+    names: Sequence[str] | None = None,
 ) -> StopFit:
     """Fit the coefficient of a loss to the time in which a spinning coin stops, measured with a stopwatch.
 
@@ -176,53 +261,69 @@ def fit_stop(
     ----------
     body : Body
         Single measured body.
-    law : class of `spincyl.loss`
-        For instance ``sc.loss.DryContour``. A stopwatch cannot tell which law holds (`fit_losses` can).
-    from_ : float
-        Inclination at which the stopwatch is started, in radians, or a text such as "20deg".
-    seconds : array_like
-        Measured times from the start of the stopwatch until the body stops, in seconds; NaN if missing.
+    law : class of `spincyl.loss`, list of classes, or None
+        For instance ``sc.loss.DryContour``. None fits all eight laws. Times from one inclination cannot show
+        which law holds; times from several inclinations can, and the best law comes first.
+    from_ : float, array_like or table
+        Inclination at which the stopwatch is started, in radians, or a text such as "20deg". For several
+        inclinations a list: one for each column of `seconds`, or one for each time. Or a table, as
+        `read_table` returns it, or a dict, with a column of times for each inclination. The columns are
+        called "20deg", "20°" or "20 (deg)"; a column of text has the names of the rows.
+    seconds : array_like, optional
+        Measured times from the start of the stopwatch until the body stops, in seconds; NaN or None if
+        missing. A list of times, or a table with a row for each student and a column for each inclination. To
+        be left out if `from_` is a table.
     error : float, optional
         Standard error of each time in seconds, such as 0.2 for a watch started by hand. Default: the error is
-        estimated from the scatter of the times, which needs at least two different times.
-    from_err : float
-        Standard error of `from_`, in radians or as a text such as "2deg". The error is assumed to be the same
-        in all trials, like the error of a mark, so that more trials do not reduce it.
+        estimated from the scatter of the times, which needs at least two different times from an inclination.
+        The scatter is then the same share of the time at all inclinations.
+    from_err : float or array_like
+        Standard error of `from_`, in radians or as a text such as "2deg"; one, or one for each inclination.
+        The error of an inclination is assumed to be the same in all trials, like the error of a mark, so that
+        more trials do not reduce it.
     centre : {"rest", "rolling"}, optional
-        Kind of drift: with the centre held at rest by slip, or of a body that rolls all the time. A stopwatch
-        cannot distinguish them. Default: both.
+        Kind of drift: with the centre held at rest by slip, or of a body that rolls all the time. Times from
+        one inclination cannot distinguish them. Default: both.
+    names : sequence of str, optional
+        Names of the rows of `seconds`, such as those of students. They are used in messages.
 
     Returns
     -------
     StopFit
-        ``.report()`` summarises the fit; `drift` and `roll` take ``.of("rest").law``.
+        ``.report()`` summarises the fit; `drift` and `roll` take ``.of("rest").law`` or ``.best.law``.
 
     Raises
     ------
     ValueError
-        If times are not positive. If `error` is missing and there is only one time, or all times are equal.
-        If the body never stops under the law, or stops within its first turn. If there is no steady state at
-        the first inclination. If the size of the body is unknown.
+        If times are not positive. If `error` is missing and there is only one time from each inclination, or
+        all times are equal. If the body never stops under the law, or stops within its first turn. If there
+        is no steady state at the first inclination. If the size of the body is unknown. If a column of a
+        table is not called by an inclination.
     TypeError
         If an argument is not a body, a law or a number; the message names it.
 
     Warns
     -----
     DriftWarning
-        Warnings of the fitted drift are passed on.
+        Warnings of the best drift are passed on.
     UserWarning
-        If the body turns less than five times. If one of five or more times is an outlier: more than nine
-        standard deviations, estimated by the median deviation, from the median. If the longest time is three
-        times the shortest or more. If the coefficient is far from all values in `spincyl.loss.typical`, for
-        example because minutes were given for seconds.
+        If the body turns less than five times. If a time is left out since it is far from the others; the
+        message names it. If the longest time from an inclination is three times the shortest or more. If the
+        coefficient of every likely law is far from all values in `spincyl.loss.typical`, for example because
+        minutes were given for seconds.
 
     Notes
     -----
-    The duration of a drift is inversely proportional to the coefficient, so the mean of the times gives the
-    coefficient. Errors are propagated to first order. The part from the inclination follows from drifts that
-    begin at both ends of its error interval. An error from the scatter of only a few times is widened by
-    Student's t, so that the error interval contains the true coefficient in two of three cases. The drift is
-    of first order in the loss; to see how accurate this is, compute the motion with `roll` and the law.
+    The duration of a drift is inversely proportional to the coefficient, so the times give the coefficient.
+    Errors are propagated to first order. The part from the inclination follows from drifts that begin at both
+    ends of its error interval. An error from the scatter of only a few times is widened by Student's t, so
+    that the error interval contains the true coefficient in two of three cases. The drift is of first order
+    in the loss; to see how accurate this is, compute the motion with `roll` and the law.
+
+    With five or more times a robust mean is used: times that are farther than 1.5 robust standard deviations
+    from it count as if they were at this distance (Huber 1964), and those that are much farther, 6.7 standard
+    deviations of twelve times, are left out (`StopFit.wild`). The robust standard deviation is 1.48 times the
+    median deviation from the median.
 
     Examples
     --------
@@ -238,106 +339,96 @@ def fit_stop(
         raise ValueError(
             "body: the size of the body is unknown; make the body with sc.measured, or give it a scale"
         )
-    kind = known_law("law", law)
-    theta, theta_err = (
-        number(name, radians(name, x)) for name, x in (("from_", from_), ("from_err", from_err))
-    )
-    refuse_bad_value("from_", theta, lambda x: ~(x > 0), "expected a positive angle (radians)")
-    refuse_bad_value(
-        "from_err", theta_err, lambda x: ~((x >= 0) & (x < theta)), "expected at least 0, less than from_"
-    )
-    times, mean, mean_err = _mean_of_times(seconds, error)
-    turns = mean * float(body.hertz(theta))
+    kinds, alone = _laws(law)
+    data = timed(from_, seconds, error, from_err, names)
+    turns = min(data.mean * body.hertz(data.theta))
     if turns < 1:
         told = f"the body would stop within {turns:.2g} of a turn, too fast for a drift"
-        raise ValueError(f"seconds = {mean:.6g}: {told}; are the times in seconds?")
-    fits, refused = [], []
-    with warnings.catch_warnings(record=True, action="always") as said:
+        raise ValueError(f"seconds = {data.mean.min():.6g}: {told}; are the times in seconds?")
+    found, refused = [], []
+    for kind in kinds:
         for one in centres(centre):
-            try:
-                fits.append(_fitted_drift(body, kind, one, (theta, theta_err), (mean, mean_err)))
-            except ValueError as e:
-                refused.append((one, e))
-    if not fits:
+            with warnings.catch_warnings(record=True, action="always") as said:
+                try:
+                    found.append((_fitted_drift(body, kind, one, data), said))
+                except ValueError as e:
+                    refused.append((Refused(kind.__name__, one, str(e)), e))
+    if not found:
         raise refused[0][1]
-    far = far_from_typical(fits[0].law, body.scale)
-    if far:
-        warnings.warn(far, UserWarning, stacklevel=2)
-    for kept in {one.category: one for one in said}.values():  # not once for each centre
-        warnings.warn(kept.message, kept.category, stacklevel=2)
+    if data.theta.size > 1:
+        found.sort(key=lambda pair: pair[0].chi2)
+    fits = [one._replace(daic=one.chi2 - found[0][0].chi2) for one, _ in found]
+    far = [far_from_typical(one.law, body.scale) for one in fits if one.daic <= APART]
+    known = [why for why in far if why is not None]
+    doubts: list[tuple[Any, Any]] = [(why, UserWarning) for why in known[:1] if all(known)]
+    # not once for each centre; of several laws only the best may warn
+    own = [one for _, said in (found if alone and data.theta.size == 1 else found[:1]) for one in said]
+    doubts += [(kept.message, kept.category) for kept in {one.category: one for one in own}.values()]
     if turns < _FEWEST_TURNS:
-        told = (
-            f"the body turns only {turns:.2g} times before it stops, too few for a slow drift: are the times"
-            " in seconds?"
-        )
-        warnings.warn(told, UserWarning, stacklevel=2)
-    return StopFit(
-        body,
-        kind.__name__,
-        theta,
-        theta_err,
-        times,
-        mean,
-        mean_err,
-        tuple(fits),
-        tuple(Refused(kind.__name__, one, str(why)) for one, why in refused),
-    )
+        doubts.append((f"{_FEW.format(turns)}: are the times in seconds?", UserWarning))
+    doubts += [(one, UserWarning) for one in (_about_wild(data.wild), data.mixed) if one]
+    for message, category in doubts:
+        warnings.warn(message, category, stacklevel=2)
+    shown = (data.theta, data.theta_err, data.seconds, data.mean, data.mean_err)
+    if data.theta.size == 1:
+        shown = tuple(x if k == 2 else float(x[0]) for k, x in enumerate(shown))  # type: ignore[assignment]
+    name = ", ".join(kind.__name__ for kind in kinds)
+    return StopFit(body, name, *shown, tuple(fits), tuple(no for no, _ in refused), data.wild)
 
 
-def _mean_of_times(seconds: Reals, error: float | None) -> tuple[Floats, float, float]:
-    """The times, their mean and its standard error."""
-    given = np.asarray(reals("seconds", si("seconds", seconds, "second")), np.float64)
-    if given.ndim > 1:
-        raise ValueError(f"seconds: expected a time or a list of them, not shape {given.shape}")
-    refuse_bad_value(
-        "seconds", given, lambda x: (x <= 0) | (x > _LONGEST), f"expected more than 0, at most {_LONGEST:g}"
-    )
-    times = np.atleast_1d(given)[np.isfinite(np.atleast_1d(given))]
-    if not times.size:
-        raise ValueError("seconds: expected at least one time")
-    mean = float(np.mean(times))
-    one = math.nan if error is None else number("error", si("error", error, "second"))
-    if error is not None:
-        refuse_bad_value(
-            "error", one, lambda x: ~((x > 0) & (x < mean)), "expected a positive time, less than the mean"
-        )
-    elif times.size < 2 or np.ptp(times) == 0:
-        what = "a single time has" if times.size < 2 else "equal times have"
-        raise ValueError(
-            f"seconds: {what} no scatter; give the standard error of a time in seconds, such as error=0.2"
-        )
-    told = _warning_of_outliers(given, times) if times.size >= _FEWEST_TIMES else ""
-    if not told and times.max() > _MIXED_RATIO * times.min():
-        told = f"the times range from {times.min():.4g} to {times.max():.4g} s: are all of them in seconds?"
-    if told:
-        warnings.warn(told, UserWarning, stacklevel=3)
-    scatter = float(np.std(times, ddof=1)) if times.size > 1 else 0.0
-    spread = scatter * student(1.0, times.size - 1) if error is None else max(one, scatter)
-    return times, mean, spread / math.sqrt(times.size)
+_FEW = "the body turns only {:.2g} times before it stops, too few for a slow drift"
 
 
-def _warning_of_outliers(given: Floats, times: Floats) -> str:
-    """A warning that names times far from the median, in units of the median deviation; empty if none is."""
-    middle = float(np.median(times))
-    scale = max(1.4826 * float(np.median(np.abs(times - middle))), _STEADY * middle)
-    far = np.flatnonzero(np.abs(given - middle) > _OUTLIER * scale)  # not a missing time
-    if not far.size:
+def _laws(law: Any) -> tuple[list[Any], bool]:
+    """The classes of the laws, and whether a single class was given."""
+    if law is None:
+        return known_laws(), False
+    if not isinstance(law, list | tuple):
+        return [known_law("law", law)], True
+    if not law or len(set(map(id, law))) < len(law):
+        raise ValueError("law: expected at least one law, and each law only once")
+    return [known_law("law", one) for one in law], False
+
+
+def _about_wild(wild: tuple[WildTime, ...]) -> str:
+    """A warning that names the times that are left out; empty if there are none."""
+    if not wild:
         return ""
-    named = ", ".join(f"seconds[{k}] = {given[k]:.4g}" for k in far[:3]) + ", ..." * (far.size > 3)
-    away = abs(given[far] - middle).min() / scale
-    least = "at least " if far.size > 1 else ""
+    named = ", ".join(one.told() for one in wild[:3]) + ", ..." * (len(wild) > 3)
+    away = min(one.deviations for one in wild)
+    least, these = ("at least ", "they are") if len(wild) > 1 else ("", "it is")
     return (
-        f"{named}: {least}{away:.2g} standard deviations of the other times from their median {middle:.4g} s;"
-        " was the stopwatch stopped late, or is the time in another unit? Set it to NaN to leave it out"
+        f"{named}: {least}{away:.0f} standard deviations of the other times from their median; {these} left"
+        " out; was the stopwatch stopped late, or is the time in another unit?"
     )
 
 
-def _fitted_drift(
-    body: Body, kind: Any, centre: str, angle: tuple[float, float], time: tuple[float, float]
-) -> FittedStop:
-    """The coefficient by one drift, from the inclination and the mean time with their errors."""
-    (theta, theta_err), (mean, mean_err), name = angle, time, kind.__name__
-    plain, second = body.natural, body.scale.seconds(1.0)  # type: ignore[union-attr]
+def _fitted_drift(body: Body, kind: Any, centre: str, data: Timed) -> FittedStop:
+    """The coefficient by one drift, from the inclinations and the mean times with their errors."""
+    second = body.scale.seconds(1.0)  # type: ignore[union-attr]
+    lasts = np.empty((2, data.theta.size))
+    for k, (theta, err) in enumerate(zip(data.theta.tolist(), data.theta_err.tolist(), strict=True)):
+        lasts[:, k] = _duration(body.natural, kind, centre, theta, err)
+    scaled = np.log(data.mean / second) - np.log(_UNIT * lasts[0])  # minus the logarithm of the coefficient
+    by = np.stack([data.mean_err / data.mean, lasts[1] / lasts[0]])
+    weight = 1 / (by**2).sum(axis=0)
+    weight /= weight.sum()
+    inverse = float(weight @ scaled)
+    coefficient = math.exp(-inverse)
+    off = scaled - inverse
+    chi2 = float((off**2 / (by**2).sum(axis=0)).sum()) if off.size > 1 else 0.0
+    wide = math.sqrt(max(chi2 / max(off.size - 1, 1), 1.0))
+    by_times, by_angle = (wide * coefficient * math.sqrt(float(weight**2 @ part**2)) for part in by)
+    misses = data.mean * -np.expm1(-off) if off.size > 1 else np.zeros(1)
+    law = marked_as_si(kind(coefficient), body)
+    found = drift(body, float(data.theta[-1]), law, centre)
+    error = math.hypot(by_times, by_angle)
+    return FittedStop(centre, law, coefficient, error, by_times, by_angle, found, misses, chi2, 0.0)
+
+
+def _duration(plain: Body, kind: Any, centre: str, theta: float, theta_err: float) -> tuple[float, float]:
+    """Duration of the drift of unit coefficient, and its change by the error of the inclination."""
+    name = kind.__name__
     try:
         one = drift(plain, theta, kind(_UNIT), centre)
     except ValueError as e:
@@ -348,13 +439,10 @@ def _fitted_drift(
     if one.ended not in _ENDS:
         at = f"at {math.degrees(one.ends_at_theta):.3g} degrees, where the body still moves"
         raise ValueError(f"law: the drift with {name} ends ({one.ended}) {at}; a stopwatch cannot time it")
+    if not theta_err:
+        return float(one.stops_at), 0.0
     beside = drift(plain, np.array([theta - theta_err, theta + theta_err]), kind(_UNIT), centre).stops_at
     off = np.abs(beside - one.stops_at)
-    if theta_err and not np.isfinite(off).any():
+    if not np.isfinite(off).any():
         raise ValueError(f"from_err = {theta_err!r}: there is no drift from either end of this interval")
-    coefficient = _UNIT * one.stops_at / (mean / second)
-    by_times = coefficient * mean_err / mean
-    by_angle = coefficient * float(np.nanmean(off)) / one.stops_at if theta_err else 0.0
-    law = marked_as_si(kind(coefficient), body)
-    found = drift(body, theta, law, centre)
-    return FittedStop(centre, law, coefficient, math.hypot(by_times, by_angle), by_times, by_angle, found)
+    return float(one.stops_at), float(np.nanmean(off))

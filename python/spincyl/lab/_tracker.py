@@ -8,7 +8,7 @@ from os import PathLike
 import numpy as np
 
 from spincyl._input.numbers import Floats
-from spincyl.lab._cells import is_number, missing_in, numbers_in, split
+from spincyl.lab._cells import is_number, missing_in, numbers_in, split, without_texts
 from spincyl.lab._columns import UNITS, Columns
 from spincyl.lab._contents import MOST_BYTES, contents
 from spincyl.lab._encoding import decoded, legible
@@ -37,7 +37,7 @@ def read_table(path: str | PathLike[str], *, encoding: str | None = None) -> Col
     Columns
         Dict of the columns by name. They are arrays of equal length, with NaN for a cell that is empty or
         contains "NA", "-" or the like. Columns "t (s)", "t [s]" and "# t" have the name "t"; `units` has the
-        unit.
+        unit. Columns of text, such as the names of students, are in `texts`.
 
     Raises
     ------
@@ -142,6 +142,33 @@ def _read_tracks(text: str, least: int) -> dict[str, Columns]:
     lines = [(i, line) for i, line in lines if not _is_marker(line)]
     several -= len(lines)
     lines = [(i, line) for i, line in lines if not re.match(r"\ufeff?sep=.\s*$", line)]  # written by Excel
+    try:
+        return _tracks_of_lines(lines, text, bool(several), least)
+    except ValueError:
+        found = None if several or least > 1 else _table_beside_texts(lines, text)
+        if found is None:
+            raise
+    return found
+
+
+def _table_beside_texts(lines: list[tuple[int, str]], text: str) -> dict[str, Columns] | None:
+    """The table of the columns of numbers, with its columns of text; None without a column of text."""
+    for delimiter in _DELIMITERS[:-1]:
+        parts = without_texts(lines, delimiter, UNITS) if delimiter in text else None
+        if parts is None:
+            continue
+        below = "\n".join(line for _, line in parts.lines)
+        ((name, table),) = _tracks_of_lines(parts.lines, below, False, 1).items()
+        if len(next(iter(table.values()))) == len(parts.texts[0][1]):
+            units = [(f"{key} ({unit})" if unit else key) for key, unit in table.units.items()]
+            return {name: Columns(zip(units, table.values(), strict=True), parts.texts)}
+    return None
+
+
+def _tracks_of_lines(
+    lines: list[tuple[int, str]], text: str, several: bool, least: int
+) -> dict[str, Columns]:
+    """The tracks of numbered lines; `text` tells which separators may occur."""
     kinds = [
         (delimiter, comma)
         for delimiter in _DELIMITERS
@@ -163,7 +190,7 @@ def _read_tracks(text: str, least: int) -> dict[str, Columns]:
         if not first:
             continue
         try:
-            found = _tracks_in_format(lines, first, kind, bool(several), least)
+            found = _tracks_in_format(lines, first, kind, several, least)
         except _Garbled as e:
             why = str(e)
             break
@@ -195,7 +222,7 @@ def _column_of_texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str
                 (n, c) for n, c, is_one in zip(names, cells, numbers, strict=True) if not is_one
             )
             told = f"line {at} has the text {_shortened(cell)} in the column {_shortened(name)}"
-            return f"{told}: expected only numbers; leave out a column of names"
+            return f"{told}: expected only numbers"
     return ""
 
 

@@ -1,0 +1,279 @@
+"""Times of a stopwatch, of one or several first inclinations: outliers, robust means and their errors."""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from spincyl._input.numbers import Floats, number, radians, reals, refuse_bad_value, si
+from spincyl.lab._report import student
+
+_LONGEST = 1e9  #: Seconds.
+_FREEDOM = 4  #: With fewer degrees of freedom the scatter does not show which time is an outlier.
+#: An outlier is beyond this many robust standard deviations from the median, and beyond these for one degree
+#: of freedom more. One of 200 sets of 5 to 40 normal times has such a time.
+_OUTLIER, _OUTLIER_OF_FEW = 4.0, 30.0
+#: Least scatter that decides on an outlier, and on what is clipped, as shares of the median: watches have
+#: tenths of a second.
+_STEADY, _ROUNDED = 0.02, 0.005
+#: A larger ratio of the times from one inclination causes a warning.
+_MIXED_RATIO = 3.0
+#: Times that are farther than this from the mean count as if they were at this distance (Huber 1964, Ann.
+#: Math. Statist. 35, 73), in robust standard deviations. One time of twelve then moves the mean by at most
+#: 1.5/12 of a robust standard deviation, less than the error of the mean.
+_CLIP = 1.5
+
+
+class WildTime(NamedTuple):
+    """A time that is left out since it is far from the others; in `StopFit.wild`.
+
+    Attributes
+    ----------
+    where : str
+        Place of the time in the argument, such as "seconds[3, 1]".
+    name : str
+        Name of the row, such as that of a student; "" if rows have no names.
+    theta : float
+        First inclination, in radians.
+    seconds : float
+        The time.
+    deviations : float
+        Its distance from the median of the times from the same inclination, in robust standard deviations.
+    """
+
+    where: str
+    name: str
+    theta: float
+    seconds: float
+    deviations: float
+
+    def told(self) -> str:
+        """The time in words."""
+        start = f"from {math.degrees(self.theta):.4g} degrees"
+        return f"{self.where} = {self.seconds:.4g} ({f'{self.name}, ' if self.name else ''}{start})"
+
+
+class Timed(NamedTuple):
+    """Times by first inclination, and their robust means."""
+
+    theta: Floats  #: (k,) first inclinations, ascending
+    theta_err: Floats  #: (k,)
+    seconds: Floats  #: (n,) all measured times
+    group: Any  #: (n,) number of the inclination of each time
+    mean: Floats  #: (k,)
+    mean_err: Floats  #: (k,)
+    wild: tuple[WildTime, ...]
+    mixed: str  #: a doubt about the units of times; empty if there is none
+
+
+class _Trials(NamedTuple):
+    """Times with their inclinations, places and names, without missing ones."""
+
+    theta: Floats
+    theta_err: Floats
+    seconds: Floats
+    where: list[str]
+    names: list[str]
+
+
+def timed(from_: Any, seconds: Any, error: float | None, from_err: Any, names: Sequence[str] | None) -> Timed:
+    """The times by first inclination; an error names a wrong argument."""
+    trials = _of_table(from_, seconds, from_err, names) if hasattr(from_, "keys") else None
+    trials = trials or _of_arrays(from_, seconds, from_err, names)
+    if not trials.seconds.size:
+        raise ValueError("seconds: expected at least one time")
+    theta, group = np.unique(trials.theta, return_inverse=True)
+    wide = trials.theta_err >= trials.theta
+    refuse_bad_value("from_err", trials.theta_err, lambda _: wide, "expected at least 0, less than from_")
+    theta_err = np.array([trials.theta_err[group == k].max() for k in range(theta.size)])
+    middle = np.array([np.median(trials.seconds[group == k]) for k in range(theta.size)])
+    off = trials.seconds / middle[group] - 1  # relative, since long times scatter by more
+    freedom = off.size - theta.size
+    kept, scale = np.ones(off.size, bool), 0.0
+    if freedom >= _FREEDOM:
+        # each median makes one residual small: leave out the least of each inclination
+        rest = [np.sort(np.abs(off[group == k]))[1:] for k in range(theta.size)]
+        scale = max(1.4826 * float(np.median(np.concatenate(rest))), _ROUNDED)
+        far = np.abs(off) / max(scale, _STEADY)
+        kept = far <= _OUTLIER + _OUTLIER_OF_FEW / freedom
+    wild = tuple(
+        WildTime(
+            trials.where[k],
+            trials.names[k],
+            float(trials.theta[k]),
+            float(trials.seconds[k]),
+            float(far[k]),
+        )
+        for k in np.flatnonzero(~kept)
+    )
+    mean, mean_err = _robust_means(trials.seconds[kept], group[kept], theta.size, scale, error)
+    doubt = "" if wild else _doubt_of_units(trials.seconds, group)
+    return Timed(theta, theta_err, trials.seconds, group, mean, mean_err, wild, doubt)
+
+
+def _doubt_of_units(times: Floats, group: Any) -> str:
+    """Why the times from one inclination may not all be in seconds; empty if they may."""
+    for k in range(group.max() + 1):
+        own = times[group == k]
+        if own.max() > _MIXED_RATIO * own.min():
+            return f"the times range from {own.min():.4g} to {own.max():.4g} s: are all of them in seconds?"
+    return ""
+
+
+def _robust_means(
+    times: Floats, group: Any, many: int, scale: float, error: float | None
+) -> tuple[Floats, Floats]:
+    """Mean and standard error of the times of each group, with far ones clipped."""
+    count = np.bincount(group, minlength=many)
+    mean = np.bincount(group, times, many) / count
+    reach = _CLIP * scale if scale else math.inf
+    for _ in range(50):
+        off = times / mean[group] - 1
+        clipped = np.clip(off, -reach, reach)
+        step = np.bincount(group, clipped, many) / count
+        mean = mean * (1 + step)
+        if np.abs(step).max() < 1e-13:
+            break
+    free = times.size - many
+    share = max(float(np.mean(clipped == off)), 0.5)
+    scatter = math.sqrt(float(clipped @ clipped) / free) / share if free else 0.0
+    least = float(mean.min())
+    one = math.nan if error is None else number("error", si("error", error, "second"))
+    if error is not None:
+        refuse_bad_value(
+            "error", one, lambda x: ~((x > 0) & (x < least)), "expected a positive time, less than the mean"
+        )
+        return mean, np.maximum(one, scatter * mean) / np.sqrt(count)
+    if not scatter > 1e-15:
+        what = "equal times have" if free else "a single time has"
+        raise ValueError(
+            f"seconds: {what} no scatter; give the standard error of a time in seconds, such as error=0.2"
+        )
+    return mean, scatter * student(1.0, free) * mean / np.sqrt(count)
+
+
+def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
+    """Trials of a table that has a column of times for each inclination, whose name is the inclination."""
+    if seconds is not None:
+        raise TypeError("seconds: expected none beside a table of times in from_")
+    texts: dict[str, Any] = getattr(table, "texts", {})
+    if names is None and texts:
+        names = next(iter(texts.values()))
+    columns = [name for name in table if name not in texts]
+    if not columns:
+        raise ValueError("from_: expected at least one column of times, called by its inclination: '20deg'")
+    theta = [_angle_of_column(name, getattr(table, "units", {}).get(name, "")) for name in columns]
+    errors = np.broadcast_to(_angle_errors(from_err, (len(columns),)), len(columns))
+    trials = []
+    for name, angle, err in zip(columns, theta, errors, strict=True):
+        times = np.atleast_1d(_seconds(f"from_[{name!r}]", table[name]))
+        where = [f"from_[{name!r}][{k}]" for k in range(times.size)]
+        trials.append(_trials(np.full(times.size, angle), np.full(times.size, err), times, where, names))
+    return _Trials(
+        np.concatenate([one.theta for one in trials]),
+        np.concatenate([one.theta_err for one in trials]),
+        np.concatenate([one.seconds for one in trials]),
+        [x for one in trials for x in one.where],
+        [x for one in trials for x in one.names],
+    )
+
+
+def _angle_of_column(name: object, unit: str) -> float:
+    """The inclination that a column is called by."""
+    text = f"{name}{unit}".replace(",", ".")
+    try:
+        return float(_inclination(f"from_: the column {name!r}", radians("from_", text)))
+    except (TypeError, ValueError):
+        told = f"from_: the column {name!r} is not called by an inclination with its unit, such as '20deg'"
+        raise ValueError(f"{told}; leave it out, or give from_ and seconds as arrays") from None
+
+
+def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
+    """Trials of an inclination, or of one for each column or for each time."""
+    if seconds is None:
+        raise TypeError("seconds: expected the measured times; only a table in from_ has its own")
+    times = _seconds("seconds", seconds)
+    theta = np.asarray(radians("from_", _each("from_", from_)), np.float64)
+    errors = _angle_errors(from_err, theta.shape)
+    if times.ndim > 2 or theta.ndim > 1:
+        shapes = f"shapes {theta.shape} and {times.shape}"
+        raise ValueError(
+            f"from_, seconds: expected a list of angles and at most a table of times, not {shapes}"
+        )
+    if theta.ndim and times.shape[-1:] != theta.shape:
+        told = f"{theta.size} inclinations, and times of shape {times.shape}"
+        raise ValueError(
+            f"seconds: expected a column for each inclination, or a time for each; there are {told}"
+        )
+    where = [
+        "seconds" + ("[" + ", ".join(map(str, at)) + "]" if at else "") for at in np.ndindex(times.shape)
+    ]
+    if names is not None and times.ndim == 2:
+        names = np.repeat(np.asarray(_checked_names(names, times.shape[0]), object), times.shape[1]).tolist()
+    wide = [np.broadcast_to(x, times.shape).reshape(-1) for x in (theta, errors)]
+    flat = times.reshape(-1)
+    _inclination("from_", np.where(np.isnan(flat), 1.0, wide[0]) if theta.ndim else theta)
+    return _trials(wide[0], wide[1], flat, where, names)
+
+
+def _trials(
+    theta: Floats, theta_err: Floats, times: Floats, where: list[str], names: Sequence[str] | None
+) -> _Trials:
+    """Trials without missing times."""
+    named = _checked_names(names, times.size) if names is not None else [""] * times.size
+    seen = np.isfinite(times)
+    kept = np.flatnonzero(seen).tolist()
+    return _Trials(
+        theta[seen], theta_err[seen], times[seen], [where[k] for k in kept], [named[k] for k in kept]
+    )
+
+
+def _checked_names(names: Sequence[str], many: int) -> list[str]:
+    if isinstance(names, str) or not hasattr(names, "__len__") or np.ndim(np.asarray(names, object)) != 1:
+        raise TypeError(f"names: expected a list of names, one for each row, not {type(names).__name__}")
+    if len(names) != many:
+        raise ValueError(f"names: expected {many} names, one for each row of times, not {len(names)}")
+    return [str(name) for name in names]
+
+
+def _each(name: str, given: Any) -> Any:
+    """A value, or a list of values, each of which may be a text with a unit."""
+    if isinstance(given, list | tuple):
+        return [radians(f"{name}[{k}]", x) for k, x in enumerate(given)]
+    return given
+
+
+def _seconds(name: str, given: Any) -> Floats:
+    """Times in seconds, NaN where a list has None."""
+    if isinstance(given, list | tuple):
+        rows = [np.size(row) for row in given if isinstance(row, list | tuple)]
+        if rows and len(set(rows)) > 1:
+            raise ValueError(
+                f"{name}: expected rows of equal length, with NaN for missing times; lists of any lengths for"
+                " each inclination go into from_={'20deg': [...], '45deg': [...]}"
+            )
+        given = [[_gap(x) for x in row] if isinstance(row, list | tuple) else _gap(row) for row in given]
+    times = np.asarray(reals(name, si(name, given, "second")), np.float64)
+    refuse_bad_value(
+        name, times, lambda x: (x <= 0) | (x > _LONGEST), f"expected more than 0, at most {_LONGEST:g}"
+    )
+    return times
+
+
+def _gap(x: Any) -> Any:
+    return math.nan if x is None else x
+
+
+def _inclination(name: str, theta: Any) -> Any:
+    refuse_bad_value(name, theta, lambda x: ~(x > 0), "expected a positive angle (radians)")
+    return theta
+
+
+def _angle_errors(from_err: Any, shape: tuple[int, ...]) -> Floats:
+    """Standard errors of the inclinations."""
+    errors = np.asarray(radians("from_err", _each("from_err", from_err)), np.float64)
+    if errors.shape not in ((), shape):
+        raise ValueError(f"from_err: expected a number or shape {shape}, not {errors.shape}")
+    refuse_bad_value("from_err", errors, lambda x: ~(x >= 0), "expected at least 0, less than from_")
+    return errors
