@@ -118,6 +118,7 @@ class View:
         seconds: float | None = None,
         progress: "Progress | bool | None" = None,
         t: float | None = None,
+        sound: bool | None = None,
     ) -> Path:
         """Write the page, a film, a picture or an animated scene to a file.
 
@@ -141,6 +142,9 @@ class View:
         t : float, optional
             Time of a picture, or first time of a picture with `exposure`; in seconds if the view has a scale,
             else in sqrt(R/g). Default: the first time of the motion.
+        sound : bool, optional
+            Whether a film has its sound: that of `Motion.sound`, as slow as the pictures, so that it beats
+            when the contact point passes the front. Default: true for an .mp4 in which anything is heard.
 
         Returns
         -------
@@ -151,7 +155,7 @@ class View:
         ------
         ValueError
             If the suffix is none of these, the motion is too long to show, a setting is out of range, or a
-            setting does not apply to the format.
+            setting does not apply to the format. If `sound` is true and there is nothing to hear.
         ImportError
             If spincyl[film] is needed for the film and not installed. For an MP4 the program ffmpeg on the
             search path is enough; a GIF needs only matplotlib.
@@ -184,7 +188,7 @@ class View:
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in {known}")
         if t is not None and suffix not in _STILLS:
             raise ValueError(f"t: only for a picture ({', '.join(_STILLS)}), not for {suffix}")
-        if suffix in _STILLS and all(x is None for x in (fps, seconds, progress)):
+        if suffix in _STILLS and all(x is None for x in (fps, seconds, progress, sound)):
             from spincyl.studio.film import reel, still
 
             still(reel(self, [edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
@@ -194,10 +198,11 @@ class View:
 
             seconds = None if seconds is None else in_range("seconds", seconds, 0.1, 600.0)
             made_of = reel(self, [edges(m) for m in self.motions], suffix, fps, size, seconds)
-            film(made_of, path, progress)
+            film(made_of, path, progress, sound)
             return path
-        if any(x is not None for x in (fps, size, seconds, progress)):
-            raise ValueError(f"fps, size, seconds, progress: only for a film (.mp4, .gif), not for {suffix}")
+        if any(x is not None for x in (fps, size, seconds, progress, sound)):
+            names = "fps, size, seconds, progress, sound"
+            raise ValueError(f"{names}: only for a film (.mp4, .gif), not for {suffix}")
         if suffix == ".html":
             made = self.html.encode()
         else:
@@ -405,3 +410,13 @@ def view(
     return View(
         [m.natural for m in motions], labels, title=title, scale=scale, slow=slow, upper=upper, look=how
     )
+
+
+def film_of(
+    m: Motion, path: str | PathLike[str], seconds: float | None = None, sound: bool | None = None
+) -> Path:
+    """Write the film of a motion."""
+    path = path_of("path", path)
+    if path.suffix.lower() not in (".mp4", ".gif"):
+        raise ValueError(f"path = {str(path)!r}: expected a name that ends in .mp4 or .gif")
+    return view(m).save(path, seconds=seconds, sound=sound)
