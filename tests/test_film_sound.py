@@ -30,18 +30,20 @@ def level(x, rate, seconds=0.03):
 
 
 @pytest.mark.parametrize("slow", [5, 20])
-def test_a_film_is_loud_when_its_contact_point_passes_the_listener_however_slow_it_is(tmp_path, slow):
+def test_a_film_is_loud_when_its_contact_point_passes_the_camera_however_slow_it_is(tmp_path, slow):
     m = sc.roll(COIN, COIN.steady(0.3), 8.0)
     path = sc.view(m, scale=SIZE, slow=slow).save(tmp_path / "coin.mp4", fps=5, seconds=8, **SMALL)
     x, rate = film_sound(path)
     lasts = min(8.0, 8.0 * SIZE.seconds(1.0) * slow)
     assert x.size / rate == pytest.approx(lasts, abs=0.5), "as long as the pictures"
     t = np.arange(0.2, lasts - 0.2, 0.01)
-    azimuth = m.wanting("pose", t=t / slow / SIZE.seconds(1.0)).phi
+    there = m.wanting("pose", t=t / slow / SIZE.seconds(1.0))
+    off = there.contact_point - there.centre[:, :2]
+    azimuth = np.arctan2(off[:, 1], off[:, 0]) + 1.1  # from the camera
     loud = level(x, rate, 0.05)[(t * rate).astype(int)]
     front, back = loud[np.cos(azimuth) > 0.9].mean(), loud[np.cos(azimuth) < -0.9].mean()
     assert front > 6 * back
-    # the mean direction of the loudness is the listener's
+    # the mean direction of the loudness is the camera's
     assert abs(np.angle((loud * np.exp(1j * azimuth)).sum())) < 0.2
 
 
@@ -129,7 +131,7 @@ def test_of_two_motions_side_by_side_both_are_heard(tmp_path):
     both = sc.view(tube, coin, slow=2).save(tmp_path / "two.mp4", fps=5, **SMALL)
     one = sc.view(tube, slow=2).save(tmp_path / "one.mp4", fps=5, **SMALL)
     (x, rate), (y, _) = film_sound(both), film_sound(one)
-    assert x.size / rate > 1.9 and np.abs(x[int(1.5 * rate) :]).max() > 0.05
+    assert x.size / rate > 1.9 and np.abs(x[int(1.5 * rate) :]).max() > 0.01
     assert y.size / rate < 1.4
 
 

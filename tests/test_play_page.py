@@ -400,13 +400,21 @@ def test_a_picture_and_a_film_are_saved(opened, chromium):
         page.click("#png")
     assert got.value.suggested_filename == "spincyl.png"
     assert got.value.path().read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    page.click("#hear")
     page.click("#film")
     page.wait_for_timeout(max(1500, chromium.patience / 40))  # the first frame of a film takes its time
+    assert re.fullmatch(r"stop \d+\.\d s", page.locator("#film").inner_text())
     with page.expect_download() as got:
         page.click("#film")
-    content = got.value.path().read_bytes()
-    assert got.value.suggested_filename == "spincyl.webm"
-    assert content[:4] == b"\x1a\x45\xdf\xa3" and len(content) > 2000
+    content, name = got.value.path().read_bytes(), got.value.suggested_filename
+    kinds = {"spincyl.mp4": (4, b"ftyp"), "spincyl.webm": (0, b"\x1a\x45\xdf\xa3")}
+    if page.evaluate("MediaRecorder.isTypeSupported('video/mp4')"):
+        assert name == "spincyl.mp4"
+    at, begins = kinds[name]
+    assert content[at : at + 4] == begins and len(content) > 2000
+    assert any(word in content for word in (b"mp4a", b"Opus", b"A_OPUS")), "with its sound"
+    told = page.locator("#because").inner_text()
+    assert re.fullmatch(rf"A film of (\d+\.\d) s is saved: {re.escape(name)}", told), told
 
 
 def test_far_times_cost_no_more_than_near_ones(opened):

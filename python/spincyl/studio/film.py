@@ -1,9 +1,10 @@
 """Films of pages, as MP4 with sound by ffmpeg or as GIF by Pillow; `frames` draws them.
 
-The sound is that of the slow motion: it beats as often as the contact point passes the listener in the film,
+The sound is that of the slow motion: it is loudest when the contact point passes the camera,
 and its pitch is that of `sound`.
 """
 
+import math
 import subprocess
 import warnings
 from collections.abc import Iterator, Sequence
@@ -20,6 +21,7 @@ from spincyl._input.hints import install_command
 from spincyl._input.numbers import Floats, flag, in_range, optional_library, whole
 from spincyl._input.progress import Progress, reporting_progress
 from spincyl.studio.frames import Reel, frames, pictures, vector
+from spincyl.studio.look import AZIMUTH
 from spincyl.studio.poses import span
 from spincyl.studio.sound import Silent, pressure, sources, write_wave
 
@@ -142,7 +144,7 @@ def _heard(what: Reel, needed: bool) -> Floats | None:
     lasting = float(what.times[-1] - first) * unit
     for m in what.motions:
         try:
-            found.append(sources(m, first, unit, lasting))
+            found.append(sources(m, first, unit, lasting, -math.pi / 2 if what.look.above else AZIMUTH))
         except Silent as reason:
             if needed and len(what.motions) == 1:
                 raise ValueError(f"sound: {reason}") from None

@@ -12,8 +12,8 @@ A body in the air or on its face is silent. An impact excites the same resonance
 proportional to its impulse, and equally loud on all sides. Of a stone only impacts are heard, since its
 contact point runs round no rim.
 
-A first impact may be more than 20 decibels louder than the whirr that follows, which nobody would hear beside it.
-So levels are compressed. Each impact, and the whirr at each time, has an amplitude a, without the beat:
+A first impact may be more than 20 decibels louder than the whirr that follows, which nobody would hear beside
+it. So levels are compressed. Each impact, and the whirr at each time, has an amplitude a, without the beat:
 
     a -> A (a/A)^(1/k),    A = the largest of these amplitudes,    k = 2
 
@@ -109,7 +109,7 @@ class Sources(NamedTuple):
     """What makes the sound of a motion; times are in seconds from the begin of the sound."""
 
     looks: Floats  #: times at which the contact point is known
-    phi: Floats  #: its azimuth there
+    phi: Floats  #: its azimuth there, from that of the listener
     speed: Floats  #: its speed along the body, in sqrt(g R); 0 where it is silent
     hits: Floats  #: times of impacts
     impulses: Floats  #: their sizes, in M sqrt(g R)
@@ -121,8 +121,10 @@ class Sources(NamedTuple):
         return np.sqrt(self.speed * float(answer @ answer)), strike * self.impulses
 
 
-def sources(m: "Motion", first: float, unit: float, lasting: float) -> Sources:
+def sources(m: "Motion", first: float, unit: float, lasting: float, listener: float = math.pi) -> Sources:
     """What is heard of a motion from a time on for some seconds, with `unit` seconds in a unit of time.
+
+    `listener` is the azimuth at which the contact point is nearest to the one who hears it.
 
     Raises `Silent` if that is nothing.
     """
@@ -142,7 +144,7 @@ def sources(m: "Motion", first: float, unit: float, lasting: float) -> Sources:
     speed = np.minimum(speed, 2 * math.pi * _RESONANCES[0][0] * unit)
     hits = np.array([(x.time - first) * unit for x in struck])
     sizes = np.linalg.norm(np.reshape([x.impulse for x in struck], (-1, 3)), axis=1)
-    return Sources(looks, phi, speed, hits, sizes)
+    return Sources(looks, phi + math.pi - listener, speed, hits, sizes)
 
 
 def pressure(of: Sequence[Sources], count: int, rate: int, compression: float = COMPRESSION) -> Floats:

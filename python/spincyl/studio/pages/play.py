@@ -71,6 +71,7 @@ _SCRIPTS = (
     "play.chart.js",
     "play.said.js",
     "play.run.js",
+    "page.sound.js",
     "play.sound.js",
     "play.film.js",
     "page.stone.js",

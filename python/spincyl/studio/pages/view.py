@@ -46,6 +46,8 @@ _SCRIPTS = tuple(
         "recorded",
         "exposure",
         "eye",
+        "sound",
+        "heard",
         "hands",
     )
 )
@@ -143,8 +145,8 @@ class View:
             Time of a picture, or first time of a picture with `exposure`; in seconds if the view has a scale,
             else in sqrt(R/g). Default: the first time of the motion.
         sound : bool, optional
-            Whether a film has its sound: that of `Motion.sound`, as slow as the pictures, so that it beats
-            when the contact point passes the front. Default: true for an .mp4 in which anything is heard.
+            Whether a film has its sound: that of `Motion.sound`, as slow as the pictures, and loudest
+            when the contact point passes the camera. Default: true for an .mp4 in which anything is heard.
 
         Returns
         -------

@@ -245,6 +245,7 @@ requestAnimationFrame(() => requestAnimationFrame(() => { legend(); new ResizeOb
 // for tests and notebooks
 Object.assign(window.spincyl, {
   state: () => ({ ...s }), set: (part, more = { restart: true }) => change(part, more), timing, at: () => now, head: () => head, here: () => here, body: () => body, ghosts: () => ghosts,
+  audio: () => audio, hits, heardAt,
   look: lookOf, pose: t => pose(live, t), rows: () => rows, map: () => ({ names: chart.names, widest: widest(), steep: steep() }), solve,
   tracked: () => tracked.rows, tracks: () => TRACKS.filter(track => track.zero).map(({ name, most, cut }) => ({ name, most, cut })),
   on: () => project(live, pose(live, now).centre, stage.clientWidth, stage.clientHeight),

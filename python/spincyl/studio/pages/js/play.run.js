@@ -78,7 +78,7 @@ function frame(at) {
     if (drawing) draw(live, now, width / height);
     labels(p, width / ratio, height / ratio);
     drawCursor();
-    heard(p, row);
+    heard();
     const told = clocked(row);
     if (live.clock.value !== told) live.clock.value = told;
   } else {

@@ -34,7 +34,7 @@ const stoneLook = () => ({
   marks: [stoneMark(BLUE, 1), stoneMark(ORANGE, -1)],
 });
 
-const plainly = { begin, dress, windowed, look, rowAt, say, knobs, onBody, heard, clocked, flick, pose };
+const plainly = { begin, dress, windowed, look, rowAt, say, knobs, onBody, clocked, flick, pose };
 begin = () => {
   document.documentElement.toggleAttribute("data-stone", !!s.stone);
   TRACKS.splice(0, 3, ...s.stone ? SPUN : usual);
@@ -76,8 +76,6 @@ dress = () => {
   drawnBody = key;
   clothe(stoneLook());
 };
-// the previous kind of body is shown until a change has been solved
-const rattles = () => !!head?.kept;
 windowed = () => rattles() ? head.lasts : plainly.windowed();
 rowAt = t => rattles() ? null : plainly.rowAt(t);
 look = (first, many) => {
@@ -91,7 +89,6 @@ look = (first, many) => {
   ({ reach, half } = live);
 };
 onBody = e => !rattles() && plainly.onBody(e);
-heard = (p, row) => { if (row) plainly.heard(p, row); else if (audio) audio.loud.gain.value = 0; };
 flick = hard => { if (!s.stone) plainly.flick(hard); };
 const turning = x => (Number(Math.abs(x).toFixed(1)) === 0 ? "" : x < 0 ? "−" : "+") + Math.abs(x).toFixed(1);
 clocked = row => {
