@@ -155,7 +155,7 @@ def test_a_page_draws_flights_where_they_are_and_no_force_in_the_air(shown):
 def test_the_clock_says_how_high_a_body_flies_and_the_line_has_a_gap(shown):
     scale = sc.Scale(radius=0.02)
     page = shown(sc.view(motion_of("rings down"), scale=scale), "#t=0")
-    assert clock(page).endswith("flying 0.0400 m high")
+    assert clock(page).endswith("flying 40.0 mm high")
     tips = page.locator(".tip")
     assert not any(tips.nth(k).is_visible() for k in range(tips.count())), "no force in the air"
     line = page.locator(".phases")
@@ -163,7 +163,7 @@ def test_the_clock_says_how_high_a_body_flies_and_the_line_has_a_gap(shown):
     assert told.startswith("flying, 23 impacts, from t = 0.0000 s, slipping from t = 0.1955 s, rolling from")
     assert line.get_attribute("style").count("transparent") > 2
     go(page, 12.0)
-    assert "slipping" in clock(page) and clock(page).endswith("m/s")
+    assert "slipping" in clock(page) and clock(page).endswith("mm/s")
     lying = shown(sc.view(motion_of("lies down")), "#t=8")
     assert clock(lying).endswith("rolling on its side")
     tips = lying.locator(".tip")

@@ -324,9 +324,9 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
     page.wait_for_timeout(500)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.locator(
-        "button:visible, select:visible, label:visible:has(input), summary:visible"
+        "button:visible, select:visible, label:visible:has(input[type=checkbox]), summary:visible, input[type=range]:visible"
     ).evaluate_all(
-        "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 43.5 || b.height < 43.5).map(([n]) => n)"
+        "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 40 || b.height < 40).map(([n]) => n)"
     )
     assert small == []
     page.evaluate("window.spincyl.set({ theta: 0.7 })")
@@ -340,6 +340,38 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
     page.touchscreen.tap(x, y)
     settled(page)
     assert state(page)["ell"] == pytest.approx(1.5, abs=0.02)
+
+
+def test_reset_brings_back_everything_that_hands_have_changed(opened):
+    page = opened("#ell=2.5&theta=1.3&kick=0.1&mu=0.4")
+    before, at = state(page), page.evaluate("location.hash")
+    camera = "[...document.querySelectorAll('#drawn input, #slow, #shutter')].map(e => [e.id, e.checked, e.value])"
+    view = "window.spincyl.on()"
+    boxes, middle = page.evaluate(camera), page.evaluate(view)
+    page.locator("#knob-ell").fill("1.2")
+    page.locator("#knob-contact").select_option("smooth")
+    page.locator("#slow").select_option("100")
+    for name in ("omega", "path", "above"):
+        page.click(f"#{name}")
+    page.click("#hear")
+    page.locator("#canvas").focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("+")
+    page.keyboard.press(".")
+    settled(page)
+    assert state(page)["contact"] == "smooth" and state(page)["ell"] != 2.5
+    assert page.evaluate(camera) != boxes and page.evaluate(view) != middle
+    page.click("#reset")
+    settled(page)
+    assert state(page) == before and page.evaluate(camera) == boxes
+    assert page.evaluate(view) == pytest.approx(middle, abs=1)
+    assert ask(page, "at()") == 0 and ask(page, "audio()") is None
+    page.wait_for_function("at => location.hash === at", arg=at)
+    page.select_option("#preset", "a rattleback turns back")
+    settled(page)
+    page.click("#reset")
+    settled(page)
+    assert state(page) == before and page.locator("#map").is_visible() and page.complaints == []
 
 
 def test_a_low_window_keeps_its_controls_and_a_phone_on_its_side_what_fits(opened):

@@ -268,8 +268,8 @@ class View:
         if self.scale is None:
             lengths = {"metre": 1.0, "lengths": self._length} if high else {}
             return {"speed": 1.0, "speeds": f"√(g {self._length})"} | lengths
-        lengths = {"metre": self.scale.radius, "lengths": "m"} if high else {}
-        return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"} | lengths
+        lengths = {"metre": 1e3 * self.scale.radius, "lengths": "mm"} if high else {}
+        return {"speed": 1e3 * self.scale.metres_per_second(1.0), "speeds": "mm/s"} | lengths
 
     def _rates(self) -> dict[str, Any]:
         """The unit in which the page gives the spin of a stone."""
@@ -351,6 +351,9 @@ def view(
     -----
     With a law of friction the path and the line under the slider are red while the body slips. Arrows at the
     contact point show the normal force N and the friction F, and the clock shows the slip.
+
+    If a scale is known, times are in seconds, or in milliseconds on a page of less than a second, heights in
+    millimetres, and slips in mm/s.
 
     If "#t=1.5" is added to the address of the page, the page opens at this time and is paused. A body whose
     motion has ended is grey, and its clock shows the reason and the time. The page contains poses at a few

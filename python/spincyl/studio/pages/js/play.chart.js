@@ -73,7 +73,7 @@ function drawChart() {
       write("≥ " + values.at(-1).toPrecision(3), Math.min(span[1] - 2.5 * em, Math.max(span[0] + 2.5 * em, at(row[0]))), top + 0.7 * em, "center", colour("ink"), "600");
     }
   });
-  if (moves) for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
+  if (moves) for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : x && sized() ? timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
   kept ??= new OffscreenCanvas(1, 1);
   if (kept.width !== w || kept.height !== h) { kept.width = w; kept.height = h; } else kept.getContext("2d").clearRect(0, 0, w, h);
   kept.getContext("2d").drawImage(charted, 0, 0);

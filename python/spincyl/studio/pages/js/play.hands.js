@@ -236,6 +236,20 @@ addEventListener("hashchange", e => {
 const first = parsed(location.hash);
 // an address that names a body is complete: the other numbers are defaults
 Object.assign(s, "ell" in first || first.height || first.stone ? BLANK : {}, first);
+const opening = { ...s };
+// everything as it was when the page opened: the body and its motion, the view, what is drawn, the time, and silence
+function reset() {
+  if (recorder) film();
+  if (audio) hear();
+  Object.assign(eye, { azimuth: -1.1, elevation: 0.55, zoom: 1 });
+  for (const box of document.querySelectorAll("#drawn input")) box.checked = box.defaultChecked;
+  $("shutter").value = "0";
+  scene(opening);
+  changed = null;
+  solve({ restart: true });
+  arrive(first);
+}
+$("reset").onclick = reset;
 held_ = true; // the first map is coarse
 if (!still.matches) play_(true);
 solve({ restart: true });

@@ -36,7 +36,8 @@ function address() {
 }
 // the size of the body, if known: then times are shown in seconds, and rates also in hertz
 const size = () => s.stone ? Math.max(...s.stone) : s.radius, sized = () => Number.isFinite(size()), second = () => Math.sqrt(size() / s.gravity);
-const timed = (t, d = 2) => sized() ? `${decimal(t * second(), d + 1)} s` : `${decimal(t, d)} √(R/g)`;
+// seconds and milliseconds, with the same last digit
+const timed = (t, d = 2) => !sized() ? `${decimal(t, d)} √(R/g)` : Math.abs(t * second()) < 1 ? `${decimal(1e3 * t * second(), Math.max(0, d - 1))} ms` : `${decimal(t * second(), d + 1)} s`;
 const hertz = turning => turning / (TURN * second()), hertzOf = rate => hertz(rate / Math.sqrt(body.i3));
 // units of time per second at real speed; without a size, for a body with R = 1 cm
 const real = () => sized() ? 1 / second() : Math.sqrt(9.80665 / 0.01);
