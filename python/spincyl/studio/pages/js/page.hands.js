@@ -96,7 +96,7 @@ function shuttered() {
   if (!open && document.activeElement === $("stop")) $("shutter").focus();
   $("shot").hidden = !open;
   $("drawn").disabled = open || !!without;
-  $("drawn").title = open ? REST : "";
+  $("drawn").title = open ? W(REST) : "";
   forget();
 }
 function stopped() {

@@ -4,6 +4,8 @@
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const stage = $("stage");
+// the words of this page are English; the live page replaces these by others
+const N = word => word, W = (word, ...given) => word.replace(/\{(\d)\}/g, (_, i) => given[i]);
 
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 const motions = data.motions.map(m => {

@@ -33,7 +33,7 @@ function film() {
   if (recorder) { recorder.stop(); return; }
   compose();
   const kind = KINDS_OF_FILM.find(x => window.MediaRecorder?.isTypeSupported(x)), pieces = [];
-  if (!kind) { $("because").textContent = "This browser cannot record a film."; return; }
+  if (!kind) { $("because").textContent = W("This browser cannot record a film."); return; }
   const stream = page.captureStream(30), ear = audio && new MediaStreamAudioDestinationNode(audio);
   if (ear) { audio.out.connect(ear); for (const track of ear.stream.getAudioTracks()) stream.addTrack(track); }
   const end = kind.startsWith("video/mp4") ? "mp4" : "webm";
@@ -42,14 +42,14 @@ function film() {
   recorder.onstop = () => {
     const told = `${lastsFor()} s`;
     recorder = null;
-    Object.assign($("film"), { ariaPressed: false, textContent: "film", title: "" });
-    $("said").textContent = $("because").textContent = `A film of ${told} is saved: spincyl.${end}`;
+    Object.assign($("film"), { ariaPressed: false, textContent: W("film") });
+    $("said").textContent = $("because").textContent = W("A film of {0} is saved: {1}", told, "spincyl." + end);
     keep(new Blob(pieces, { type: "video/" + end }), "spincyl." + end);
   };
   recorder.start();
   $("film").ariaPressed = true;
   show();
 }
-const filmed = () => { if (recorder) { compose(); $("film").textContent = `stop ${lastsFor()} s`; } };
+const filmed = () => { if (recorder) { compose(); $("film").textContent = W("stop {0} s", lastsFor()); } };
 $("png").onclick = photograph;
 $("film").onclick = film;
