@@ -138,11 +138,11 @@ def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
 def test_every_control_is_reached_by_the_tab_key(shown):
     page = shown(page_of("nutating"), "#t=1")
     reached = []
-    for _ in range(14):
+    for _ in range(15):
         page.keyboard.press("Tab")
         reached.append(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
     controls = ["canvas", "play", "time", "speed", "omega", "momentum", "velocity", "path", "axis", "above"]
-    controls += ["shutter", "full", "SUMMARY"]
+    controls += ["shutter", "hear", "full", "SUMMARY"]
     assert reached[: len(controls)] == controls
 
 

@@ -99,7 +99,7 @@ def test_the_finger_snaps_to_lines_and_the_sentence_names_them(opened):
     page = opened("#ell=2.5&theta=1.5")
     body = sc.Body.solid(2.5)
     balance, limit, fold = (float(x) for x in (body.theta_balance, body.theta_limit, body.ridge()[0]))
-    for line, name in ((balance, "line θ₀"), (limit, "line θ∞"), (fold, "ridge")):
+    for line, name in ((balance, "line: θ₀."), (limit, "line: θ∞."), (fold, "line: ridge.")):
         x, y = on_map(page, 2.5, line)
         page.mouse.click(x, y + 3)
         settled(page)

@@ -9,8 +9,8 @@ const heardAt = t => motions.map(m => {
   if (m.axes || t < m.first || t > m.last) return [0, 0];
   const [[theta, phi], [tilting, , spinning]] = interpolate(m, t), [, kind, other] = m.aloft ? m.now(t) : [], s = Math.abs(Math.sin(theta));
   if (kind === 2 || kind === 7) return [0, 0]; // in the air, and on its face
-  const [radius, , fillet] = m.circles ? m.circles[m.borders.filter(border => border < theta).length] : [1 - (m.fillet || 0), 0, m.fillet || 0];
-  return [phi + (other ? 0 : Math.PI), Math.hypot(spinning * (radius + fillet * s), fillet * tilting)];
+  const [radius, , round] = m.circles ? m.circles[m.borders.filter(border => border < theta).length] : m.edge || [1, 0, 0];
+  return [phi + (other ? 0 : Math.PI), Math.hypot(spinning * (radius + round * s), round * tilting)];
 });
 const loudest = () => whole;
 const whole = [0, Math.max(0, ...strokes.map(([, size]) => size))];
