@@ -345,7 +345,9 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
 def test_reset_brings_back_everything_that_hands_have_changed(opened):
     page = opened("#ell=2.5&theta=1.3&kick=0.1&mu=0.4")
     before, at = state(page), page.evaluate("location.hash")
-    camera = "[...document.querySelectorAll('#drawn input, #slow, #shutter')].map(e => [e.id, e.checked, e.value])"
+    camera = (
+        "[...document.querySelectorAll('#drawn input, #slow, #shutter')].map(e => [e.id, e.checked, e.value])"
+    )
     view = "window.spincyl.on()"
     boxes, middle = page.evaluate(camera), page.evaluate(view)
     page.locator("#knob-ell").fill("1.2")

@@ -1,7 +1,8 @@
 """The words of the live page in its languages: each is one file, in the folder `languages`.
 
 In the scripts a word is `W("rate {0}", 5)`, and `N("rate")` is one that W takes later. Texts, titles and
-labels of the page are words as they stand. A page has numbers in place of its words, and a table for each language.
+labels of the page are words as they stand. A page has numbers in place of its words, and a table for each
+language.
 """
 
 import json

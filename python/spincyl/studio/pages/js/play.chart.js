@@ -29,7 +29,9 @@ function limit(track, sorted) {
 function drawChart() {
   if (!charted.clientWidth) return;
   const [g, w, h, ratio] = context2d(charted), style = getComputedStyle(document.documentElement), colour = name => style.getPropertyValue("--" + name).trim();
-  const em = parseFloat(getComputedStyle(charted).fontSize) * ratio, left = 3.6 * em, low = h - 1.5 * em;
+  const em = parseFloat(getComputedStyle(charted).fontSize) * ratio, low = h - 1.5 * em;
+  g.font = `bold italic ${em}px system-ui, sans-serif`;
+  const left = Math.max(3.6 * em, 0.6 * em + Math.max(...TRACKS.map(track => g.measureText(named_(track)).width)));
   g.clearRect(0, 0, w, h);
   span = [left, w - 0.6 * em];
   const write = (text, x, y, align, fill, bold = "") => { Object.assign(g, { font: `${bold} ${em}px system-ui, sans-serif`, textAlign: align, textBaseline: "middle", fillStyle: fill }); g.fillText(text, x, y); };
