@@ -7,7 +7,7 @@ const strokes = motions.flatMap(m => {
 const hits = () => strokes;
 const heardAt = t => motions.map(m => {
   if (m.axes || t < m.first || t > m.last) return [0, 0];
-  const [[theta, phi], [tilting, , spinning]] = interpolate(m, t), [, kind, other] = m.aloft ? m.now(t) : [], s = Math.abs(Math.sin(theta));
+  const [[theta, phi], [tilting, , spinning]] = interpolate(m, t), [, kind, other] = m.now ? m.now(t) : [], s = Math.abs(Math.sin(theta));
   if (kind === 2 || kind === 7) return [0, 0]; // in the air, and on its face
   const [radius, , round] = m.circles ? m.circles[m.borders.filter(border => border < theta).length] : m.edge || [1, 0, 0];
   return [phi + (other ? 0 : Math.PI), Math.hypot(spinning * (radius + round * s), round * tilting)];
