@@ -10,12 +10,12 @@ DOCS = Path(__file__).parents[1] / "docs"
 # options of a picture: a time in seconds, or arguments of `sc.view`
 HOW: dict[str, dict[str, Any]] = {
     "tube": {"above": True, "exposure": 1},
-    "top": {"t": 2.5},
+    "top": {"t": 1.0},
     "spoon": {"t": 1.5},
     "egg": {"t": 1.1},
     "hoop": {"t": 0.5, "follow": True},
     "wheel": {"t": 1.0, "follow": True},
-    "ball": {"t": 0.3, "follow": True},
+    "ball": {"t": 0.25, "follow": True, "drawn": ["path", "velocity"]},
 }
 
 

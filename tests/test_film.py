@@ -530,8 +530,8 @@ def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_pa
         ("film.mp4", {"size": (321, 180)}, "even numbers"),
         ("film.mp4", {"size": (32, 18)}, "width = 32: expected a whole number from 64"),
         ("film.mp4", {"fps": 0}, "fps = 0: expected a whole number from 1 to 240"),
-        ("page.html", {"fps": 30}, "fps, size, seconds, progress: only for a film"),
-        ("scene.glb", {"size": (640, 360)}, "fps, size, seconds, progress: only for a film"),
+        ("page.html", {"fps": 30}, "fps, size, seconds, progress, sound: only for a film"),
+        ("scene.glb", {"size": (640, 360)}, "fps, size, seconds, progress, sound: only for a film"),
     ):
         with pytest.raises(ValueError, match=said):
             view.save(tmp_path / name, **how)

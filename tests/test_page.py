@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from few import few
 from letters import letters
-from page_scenes import DISK, ENDS, STANDING, motion_of, page_of
+from page_scenes import DISK, ENDS, PIPE, STANDING, motion_of, page_of
 from pages import arrow, at, clock, go, picture
 from playing import DRIVEN, settled
 from scipy import ndimage
@@ -138,11 +138,11 @@ def test_it_is_turned_and_zoomed_by_mouse_wheel_fingers_and_keys(shown):
 def test_every_control_is_reached_by_the_tab_key(shown):
     page = shown(page_of("nutating"), "#t=1")
     reached = []
-    for _ in range(14):
+    for _ in range(15):
         page.keyboard.press("Tab")
         reached.append(page.evaluate("document.activeElement.id || document.activeElement.tagName"))
     controls = ["canvas", "play", "time", "speed", "omega", "momentum", "velocity", "path", "axis", "above"]
-    controls += ["shutter", "full", "SUMMARY"]
+    controls += ["shutter", "hear", "full", "SUMMARY"]
     assert reached[: len(controls)] == controls
 
 
@@ -162,6 +162,28 @@ def test_on_a_phone_and_on_a_wall_nothing_sticks_out_and_text_is_read_from_afar(
             for what in ("#speed", ".clock", ".panel b")
         }
         assert min(size.values()) >= max(15, 0.017 * height) and size[".clock"] >= max(18, 0.02 * height)
+
+
+def test_every_control_of_the_recorded_page_can_be_hit_by_a_finger(shown):
+    how = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+    for scene in ("nutating", "hoop"):
+        page = shown(page_of(scene), "#t=1", **how)
+        small = page.locator(
+            "#controls :is(button, select, label:has(input[type=checkbox]), summary, #time):visible"
+        ).evaluate_all(
+            "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 40 || b.height < 40).map(([n, b]) => [n, b.width, b.height])"
+        )
+        assert small == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def test_the_clock_tells_milliseconds_where_the_page_shows_less_than_a_second(shown):
+    size = sc.Scale(radius=7.9375e-3)
+    for seconds, said in ((0.4, "t = 200.00 ms"), (4.0, "t = 2.0000 s")):
+        m = sc.roll(PIPE, PIPE.steady(1.3), seconds / size.seconds(1.0))
+        view = sc.view(m, scale=size, slow=10)
+        assert clock(shown(view, f"#t={seconds / 2}")).startswith(said + "\n")
+    assert clock(shown(sc.view(m), "#t=7")).startswith("t = 7.00 √(R/g)")
 
 
 def test_light_and_dark_have_their_own_ground(shown):

@@ -99,7 +99,7 @@ def test_the_finger_snaps_to_lines_and_the_sentence_names_them(opened):
     page = opened("#ell=2.5&theta=1.5")
     body = sc.Body.solid(2.5)
     balance, limit, fold = (float(x) for x in (body.theta_balance, body.theta_limit, body.ridge()[0]))
-    for line, name in ((balance, "line θ₀"), (limit, "line θ∞"), (fold, "ridge")):
+    for line, name in ((balance, "line: θ₀."), (limit, "line: θ∞."), (fold, "line: ridge.")):
         x, y = on_map(page, 2.5, line)
         page.mouse.click(x, y + 3)
         settled(page)
@@ -324,9 +324,9 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
     page.wait_for_timeout(500)
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     small = page.locator(
-        "button:visible, select:visible, label:visible:has(input), summary:visible"
+        "button:visible, select:visible, label:visible:has(input[type=checkbox]), summary:visible, input[type=range]:visible"
     ).evaluate_all(
-        "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 43.5 || b.height < 43.5).map(([n]) => n)"
+        "all => all.map(e => [e.id || e.textContent, e.getBoundingClientRect()]).filter(([, b]) => b.width < 40 || b.height < 40).map(([n]) => n)"
     )
     assert small == []
     page.evaluate("window.spincyl.set({ theta: 0.7 })")
@@ -340,6 +340,40 @@ def test_on_a_phone_it_fits_keeps_still_and_can_be_hit_by_a_finger(opened):
     page.touchscreen.tap(x, y)
     settled(page)
     assert state(page)["ell"] == pytest.approx(1.5, abs=0.02)
+
+
+def test_reset_brings_back_everything_that_hands_have_changed(opened):
+    page = opened("#ell=2.5&theta=1.3&kick=0.1&mu=0.4")
+    before, at = state(page), page.evaluate("location.hash")
+    camera = (
+        "[...document.querySelectorAll('#drawn input, #slow, #shutter')].map(e => [e.id, e.checked, e.value])"
+    )
+    view = "window.spincyl.on()"
+    boxes, middle = page.evaluate(camera), page.evaluate(view)
+    page.locator("#knob-ell").fill("1.2")
+    page.locator("#knob-contact").select_option("smooth")
+    page.locator("#slow").select_option("100")
+    for name in ("omega", "path", "above"):
+        page.click(f"#{name}")
+    page.click("#hear")
+    page.locator("#canvas").focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("+")
+    page.keyboard.press(".")
+    settled(page)
+    assert state(page)["contact"] == "smooth" and state(page)["ell"] != 2.5
+    assert page.evaluate(camera) != boxes and page.evaluate(view) != middle
+    page.click("#reset")
+    settled(page)
+    assert state(page) == before and page.evaluate(camera) == boxes
+    assert page.evaluate(view) == pytest.approx(middle, abs=1)
+    assert ask(page, "at()") == 0 and ask(page, "audio()") is None
+    page.wait_for_function("at => location.hash === at", arg=at)
+    page.select_option("#preset", "a rattleback turns back")
+    settled(page)
+    page.click("#reset")
+    settled(page)
+    assert state(page) == before and page.locator("#map").is_visible() and page.complaints == []
 
 
 def test_a_low_window_keeps_its_controls_and_a_phone_on_its_side_what_fits(opened):
@@ -400,13 +434,21 @@ def test_a_picture_and_a_film_are_saved(opened, chromium):
         page.click("#png")
     assert got.value.suggested_filename == "spincyl.png"
     assert got.value.path().read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    page.click("#hear")
     page.click("#film")
     page.wait_for_timeout(max(1500, chromium.patience / 40))  # the first frame of a film takes its time
+    assert re.fullmatch(r"stop \d+\.\d s", page.locator("#film").inner_text())
     with page.expect_download() as got:
         page.click("#film")
-    content = got.value.path().read_bytes()
-    assert got.value.suggested_filename == "spincyl.webm"
-    assert content[:4] == b"\x1a\x45\xdf\xa3" and len(content) > 2000
+    content, name = got.value.path().read_bytes(), got.value.suggested_filename
+    kinds = {"spincyl.mp4": (4, b"ftyp"), "spincyl.webm": (0, b"\x1a\x45\xdf\xa3")}
+    if page.evaluate("MediaRecorder.isTypeSupported('video/mp4')"):
+        assert name == "spincyl.mp4"
+    at, begins = kinds[name]
+    assert content[at : at + 4] == begins and len(content) > 2000
+    assert any(word in content for word in (b"mp4a", b"Opus", b"A_OPUS")), "with its sound"
+    told = page.locator("#because").inner_text()
+    assert re.fullmatch(rf"A film of (\d+\.\d) s is saved: {re.escape(name)}", told), told
 
 
 def test_far_times_cost_no_more_than_near_ones(opened):

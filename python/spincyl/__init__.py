@@ -143,6 +143,7 @@ HOMES.update(
         "LossFit.plot": ("spincyl.lab._figures", "losses"),
         "Motion.plot": ("spincyl.studio.plot._motions", "motion"),
         "Motion.sound": ("spincyl.studio.sound", "sound"),
+        "Motion.film": ("spincyl.studio.pages.view", "film_of"),
         "loss.typical": ("spincyl.lab._typical", "typical"),
         "card": ("spincyl.studio.cards", "card"),
     }

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -34,6 +32,7 @@ from spincyl._phases import (
     told_phases,
 )
 from spincyl._scale import Scale
+from spincyl._showing import Showing
 from spincyl._slip import told_of_lowest
 from spincyl._state import State
 from spincyl._swing import numbers_of_one, single_aloft, single_slip
@@ -41,11 +40,8 @@ from spincyl._told import message
 from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pandas
     import xarray
-    from matplotlib.axes import Axes
 
     from spincyl._loss import Loss
 
@@ -56,7 +52,7 @@ _Four: TypeAlias = tuple[float, float, float, float]
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion(Outputs):
+class Motion(Outputs, Showing):
     """Motion of a body: times, states, and how the motion ended; the result of `roll`.
 
     The object is similar to the result of SciPy's `solve_ivp`. Arrays have a row for each of the n times that
@@ -332,49 +328,6 @@ class Motion(Outputs):
         [1.3, 1.3203]
         """
         return self.wanting(t=times_of(t if self._natural is None else si("t", t, "second")))
-
-    def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw inclination, path and contact force; see `spincyl.plot.motion`."""
-        drawn: list[Axes] = function_of_method("Motion.plot")(self, axes)
-        return drawn
-
-    def sound(
-        self,
-        path: str | PathLike[str],
-        seconds: float | None = None,
-        *,
-        scale: Scale | None = None,
-        rate: int = 44_100,
-    ) -> Path:
-        """Write the sound of the motion as a WAV file: impacts, and a ring that beats with the precession.
-
-        Parameters
-        ----------
-        path : path-like
-            Name of the file, which must end in .wav. The file has one channel of 16 bits.
-        seconds : float, optional
-            Duration of the sound, which starts at the first time of the motion. Default: the whole motion, at
-            most 180 s.
-        scale : Scale, optional
-            Scale that converts times to seconds. Not needed for a measured body, which has its own.
-        rate : int
-            Samples per second.
-
-        Returns
-        -------
-        Path
-            Path of the file. The beat has the frequency phi'/(2 pi) of the motion; the pitch of the ring is
-            arbitrary.
-
-        Raises
-        ------
-        ValueError
-            If there is nothing to hear: the contact point does not move along the body, or the duration is 0.
-        OSError
-            If the file cannot be written. An existing file stays until the new one is complete.
-        """
-        written: Path = function_of_method("Motion.sound")(self, path, seconds, scale, rate)
-        return written
 
     def _told(self, name: str, values: Floats) -> Floats:
         """Convert an output from natural units to those of the motion."""

@@ -1,25 +1,39 @@
-"""Films of pages, as MP4 by ffmpeg or as GIF by Pillow; `frames` draws them."""
+"""Films of pages, as MP4 with sound by ffmpeg or as GIF by Pillow; `frames` draws them.
 
+The sound is that of the slow motion: it is loudest when the contact point passes the camera,
+and its pitch is that of `sound`.
+"""
+
+import math
 import subprocess
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from shutil import which
-from tempfile import TemporaryFile
+from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any
 
 import numpy as np
 
 from spincyl._input.files import writing_whole
 from spincyl._input.hints import install_command
-from spincyl._input.numbers import in_range, optional_library, whole
+from spincyl._input.numbers import Floats, flag, in_range, optional_library, whole
 from spincyl._input.progress import Progress, reporting_progress
 from spincyl.studio.frames import Reel, frames, pictures, vector
+from spincyl.studio.look import AZIMUTH
 from spincyl.studio.poses import span
+from spincyl.studio.sound import Silent, pressure, sources, write_wave
 
 _DEFAULT_SECONDS = 10.0  # seconds, the default length of a film
 _LARGE_FILE = 20e6  # bytes; a larger file causes a warning
+_RATE = 44_100  # samples of the sound per second
+#: Players assume BT.709 for a file without a mark, but ffmpeg converts by BT.601 unless told otherwise.
+_H264 = [
+    *("-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"),
+    *("-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"),
+    *("-movflags", "+faststart", "-f", "mp4"),
+]
 
 
 def reel(
@@ -62,12 +76,16 @@ def reel(
     )
 
 
-def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> None:
-    """Write the film, and tell how much of it is done."""
+def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound: bool | None = None) -> None:
+    """Write the film, and tell how much of it is done. If `sound` is None, it has a sound if it can."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
+    sound = sound if sound is None else flag("sound", sound)
+    if sound and write is _gif:
+        raise ValueError("sound: a GIF has no sound; write an .mp4")
     optional_library("matplotlib", "film")
     program = _program() if write is _mp4 else ""
     count = what.times.size  # too long a film is refused before anything is written
+    heard = None if sound is False or write is _gif else _heard(what, sound is True)
 
     def shown() -> Iterator[np.ndarray]:
         for k, picture in enumerate(frames(what), 1):
@@ -76,7 +94,10 @@ def film(what: Reel, path: Path, progress: Progress | bool | None = None) -> Non
                 told(k / count)
 
     with reporting_progress(progress, "film") as told, writing_whole(path) as part:
-        write(what, shown(), part, program)
+        if write is _gif:
+            _gif(what, shown(), part)
+        else:
+            _mp4(what, shown(), part, program, heard)
     large = path.stat().st_size
     if large > _LARGE_FILE:
         how = "reduce size=, fps= or seconds="
@@ -116,16 +137,36 @@ def _program() -> str:
     return found
 
 
-def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
-    """Write H.264 by ffmpeg, in colours that every player reads."""
+def _heard(what: Reel, needed: bool) -> Floats | None:
+    """The sound of a film, as long as its pictures; None if nothing is heard and no sound is needed."""
+    unit, found = what.unit * what.slow, []
+    first = min(min(span(m)) for m in what.motions)
+    lasting = float(what.times[-1] - first) * unit
+    for m in what.motions:
+        try:
+            found.append(sources(m, first, unit, lasting, -math.pi / 2 if what.look.above else AZIMUTH))
+        except Silent as reason:
+            if needed and len(what.motions) == 1:
+                raise ValueError(f"sound: {reason}") from None
+    if needed and not found:
+        raise ValueError("sound: there is nothing to hear in any of the motions")
+    return pressure(found, round(what.times.size / what.fps * _RATE), _RATE) if found else None
+
+
+def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str, heard: Floats | None) -> None:
+    """Write H.264 by ffmpeg, in colours that every player reads, with the sound as AAC."""
     width, height = what.size
     words = [program, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
-    words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-", "-an"]
-    # players assume BT.709 for a file without a mark, but ffmpeg converts by BT.601 unless told otherwise
-    words += ["-vf", "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "18"]
-    words += ["-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709"]
-    words += ["-color_trc", "bt709"]
-    words += ["-movflags", "+faststart", "-f", "mp4", str(path)]
+    words += ["-s", f"{width}x{height}", "-r", str(what.fps), "-i", "-"]
+    with TemporaryDirectory() as folder:
+        if heard is not None:
+            write_wave(Path(folder) / "sound.wav", heard, _RATE)
+            words += ["-i", str(Path(folder) / "sound.wav"), "-c:a", "aac", "-b:a", "160k"]
+        _run([*words, *_H264, str(path)], pictures)
+
+
+def _run(words: list[str], pictures: Iterator[np.ndarray]) -> None:
+    """Run ffmpeg, and pass it the pictures; an error has its words."""
     with TemporaryFile() as said:
         process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
         assert process.stdin is not None
@@ -146,7 +187,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -
             raise OSError(f"ffmpeg: {told or f'ended with code {code}'}")
 
 
-def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str) -> None:
+def _gif(what: Reel, pictures: Iterator[np.ndarray], path: Path) -> None:
     """Write a GIF by Pillow, which comes with matplotlib; one palette for all frames avoids flicker."""
     from PIL import Image
 

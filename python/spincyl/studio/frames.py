@@ -155,6 +155,7 @@ class _Stage:
             self.figure.text(0.985, 0.03, told, size=letters, color=ink, ha="right", va="bottom")
         whole = what.times
         lasts = float(whole[-1] - whole[0]) * what.unit
+        self.brief = what.symbol == "s" and lasts < 1  # milliseconds, as on the page
         self.digits = max(2, 4 - math.floor(math.log10(max(1e-9, lasts))))
         if not still:  # two frames do not show the same time
             self.digits = max(2, min(self.digits, math.ceil(math.log10(what.fps * what.slow))))
@@ -374,8 +375,10 @@ class _Stage:
         return picture.reshape(*self.shape, 3)
 
     def _clock(self, t: float) -> str:
-        told = f"{t * self.what.unit:.{self.digits}f}"
-        return f"t = {told.rstrip('0').rstrip('.') if self.opens else told} {self.what.symbol}"
+        more = 3 if self.brief else 0
+        told = f"{10**more * t * self.what.unit:.{max(0, self.digits - more)}f}"
+        told = told.rstrip("0").rstrip(".") if self.opens and "." in told else told
+        return f"t = {told} {'ms' if self.brief else self.what.symbol}"
 
     def _spin(self, spin: float) -> str:
         """The spin of a stone about the vertical, in words."""

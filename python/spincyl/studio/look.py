@@ -8,7 +8,7 @@ import numpy as np
 
 from spincyl._input.numbers import Floats, flag, known_words, number
 
-_AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
+AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
 _SPREAD = math.tan(0.3)  # tangent of half the angle of view
 _LEAST = 0.03  # angle between a table and the least steep view of it
 _FLAT = 1e6  # distance of a camera above the table, over half the height that it shows
@@ -79,7 +79,7 @@ def camera(at: Floats, reach: float, half: float, aspect: float, above: bool, ti
     The first one sees a table with a slope as it lies: its directions are turned about y, from the room to
     the table. The other one looks along the normal of the table.
     """
-    azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (_AZIMUTH, _ELEVATION)
+    azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (AZIMUTH, _ELEVATION)
     slope = tilt.slope
     if not above and tilt.steepest:
         azimuth = -math.pi - azimuth if tilt.mirrored else azimuth

@@ -30,7 +30,8 @@ from spincyl.loss import KINDS
 from spincyl.studio.cards import drawing
 from spincyl.studio.pages.deflated import packed
 from spincyl.studio.pages.fits import check_bounces, check_circles, check_contents, check_table
-from spincyl.studio.pages.joined import filled, frame, line, script, style
+from spincyl.studio.pages.joined import filled, frame, line, script, style, text
+from spincyl.studio.pages.languages import numbered, table, words_of
 from spincyl.studio.pages.words import (
     body_of,
     losses_of,
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 #: The scripts in their order; the renderer is shared with the recorded page.
 _SCRIPTS = (
     "play.core.js",
+    "play.words.js",
     "play.state.js",
     "play.stage.js",
     "page.pose.js",
@@ -71,6 +73,7 @@ _SCRIPTS = (
     "play.chart.js",
     "play.said.js",
     "play.run.js",
+    "page.sound.js",
     "play.sound.js",
     "play.film.js",
     "page.stone.js",
@@ -421,21 +424,18 @@ def _json(what: Any) -> str:
     return json.dumps(what, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _body(friction: bool) -> str:
-    """The elements of the page, with the names of the loss laws and the scenes."""
+def _body_and_script(friction: bool) -> tuple[str, str]:
+    """The elements of the page with its words, loss laws and scenes, and the script."""
+    code, told = script(_SCRIPTS if friction else _SCRIPTS_WITHOUT_FRICTION), [*scenes(friction)]
+    words = words_of(text("play.body.html"), code, [name for name, _ in told])
+    presets = [{"name": name, "word": words.index(name), "state": state} for name, state in told]
     laws = _json([*map(command_line_name, KINDS.values())])
-    presets = _json([{"name": name, "state": told} for name, told in scenes(friction)])
-    return filled("play.body.html", {"laws": laws, "presets": presets})
+    fields = {"words": table(words), "laws": laws, "presets": _json(presets)}
+    return filled("play.body.html", fields), numbered(code, words)
 
 
 @cache
 def _packed_page(friction: bool) -> str:
     """The core and all text of the page, in the format that the loader unpacks."""
     core = decompress(files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes())
-    shown = _body(friction)
-    return packed(
-        core,
-        "\0".join(
-            [style(["play.css"]), shown, script(_SCRIPTS if friction else _SCRIPTS_WITHOUT_FRICTION)]
-        ).encode(),
-    )
+    return packed(core, "\0".join([style(["play.css"]), *_body_and_script(friction)]).encode())

@@ -8,7 +8,7 @@ from spincyl._ending import Ending
 from spincyl._motion import Motion
 from spincyl._phases import has_friction
 from spincyl._scale import Scale
-from spincyl.studio.aloft import goes_up
+from spincyl.studio.aloft import goes_up, strikes
 from spincyl.studio.look import Look
 from spincyl.studio.pages.few import base64
 from spincyl.studio.pages.slip import rubbing
@@ -17,6 +17,8 @@ from spincyl.studio.poses import knots, packed, repeats, seen, span
 
 #: Factors of slow motion on a page.
 SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+#: Impacts with less than this share of the largest impulse are not heard.
+_FAINT = 1e-3
 
 
 def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
@@ -38,7 +40,7 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
             "pivot": pivot and [pivot.real, pivot.imag],
             "shift": [again.shift.real, again.shift.imag],
         }
-    data |= numbers(m, found[:, 0])
+    data |= numbers(m, found[:, 0]) | _hits(m)
     packets = (packed(found) | (rubbing(m) if slips else {})).items()
     data |= {name: base64(*x) if isinstance(x, tuple) else x for name, x in packets}
     whirrs = m.event is not None and m.event.ending == Ending.FACE
@@ -49,6 +51,14 @@ def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
         (w,) = seen(m, found[:, 0], "w")
         fastest = float(np.linalg.norm(w, axis=1).max())
     return data, fastest / (2 * np.pi)
+
+
+def _hits(m: Motion) -> dict[str, Any]:
+    """Times and impulses of the impacts that are heard, for the sound of the page."""
+    struck = strikes(m) if goes_up(m) else ()
+    rows = np.reshape([[x.time, np.linalg.norm(x.impulse)] for x in struck], (-1, 2))
+    loud = rows[rows[:, 1] > _FAINT * rows[:, 1].max(initial=0.0)]
+    return {"hits": base64(loud, "<f4")} if loud.size else {}
 
 
 def slips_or_flies(m: Motion) -> bool:

@@ -46,6 +46,8 @@ _SCRIPTS = tuple(
         "recorded",
         "exposure",
         "eye",
+        "sound",
+        "heard",
         "hands",
     )
 )
@@ -118,6 +120,7 @@ class View:
         seconds: float | None = None,
         progress: "Progress | bool | None" = None,
         t: float | None = None,
+        sound: bool | None = None,
     ) -> Path:
         """Write the page, a film, a picture or an animated scene to a file.
 
@@ -141,6 +144,9 @@ class View:
         t : float, optional
             Time of a picture, or first time of a picture with `exposure`; in seconds if the view has a scale,
             else in sqrt(R/g). Default: the first time of the motion.
+        sound : bool, optional
+            Whether a film has its sound: that of `Motion.sound`, as slow as the pictures, and loudest
+            when the contact point passes the camera. Default: true for an .mp4 in which anything is heard.
 
         Returns
         -------
@@ -151,7 +157,7 @@ class View:
         ------
         ValueError
             If the suffix is none of these, the motion is too long to show, a setting is out of range, or a
-            setting does not apply to the format.
+            setting does not apply to the format. If `sound` is true and there is nothing to hear.
         ImportError
             If spincyl[film] is needed for the film and not installed. For an MP4 the program ffmpeg on the
             search path is enough; a GIF needs only matplotlib.
@@ -184,7 +190,7 @@ class View:
             raise ValueError(f"path = {str(path)!r}: expected a name that ends in {known}")
         if t is not None and suffix not in _STILLS:
             raise ValueError(f"t: only for a picture ({', '.join(_STILLS)}), not for {suffix}")
-        if suffix in _STILLS and all(x is None for x in (fps, seconds, progress)):
+        if suffix in _STILLS and all(x is None for x in (fps, seconds, progress, sound)):
             from spincyl.studio.film import reel, still
 
             still(reel(self, [edges(m) for m in self.motions], suffix, None, size, 600.0), path, t)
@@ -194,10 +200,11 @@ class View:
 
             seconds = None if seconds is None else in_range("seconds", seconds, 0.1, 600.0)
             made_of = reel(self, [edges(m) for m in self.motions], suffix, fps, size, seconds)
-            film(made_of, path, progress)
+            film(made_of, path, progress, sound)
             return path
-        if any(x is not None for x in (fps, size, seconds, progress)):
-            raise ValueError(f"fps, size, seconds, progress: only for a film (.mp4, .gif), not for {suffix}")
+        if any(x is not None for x in (fps, size, seconds, progress, sound)):
+            names = "fps, size, seconds, progress, sound"
+            raise ValueError(f"{names}: only for a film (.mp4, .gif), not for {suffix}")
         if suffix == ".html":
             made = self.html.encode()
         else:
@@ -261,8 +268,8 @@ class View:
         if self.scale is None:
             lengths = {"metre": 1.0, "lengths": self._length} if high else {}
             return {"speed": 1.0, "speeds": f"√(g {self._length})"} | lengths
-        lengths = {"metre": self.scale.radius, "lengths": "m"} if high else {}
-        return {"speed": self.scale.metres_per_second(1.0), "speeds": "m/s"} | lengths
+        lengths = {"metre": 1e3 * self.scale.radius, "lengths": "mm"} if high else {}
+        return {"speed": 1e3 * self.scale.metres_per_second(1.0), "speeds": "mm/s"} | lengths
 
     def _rates(self) -> dict[str, Any]:
         """The unit in which the page gives the spin of a stone."""
@@ -345,6 +352,9 @@ def view(
     With a law of friction the path and the line under the slider are red while the body slips. Arrows at the
     contact point show the normal force N and the friction F, and the clock shows the slip.
 
+    If a scale is known, times are in seconds, or in milliseconds on a page of less than a second, heights in
+    millimetres, and slips in mm/s.
+
     If "#t=1.5" is added to the address of the page, the page opens at this time and is paused. A body whose
     motion has ended is grey, and its clock shows the reason and the time. The page contains poses at a few
     times, with cubic polynomials between them. For bodies of usual length they differ from the motion by at
@@ -405,3 +415,13 @@ def view(
     return View(
         [m.natural for m in motions], labels, title=title, scale=scale, slow=slow, upper=upper, look=how
     )
+
+
+def film_of(
+    m: Motion, path: str | PathLike[str], seconds: float | None = None, sound: bool | None = None
+) -> Path:
+    """Write the film of a motion."""
+    path = path_of("path", path)
+    if path.suffix.lower() not in (".mp4", ".gif"):
+        raise ValueError(f"path = {str(path)!r}: expected a name that ends in .mp4 or .gif")
+    return view(m).save(path, seconds=seconds, sound=sound)

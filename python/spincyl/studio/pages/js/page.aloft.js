@@ -78,7 +78,7 @@ trace = (m, times, poses) => {
 const ofContact = doing;
 doing = (m, p) => {
   if (!m.aloft) return ofContact(m, p);
-  const number = (x, unit, sign) => ` ${(x * unit).toPrecision(3)} ${sign}`;
+  const number = (x, unit, sign) => ` ${rounded(x * unit)} ${sign}`;
   const told = p.kind === FLIES ? number(p.height, data.metre, data.lengths) + " high" : p.kind === 1 ? number(p.speed, data.speed, data.speeds) : "";
   return "\n" + (KINDS[p.kind] + told).replaceAll(" ", "\u00a0");
 };

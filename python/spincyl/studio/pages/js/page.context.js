@@ -11,7 +11,7 @@ const HANDS = ["onpointerdown", "onpointermove", "onpointerup", "onpointercancel
 function lit() {
   if (gl && !gl.isContextLost()) return true;
   if (!seen || without) return false;
-  if (gl && !yielded) { unlit("The browser has taken this picture back: it keeps only so many at a time."); return false; }
+  if (gl && !yielded) { unlit(W("The browser has taken this picture back: it keeps only so many at a time.")); return false; }
   if (gl) { // a canvas never gets a second context: replace it
     const old = canvas, at = document.activeElement === old;
     canvas = old.cloneNode();
@@ -22,13 +22,13 @@ function lit() {
   yielded = false;
   // the live page copies the canvas into films
   gl = canvas.getContext("webgl2", { antialias: true, stencil: true, alpha: false, preserveDrawingBuffer: !!window.spincyl });
-  if (!gl) { unlit("The body is drawn with WebGL 2, which this browser lacks or has switched off."); return false; }
+  if (!gl) { unlit(W("The body is drawn with WebGL 2, which this browser lacks or has switched off.")); return false; }
   era++;
   gl.vertexAttrib3f(1, 0, 0, 1); // meshes without normals lie on the table
   canvas.addEventListener("webglcontextlost", () => show());
   const adds = gl.getExtension("EXT_color_buffer_float");
   $("shutter").disabled = !adds;
-  $("shutter").title = adds ? "" : "This browser cannot add up pictures.";
+  $("shutter").title = adds ? "" : W("This browser cannot add up pictures.");
   return true;
 }
 function unlit(why) {

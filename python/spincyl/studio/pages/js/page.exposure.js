@@ -4,7 +4,7 @@
 // next few are drawn when the graphics card, or the software in its place, has finished the previous ones.
 const PICTURES = 720, TOGETHER = 16;
 const exposing = { targets: null };
-const REST = "ω, L, path and view stay as they are until the photograph is closed.";
+const REST = N("ω, L, path and view stay as they are until the photograph is closed.");
 
 function target(width, height, kind) {
   const texture = gl.createTexture(), buffer = gl.createFramebuffer();
@@ -137,10 +137,10 @@ function expose(views) {
     exposing.some = Math.min(64, Math.max(8, spent > 1000 ? exposing.some >> 1 : spent < 500 ? 2 * exposing.some : exposing.some));
     develop();
   }
-  const over = exposing.shown >= exposing.most, told = over && exposing.most < PICTURES ? "Stopped" : over ? "Done" : "The shutter is open";
+  const over = exposing.shown >= exposing.most, told = over && exposing.most < PICTURES ? N("Stopped") : over ? N("Done") : N("The shutter is open");
   $("developed").value = exposing.shown / PICTURES;
-  $("stop").textContent = over ? "close" : "stop";
-  $("why").textContent = `${told}: ${exposing.shown} of ${PICTURES} pictures, ${$("shutter").selectedOptions[0].text}. ${REST}`;
+  $("stop").textContent = over ? W("close") : W("stop");
+  $("why").textContent = W("{0}: {1} of {2} pictures, {3}. {4}", W(told), exposing.shown, PICTURES, $("shutter").selectedOptions[0].text, W(REST));
   document.documentElement.dataset.exposed = exposing.shown;
   if (over) { $("said").textContent = $("why").textContent; return; }
   for (const until = Math.min(exposing.count + exposing.some, exposing.most); exposing.count < until;) add(views, Math.min(TOGETHER, until - exposing.count));

@@ -48,6 +48,7 @@ function frame(at) {
     m.over = there?.event;
     named(m, p, ARROWS.map(v => exposed ? null : arrowOf(p, v)), w / ratio, h / ratio);
   }
+  sounded(now, speed(), playing);
   $("time").value = now;
   $("time").setAttribute("aria-valuetext", clock(now));
   document.documentElement.dataset.drawn ??= performance.now();
@@ -95,7 +96,7 @@ function shuttered() {
   if (!open && document.activeElement === $("stop")) $("shutter").focus();
   $("shot").hidden = !open;
   $("drawn").disabled = open || !!without;
-  $("drawn").title = open ? REST : "";
+  $("drawn").title = open ? W(REST) : "";
   forget();
 }
 function stopped() {
@@ -115,12 +116,12 @@ addEventListener("keydown", e => {
   // these use the space bar themselves
   const has = ["BUTTON", "SUMMARY"].includes(e.target.tagName) || e.target.type === "checkbox";
   if (e.ctrlKey || e.metaKey || e.altKey || e.target.tagName === "SELECT" || e.key === " " && has) return;
-  const keys = { __proto__: null, " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), f: () => document.fullscreenEnabled && full() };
+  const keys = { __proto__: null, " ": () => play(!playing), ",": () => go(now - speed() / 60), ".": () => go(now + speed() / 60), 0: () => go(first), s: () => $("hear").hidden || hear(), f: () => document.fullscreenEnabled && full() };
   if (e.target === canvas) Object.assign(keys, {
     ArrowLeft: () => turn(-0.1, 0), ArrowRight: () => turn(0.1, 0), ArrowUp: () => turn(0, 0.1), ArrowDown: () => turn(0, -0.1),
     "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
   });
-  const key = e.key === "F" ? "f" : e.key;
+  const key = ["F", "S"].includes(e.key) ? e.key.toLowerCase() : e.key;
   if (keys[key]) { keys[key](); e.preventDefault(); }
 });
 dusk.onchange = show;
@@ -145,6 +146,7 @@ show();
 window.spincyl = {
   pose: (i, t) => pose(motions[i], t),
   at: () => now * data.unit,
+  audio: () => audio, hits, heardAt,
   on: (i, t) => {
     const m = motions[i], [x, y] = project(m, pose(m, t).centre, m.panel.clientWidth, m.panel.clientHeight);
     return [m.panel.offsetLeft + x, m.panel.offsetTop + y];

@@ -4,6 +4,8 @@
 const $ = id => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const stage = $("stage");
+// the words of this page are English; the live page replaces these by others
+const N = word => word, W = (word, ...given) => word.replace(/\{(\d)\}/g, (_, i) => given[i]);
 
 const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 const motions = data.motions.map(m => {
@@ -23,8 +25,11 @@ const motions = data.motions.map(m => {
 const first = Math.min(...motions.map(m => m.first)), last = Math.max(...motions.map(m => m.last));
 
 const digits = Math.max(2, 4 - Math.floor(Math.log10(Math.max(1e-9, (last - first) * data.unit))));
-// with spaces that do not break
-const clock = t => `t = ${(t * data.unit).toFixed(digits)} ${data.symbol}`.replaceAll(" ", "\u00a0");
+// milliseconds, if the page shows less than a second; with spaces that do not break
+const brief = data.symbol === "s" && (last - first) * data.unit < 1;
+const clock = t => `t = ${brief ? (1e3 * t * data.unit).toFixed(digits - 3) + " ms" : (t * data.unit).toFixed(digits) + " " + data.symbol}`.replaceAll(" ", "\u00a0");
+// three digits, without an exponent
+const rounded = x => Math.abs(x) < 999.5 ? x.toPrecision(3) : x.toFixed(0);
 
 // theta, phi, psi, x, y, or the numbers of a stone, and their rates: the cubic between two knots
 function interpolate(m, t) {

@@ -2,6 +2,7 @@
 // omit this file. It comes before the drawing and replaces `pose` and `lathe`.
 
 for (const m of motions) if (m.fillet) {
+  m.edge = [1 - m.fillet, 0, m.fillet]; // radius and rounding of the rim, for the sound
   m.depth = m.ell;
   // half length of a sharp cylinder of the same reach, for the camera
   m.ell = Math.sqrt(Math.max(0, m.far ** 2 - 1));

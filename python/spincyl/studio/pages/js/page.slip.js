@@ -25,7 +25,7 @@ pose = (m, t) => {
 };
 
 // further text of the clock
-doing = (m, p) => m.phases ? "\n" + (p.slips ? `slipping ${(p.speed * data.speed).toPrecision(3)} ${data.speeds}`.replaceAll(" ", "\u00a0") : "rolling") : "";
+doing = (m, p) => m.phases ? "\n" + (p.slips ? `slipping ${rounded(p.speed * data.speed)} ${data.speeds}`.replaceAll(" ", "\u00a0") : "rolling") : "";
 
 // switches for the forces, and for a camera that follows a body that moves far
 for (const [id, text, before] of [["forces", '<i class="normal">N</i> <i class="friction">F</i>', $("path").parentNode], ["follow", "follow", null]]) {

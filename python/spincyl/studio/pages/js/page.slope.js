@@ -21,5 +21,5 @@ laid = (m, t, view) => {
 };
 
 // further text of the clock
-const sloping = m => m.slope ? `\nslope ${(m.slope * 180 / Math.PI).toFixed(1)}°`.replace(" ", "\u00a0").replace("-", "\u2212") : "", onTheSlope = doing;
+const sloping = m => m.slope ? ("\n" + W("slope {0}°", (m.slope * 180 / Math.PI).toFixed(1))).replaceAll(" ", "\u00a0").replace("-", "\u2212") : "", onTheSlope = doing;
 doing = (m, p) => sloping(m) + onTheSlope(m, p);

@@ -7,7 +7,10 @@ const TRACKS = [
   { name: "N", unit: "", of: row => row[OF_ROW.kind] > FLIES ? 1 : row[OF_ROW.normal], colour: "normal", dash: [7, 4], zero: true, least: 0.5, line: 1 },
   { name: "μ", unit: "", of: row => row[OF_ROW.demand], colour: "friction", dash: [2, 3], zero: true, least: 0.05 },
 ];
-const MEANING = { "θ": "inclination", N: "normal force per weight", "μ": "friction coefficient, F/N" };
+const MEANING = { "θ": N("inclination"), N: N("normal force per weight"), "μ": N("friction coefficient, F/N") };
+
+// the letter of a track, or its word
+const named_ = track => track.word === undefined ? track.name : W(track.word);
 
 // The upper end of an axis that begins at 0 is one of a few steps. While the user drags, it changes only to a
 // larger step, or to one below a third. It covers all values, except in a fall or a hop, whose peak would
@@ -26,13 +29,15 @@ function limit(track, sorted) {
 function drawChart() {
   if (!charted.clientWidth) return;
   const [g, w, h, ratio] = context2d(charted), style = getComputedStyle(document.documentElement), colour = name => style.getPropertyValue("--" + name).trim();
-  const em = parseFloat(getComputedStyle(charted).fontSize) * ratio, left = 3.6 * em, low = h - 1.5 * em;
+  const em = parseFloat(getComputedStyle(charted).fontSize) * ratio, low = h - 1.5 * em;
+  g.font = `bold italic ${em}px system-ui, sans-serif`;
+  const left = Math.max(3.6 * em, 0.6 * em + Math.max(...TRACKS.map(track => g.measureText(named_(track)).width)));
   g.clearRect(0, 0, w, h);
   span = [left, w - 0.6 * em];
   const write = (text, x, y, align, fill, bold = "") => { Object.assign(g, { font: `${bold} ${em}px system-ui, sans-serif`, textAlign: align, textBaseline: "middle", fillStyle: fill }); g.fillText(text, x, y); };
   const at = t => span[0] + (span[1] - span[0]) * (t - tracked.first) / Math.max(1e-9, tracked.last - tracked.first);
   const { rows: all } = tracked, moves = tracked.last > tracked.first;
-  if (!moves) write("no motion, so nothing is plotted", w / 2, h / 2, "center", colour("ink"));
+  if (!moves) write(W("no motion, so nothing is plotted"), w / 2, h / 2, "center", colour("ink"));
   if (moves) TRACKS.forEach((track, i) => {
     const top = low * i / 3 + 1.25 * em, bottom = low * (i + 1) / 3 - 0.2 * em, values = tracked.rows.map(track.of).filter(Number.isFinite).sort((a, b) => a - b);
     if (!values.length) return;
@@ -66,14 +71,14 @@ function drawChart() {
     const figure = v => track.unit ? v.toFixed(most - least < 2 ? 2 : 1) + track.unit : v.toFixed(2);
     if (bottom - top > 1.9 * em) { write(figure(most), left - 0.3 * em, top + 0.55 * em, "right", colour("ink")); write(figure(least), left - 0.3 * em, bottom - 0.5 * em, "right", colour("ink")); }
     const high = bottom - top > 3.4 * em; // else the letter stands before its meaning
-    if (high) write(track.name, 0.2 * em, (top + bottom) / 2, "left", colour(track.colour), "bold italic");
-    write((high ? "" : track.name + ", ") + MEANING[track.name], span[0], top - 0.6 * em, "left", colour(track.colour));
+    if (high) write(named_(track), 0.2 * em, (top + bottom) / 2, "left", colour(track.colour), "bold italic");
+    write((high ? "" : named_(track) + ", ") + W(MEANING[track.name]), span[0], top - 0.6 * em, "left", colour(track.colour));
     if (track.cut) {
       const row = tracked.rows.find(row => track.of(row) === values.at(-1));
       write("≥ " + values.at(-1).toPrecision(3), Math.min(span[1] - 2.5 * em, Math.max(span[0] + 2.5 * em, at(row[0]))), top + 0.7 * em, "center", colour("ink"), "600");
     }
   });
-  if (moves) for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
+  if (moves) for (const [x, align] of [[tracked.first, "left"], [tracked.last, "right"]]) write(align === "right" ? "t = " + timed(x, 1) : x && sized() ? timed(x, 1) : timed(x, 1).split(" ")[0], at(x), h - 0.7 * em, align, colour("ink"));
   kept ??= new OffscreenCanvas(1, 1);
   if (kept.width !== w || kept.height !== h) { kept.width = w; kept.height = h; } else kept.getContext("2d").clearRect(0, 0, w, h);
   kept.getContext("2d").drawImage(charted, 0, 0);

@@ -26,19 +26,30 @@ function keep(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 function photograph() { compose(); page.toBlob(blob => keep(blob, "spincyl.png")); }
+// an MP4, which slides and phones play, where the browser can write one, with the sound if it is on
+const KINDS_OF_FILM = ["video/mp4;codecs=avc1.640028,mp4a.40.2", "video/mp4;codecs=avc1.42E01F,mp4a.40.2", "video/mp4;codecs=avc1.42E01F,opus", "video/mp4;codecs=vp9,opus", "video/mp4", "video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+const lastsFor = () => ((performance.now() - recorder.began) / 1000).toFixed(1);
 function film() {
   if (recorder) { recorder.stop(); return; }
   compose();
-  const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find(x => MediaRecorder.isTypeSupported(x)), pieces = [];
-  if (!kind) { $("said").textContent = "This browser cannot record WebM."; return; }
-  recorder = new MediaRecorder(page.captureStream(30), { mimeType: kind, videoBitsPerSecond: 8e6 });
+  const kind = KINDS_OF_FILM.find(x => window.MediaRecorder?.isTypeSupported(x)), pieces = [];
+  if (!kind) { $("because").textContent = W("This browser cannot record a film."); return; }
+  const stream = page.captureStream(30), ear = audio && new MediaStreamAudioDestinationNode(audio);
+  if (ear) { audio.out.connect(ear); for (const track of ear.stream.getAudioTracks()) stream.addTrack(track); }
+  const end = kind.startsWith("video/mp4") ? "mp4" : "webm";
+  recorder = Object.assign(new MediaRecorder(stream, { mimeType: kind, videoBitsPerSecond: 8e6 }), { began: performance.now() });
   recorder.ondataavailable = e => pieces.push(e.data);
-  recorder.onstop = () => { recorder = null; $("film").ariaPressed = false; $("film").textContent = "film"; keep(new Blob(pieces, { type: "video/webm" }), "spincyl.webm"); };
+  recorder.onstop = () => {
+    const told = `${lastsFor()} s`;
+    recorder = null;
+    Object.assign($("film"), { ariaPressed: false, textContent: W("film") });
+    $("said").textContent = $("because").textContent = W("A film of {0} is saved: {1}", told, "spincyl." + end);
+    keep(new Blob(pieces, { type: "video/" + end }), "spincyl." + end);
+  };
   recorder.start();
   $("film").ariaPressed = true;
-  $("film").textContent = "stop";
   show();
 }
-const filmed = () => { if (recorder) compose(); };
+const filmed = () => { if (recorder) { compose(); $("film").textContent = W("stop {0} s", lastsFor()); } };
 $("png").onclick = photograph;
 $("film").onclick = film;

@@ -4,23 +4,23 @@
 // number
 const same = { to: x => x, from: x => x }, square = { to: x => x ** 2, from: Math.sqrt }, power = { to: x => 10 ** x, from: Math.log10 };
 const KNOBS = [
-  { name: "ell", text: "aspect ratio ℓ", low: 0, high: () => Math.sqrt(8), ...square, told: x => decimal(x, 3) },
-  { name: "theta", text: "inclination θ", low: 0.005, high: () => steep(), ...same, told: x => degrees(x, 2) },
-  { name: "rate", text: "rate Ω√I₃", low: 0, high: () => 4, ...same, told: x => rated(x) },
-  { name: "bore", text: "bore", low: 0, high: () => 1, ...same, told: x => decimal(x) },
-  { name: "fillet", text: "fillet", low: 0, high: () => isTube() ? Math.min(1 - s.bore, s.ell) : 1, ...same, told: x => decimal(x) },
-  ...["bottom", "top", "height"].map(name => ({ name, text: name, low: name === "height" ? 0.05 : 0, high: () => name === "height" ? 6 : 1, ...same, told: x => decimal(x) })),
-  { name: "kick", text: "kick θ′", low: -0.6, high: () => 0.6, ...same, told: x => decimal(x, 3) },
-  { name: "precession", text: "centre’s circle", low: -1, high: () => 1, ...same, told: () => Number.isFinite(s.precession) ? decimal(here.circle) + " R" : "at rest" },
-  { name: "contact", text: "table", choices: { rolling: "rubber: it rolls", smooth: "ice: no friction", coulomb: "dry friction μ", viscous: "wet: friction c u" } },
-  { name: "slope", text: "slope", low: 0, high: () => Math.PI / 4, ...same, told: x => x ? degrees(x) : "level" },
-  { name: "phi0", text: "leans to φ", low: -Math.PI, high: () => Math.PI, ...same, told: x => degrees(x, 0) },
-  { name: "mu", text: "friction μ", low: 0, high: () => 1, ...same, told: x => decimal(x) },
-  { name: "patch", text: "patch", low: -4.2, high: () => Math.log10(0.5), to: x => x < -4 ? 0 : 10 ** x, from: x => x > 0 ? Math.log10(x) : -4.2, told: x => x > 0 ? sized() ? decimal(1e3 * s.radius * x, 3) + " mm" : decimal(x, 4) + " R" : "a point" },
-  { name: "c", text: "friction c", low: 0, high: () => 1, ...same, told: x => decimal(x) },
-  { name: "restitution", text: "bounce e", low: -0.05, high: () => 1, to: x => x < 0 ? NaN : x, from: x => x >= 0 ? x : -0.05, told: x => x >= 0 ? decimal(x) : "it ends there" },
-  { name: "law", text: "losses", choices: LAWS },
-  { name: "loss", text: "their coefficient", low: -7, high: () => -0.5, ...power, told: x => x.toExponential(1) },
+  { name: "ell", text: N("aspect ratio ℓ"), low: 0, high: () => Math.sqrt(8), ...square, told: x => decimal(x, 3) },
+  { name: "theta", text: N("inclination θ"), low: 0.005, high: () => steep(), ...same, told: x => degrees(x, 2) },
+  { name: "rate", text: N("rate Ω√I₃"), low: 0, high: () => 4, ...same, told: x => rated(x) },
+  { name: "bore", text: N("bore"), low: 0, high: () => 1, ...same, told: x => decimal(x) },
+  { name: "fillet", text: N("fillet"), low: 0, high: () => isTube() ? Math.min(1 - s.bore, s.ell) : 1, ...same, told: x => decimal(x) },
+  ...Object.entries({ bottom: N("bottom"), top: N("top"), height: N("height") }).map(([name, text]) => ({ name, text, low: name === "height" ? 0.05 : 0, high: () => name === "height" ? 6 : 1, ...same, told: x => decimal(x) })),
+  { name: "kick", text: N("kick θ′"), low: -0.6, high: () => 0.6, ...same, told: x => decimal(x, 3) },
+  { name: "precession", text: N("centre’s circle"), low: -1, high: () => 1, ...same, told: () => Number.isFinite(s.precession) ? decimal(here.circle) + " R" : W("at rest") },
+  { name: "contact", text: N("table"), choices: { rolling: N("rubber: it rolls"), smooth: N("ice: no friction"), coulomb: N("dry friction μ"), viscous: N("wet: friction c u") } },
+  { name: "slope", text: N("slope"), low: 0, high: () => Math.PI / 4, ...same, told: x => x ? degrees(x) : W("level") },
+  { name: "phi0", text: N("leans to φ"), low: -Math.PI, high: () => Math.PI, ...same, told: x => degrees(x, 0) },
+  { name: "mu", text: N("friction μ"), low: 0, high: () => 1, ...same, told: x => decimal(x) },
+  { name: "patch", text: N("patch"), low: -4.2, high: () => Math.log10(0.5), to: x => x < -4 ? 0 : 10 ** x, from: x => x > 0 ? Math.log10(x) : -4.2, told: x => x > 0 ? sized() ? decimal(1e3 * s.radius * x, 3) + " mm" : decimal(x, 4) + " R" : W("a point") },
+  { name: "c", text: N("friction c"), low: 0, high: () => 1, ...same, told: x => decimal(x) },
+  { name: "restitution", text: N("bounce e"), low: -0.05, high: () => 1, to: x => x < 0 ? NaN : x, from: x => x >= 0 ? x : -0.05, told: x => x >= 0 ? decimal(x) : W("it ends there") },
+  { name: "law", text: N("losses"), choices: LAWS },
+  { name: "loss", text: N("their coefficient"), low: -7, high: () => -0.5, ...power, told: x => x.toExponential(1) },
 ];
 if (!rubs) {
   for (const law of ["coulomb", "viscous"]) delete KNOBS.find(knob => knob.name === "contact").choices[law];
@@ -30,11 +30,11 @@ if (!rubs) {
 const form = $("knobs");
 for (const knob of KNOBS) {
   const label = form.appendChild(document.createElement("label"));
-  label.append(Object.assign(document.createElement("span"), { textContent: knob.text }));
+  label.append(worded(document.createElement("span"), knob.text));
   knob.label = label;
   if (knob.choices) {
     knob.input = label.appendChild(document.createElement("select"));
-    for (const [value, text] of Object.entries(knob.choices)) knob.input.add(new Option(text, value));
+    for (const [value, text] of Object.entries(knob.choices)) knob.input.add(worded(new Option("", value), text));
     knob.input.onchange = () => change({ [knob.name]: knob.input.value }, { restart: true });
   } else {
     knob.input = label.appendChild(Object.assign(document.createElement("input"), { type: "range", step: "any", min: knob.low }));
@@ -83,7 +83,7 @@ function knobs() {
     if (knob.output.value !== text) knob.output.value = text;
     knob.input.setAttribute("aria-valuetext", text);
   }
-  map.ariaValueText = `aspect ratio ${decimal(s.ell)}, inclination ${degrees(s.theta)}`;
+  map.ariaValueText = W("aspect ratio {0}, inclination {1}", decimal(s.ell), degrees(s.theta));
 }
 
 // ---- the map
@@ -136,7 +136,7 @@ function scrub(e) {
   go(Math.min(tracked.last, Math.max(tracked.first, tracked.first + (tracked.last - tracked.first) * (x - span[0]) / (span[1] - span[0]))));
 }
 const SLOW = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
-for (const over of SLOW) $("slow").add(new Option(over === 1 ? "real time" : "slow 1/" + over, over));
+for (const over of SLOW) $("slow").add(over === 1 ? worded(new Option("", over), N("real time")) : worded(new Option("", over), N("slow 1/{0}"), over));
 $("slow").onchange = () => change({ slow: Number($("slow").value) });
 $("play").onclick = () => play(!playing);
 $("again").onclick = () => { go(0); play(true); };
@@ -152,20 +152,20 @@ function shuttered() {
   forget();
 }
 $("shutter").onchange = () => { if ($("shutter").value !== "0") { play_(false); } shuttered(); show(); };
-const play_ = yes => { playing = yes; $("play").textContent = yes ? "❚❚" : "▶"; $("play").ariaLabel = yes ? "pause" : "play"; };
+const play_ = yes => { playing = yes; $("play").textContent = yes ? "❚❚" : "▶"; $("play").ariaLabel = yes ? W("pause") : W("play"); };
 $("stop").onclick = stopped;
 function stopped() { if (exposing.shown < exposing.most) exposing.most = exposing.shown; else { $("shutter").value = "0"; shuttered(); } show(); }
 
 // ---- presets and the flick
 const presets = JSON.parse($("presets").textContent);
-$("preset").add(new Option("choose …", ""));
-for (const { name } of presets) $("preset").add(new Option(name, name));
+$("preset").add(worded(new Option("", ""), N("choose …")));
+for (const { name, word } of presets) $("preset").add(worded(new Option("", name), word));
 function scene(state, name = "") { change({ ...BLANK, ...state }, { restart: true, name }); play_(!still.matches); show(); }
 $("preset").onchange = () => { const found = presets.find(p => p.name === $("preset").value); if (found) scene(found.state, found.name); };
 // after too hard a flick the body hops, after too weak a one it lies on its side
 function flick(hard = 1) {
   const { code, out } = isTube() && s.ell > 0 ? ask("flick", 1.2 * hard * Math.max(1, s.ell), 80 * deg, 0.3, 0) : { code: 9 };
-  if (code) { $("because").textContent = "A flick needs a body with two ends: " + refusal(code); return; }
+  if (code) { $("because").textContent = W("A flick needs a body with two ends: {0}", refusal(code)); return; }
   const [theta, ...w] = out, patch = s.contact === "coulomb" ? s.patch : 0;
   scene({ ell: s.ell, bore: s.bore, fillet: s.fillet, radius: s.radius, mass: s.mass, gravity: s.gravity, slow: s.slow, theta, w: w.slice(0, 5), contact: s.contact === "viscous" ? s.contact : "coulomb", mu: s.mu, patch, c: s.c, restitution: patch > 0 ? NaN : s.restitution >= 0 ? s.restitution : 0.5, law: s.law, loss: s.loss, slope: s.slope, phi0: s.phi0 });
 }
@@ -201,7 +201,7 @@ addEventListener("keydown", e => {
 // ---- the legend, and the initial state
 for (const code of [7, 5, 6, 4, 1]) {
   const item = $("legend").appendChild(document.createElement("li"));
-  item.append(Object.assign(document.createElement("canvas"), { width: 34, height: 22 }), REGIONS[code].name);
+  item.append(Object.assign(document.createElement("canvas"), { width: 34, height: 22 }), worded(document.createElement("span"), REGIONS[code].name));
 }
 function legend() {
   const night = dusk.matches ? 1 : 0;
@@ -210,6 +210,8 @@ function legend() {
     for (let y = 0; y < 22; y++) for (let x = 0; x < 34; x++) { g.fillStyle = hatch(x / 1.3, y / 1.3) ? ink[night] : colour[night]; g.fillRect(x, y, 1, 1); }
   });
 }
+// another language: everything is written anew
+$("language").onchange = () => { speak($("language").value); chosen = language; play_(playing); knobs(); say(""); chart.key = ""; redrawn(); settled(); };
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 panelled(live);
 dusk.onchange = () => requestAnimationFrame(() => { legend(); redrawn(); }); // a notebook may hide its frames while it changes its theme
@@ -236,6 +238,20 @@ addEventListener("hashchange", e => {
 const first = parsed(location.hash);
 // an address that names a body is complete: the other numbers are defaults
 Object.assign(s, "ell" in first || first.height || first.stone ? BLANK : {}, first);
+const opening = { ...s };
+// everything as it was when the page opened: the body and its motion, the view, what is drawn, the time, and silence
+function reset() {
+  if (recorder) film();
+  if (audio) hear();
+  Object.assign(eye, { azimuth: -1.1, elevation: 0.55, zoom: 1 });
+  for (const box of document.querySelectorAll("#drawn input")) box.checked = box.defaultChecked;
+  $("shutter").value = "0";
+  scene(opening);
+  changed = null;
+  solve({ restart: true });
+  arrive(first);
+}
+$("reset").onclick = reset;
 held_ = true; // the first map is coarse
 if (!still.matches) play_(true);
 solve({ restart: true });
@@ -245,6 +261,7 @@ requestAnimationFrame(() => requestAnimationFrame(() => { legend(); new ResizeOb
 // for tests and notebooks
 Object.assign(window.spincyl, {
   state: () => ({ ...s }), set: (part, more = { restart: true }) => change(part, more), timing, at: () => now, head: () => head, here: () => here, body: () => body, ghosts: () => ghosts,
+  audio: () => audio, hits, heardAt,
   look: lookOf, pose: t => pose(live, t), rows: () => rows, map: () => ({ names: chart.names, widest: widest(), steep: steep() }), solve,
   tracked: () => tracked.rows, tracks: () => TRACKS.filter(track => track.zero).map(({ name, most, cut }) => ({ name, most, cut })),
   on: () => project(live, pose(live, now).centre, stage.clientWidth, stage.clientHeight),

@@ -4,17 +4,17 @@
 // for each code of the core: name, colour and colour of the hatching by day and by night, and whether a pixel
 // is hatched, in a pattern with a period of 72 pixels
 const REGIONS = {
-  7: { name: "stable", colour: ["#bfe0c8", "#1d4a35"], ink: ["#bfe0c8", "#1d4a35"], hatch: () => false },
-  5: { name: "stable because it rolls", colour: ["#ffe9a8", "#57460f"], ink: ["#c99a00", "#a5852a"], hatch: (x, y) => (x + y) % 9 < 1.2 },
-  6: { name: "stable on ice only", colour: ["#dfd2f5", "#3c2c63"], ink: ["#8d6cc9", "#8466c0"], hatch: (x, y) => (x - y + 72) % 9 < 1.2 },
-  4: { name: "unstable", colour: ["#f4bfae", "#6b2a1c"], ink: ["#cf6a4d", "#b3543c"], hatch: (x, y) => (x + y) % 9 < 1.1 || (x - y + 72) % 9 < 1.1 },
-  1: { name: "forbidden", colour: ["#dcd9d2", "#2b2e34"], ink: ["#a5a199", "#565c66"], hatch: (x, y) => x % 8 < 1.7 && y % 8 < 1.7 },
-  2: { name: "too close to decide", colour: ["#8f8b84", "#777d87"], ink: ["#8f8b84", "#777d87"], hatch: () => false },
-  0: { name: "no such body", colour: ["#f6f4ef", "#16181c"], ink: ["#d5d2ca", "#30343b"], hatch: (x, y) => y % 12 < 1 },
+  7: { name: N("stable"), colour: ["#bfe0c8", "#1d4a35"], ink: ["#bfe0c8", "#1d4a35"], hatch: () => false },
+  5: { name: N("stable because it rolls"), colour: ["#ffe9a8", "#57460f"], ink: ["#c99a00", "#a5852a"], hatch: (x, y) => (x + y) % 9 < 1.2 },
+  6: { name: N("stable on ice only"), colour: ["#dfd2f5", "#3c2c63"], ink: ["#8d6cc9", "#8466c0"], hatch: (x, y) => (x - y + 72) % 9 < 1.2 },
+  4: { name: N("unstable"), colour: ["#f4bfae", "#6b2a1c"], ink: ["#cf6a4d", "#b3543c"], hatch: (x, y) => (x + y) % 9 < 1.1 || (x - y + 72) % 9 < 1.1 },
+  1: { name: N("forbidden"), colour: ["#dcd9d2", "#2b2e34"], ink: ["#a5a199", "#565c66"], hatch: (x, y) => x % 8 < 1.7 && y % 8 < 1.7 },
+  2: { name: N("too close to decide"), colour: ["#8f8b84", "#777d87"], ink: ["#8f8b84", "#777d87"], hatch: () => false },
+  0: { name: N("no such body"), colour: ["#f6f4ef", "#16181c"], ink: ["#d5d2ca", "#30343b"], hatch: (x, y) => y % 12 < 1 },
 };
 // columns of `curves`: the aspect ratio, theta0, thetaInf, then `SOME` folds, ridges, and boundaries of two
 // kinds
-const SOME = 5, COLUMNS = 3 + 4 * SOME, LINES = [["θ₀", 1, 1], ["θ∞", 2, 1], ["fold", 3, SOME], ["ridge", 3 + SOME, SOME]];
+const SOME = 5, COLUMNS = 3 + 4 * SOME, LINES = [["θ₀", 1, 1], ["θ∞", 2, 1], ["fold", 3, SOME], ["ridge", 3 + SOME, SOME]], LINE = { fold: N("fold"), ridge: N("ridge") }, lineName = name => name in LINE ? W(LINE[name]) : name;
 const map = $("map"), chart = { picture: null, key: "", names: [], curves: [], codes: null };
 const rgba = text => (255 << 24 | parseInt(text.slice(5, 7), 16) << 16 | parseInt(text.slice(3, 5), 16) << 8 | parseInt(text.slice(1, 3), 16)) >>> 0;
 const widest = () => s.ell > 2.95 && isTube() ? 8 : 3;
@@ -117,7 +117,7 @@ function drawLines() {
   }
   g.setLineDash([]);
   for (const { code, size, x, y } of chart.names) if (size * h > 2 * em) {
-    const lines = size * h > 7 * em || code !== 5 ? [REGIONS[code].name] : ["stable", "because it rolls"], wide = 0.31 * em * Math.max(...lines.map(line => line.length));
+    const lines = size * h > 7 * em || code !== 5 ? [W(REGIONS[code].name)] : W("stable | because it rolls").split(" | "), wide = 0.31 * em * Math.max(...lines.map(line => line.length));
     if (size * h < wide) continue; // the legend below the map names a region that is too narrow
     const middle = Math.min(Math.max(w * x, wide), w - wide), top = Math.max(em, h * (1 - y) - 0.6 * em * (lines.length - 1));
     lines.forEach((line, i) => write(line, middle, top + 1.2 * em * i, "center", "600"));
@@ -126,13 +126,13 @@ function drawLines() {
   const most = steep() / deg;
   for (let a = most / 3; a < most - 1; a += most / 3) write(Math.round(a) + "°", 0.4 * em, h * (1 - a / most));
   if (isTube()) for (let x = 1; x < widest(); x += widest() > 4 ? 2 : 1) write(String(x), w * across(x), h - 0.8 * em, "center");
-  write(isTube() ? "ℓ →" : "this body", w - 0.5 * em, h - 0.8 * em, "right", "italic");
+  write(isTube() ? "ℓ →" : W("this body"), w - 0.5 * em, h - 0.8 * em, "right", "italic");
   write("↑ θ", 0.4 * em, 0.9 * em, "left", "italic");
   for (const [name, x, y] of ends.sort((a, b) => b[1] - a[1])) {
     const right = Math.max(3 * em, Math.min(x, w - 0.4 * em)), at = Math.max(2 * em, Math.min(h - 2.4 * em, y - 0.9 * em));
     if (used.some(([u, v, wide, other]) => Math.abs(u - right + em) < wide + 1.5 * em && Math.abs(v - at) < (other === name ? 5 : 1.7) * em)) continue;
     used.push([right - em, at, em, name]);
-    write(name, right, at, "right", "italic");
+    write(lineName(name), right, at, "right", "italic");
   }
 }
 

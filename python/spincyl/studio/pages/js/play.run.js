@@ -78,7 +78,7 @@ function frame(at) {
     if (drawing) draw(live, now, width / height);
     labels(p, width / ratio, height / ratio);
     drawCursor();
-    heard(p, row);
+    heard();
     const told = clocked(row);
     if (live.clock.value !== told) live.clock.value = told;
   } else {
@@ -92,7 +92,7 @@ function frame(at) {
   if (playing && seen || filming()) show();
 }
 // the phase, and in the air the height of the lower rim
-const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + (body.circles ? 0 : Math.min(0, 2 * body.ell * Math.cos(row[1])))); return kind ? `\n${KINDS[kind]}${kind === FLIES ? sized() ? ` ${decimal(100 * high * size(), 1)} cm high` : ` ${decimal(high)} R high` : ""}` : ""; };
+const phased = row => { const kind = row[OF_ROW.kind], high = Math.max(0, row[OF_ROW.height] + (body.circles ? 0 : Math.min(0, 2 * body.ell * Math.cos(row[1])))); return kind ? `\n${kind === FLIES ? W("flying {0} high", sized() ? `${decimal(1e3 * high * size(), 1)} mm` : `${decimal(high)} R`) : W(KINDS[kind])}` : ""; };
 function clocked(row) { return `t = ${timed(now, now < 100 ? 2 : 1)}\nθ = ${degrees(row[1])}${sloping(live)}${phased(row)}${live.over ? "\n" + ending() : ""}`; }
 function labels(p, width, height) {
   Object.assign(live.panel.style, { width: width + "px", height: height + "px" });
@@ -102,7 +102,7 @@ function play(yes) {
   playing = yes;
   if (yes) { before = null; $("shutter").value = "0"; shuttered(); if (lasting() && now >= head.lasts) { now = 0; look(0); drawChart(); } }
   $("play").textContent = yes ? "❚❚" : "▶";
-  $("play").ariaLabel = yes ? "pause" : "play";
+  $("play").ariaLabel = yes ? W("pause") : W("play");
   show();
 }
 function go(t) {

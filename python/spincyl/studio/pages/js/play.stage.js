@@ -6,6 +6,9 @@ const live = { shape: 0, slope: 0, ell: 1, first: 0, last: 1, label: "", usual: 
 live.before = live.after = { at: NaN, event: false };
 let now = 0, playing = false;
 
+// whether a rattleback is shown; the previous kind of body is, until a change has been solved
+const rattles = () => !!head?.kept;
+
 function placed(row) {
   const [, theta, w1, w2, w3, phi, psi, x, y] = row, [s, c] = [Math.sin(theta), Math.cos(theta)], [rim, ell, fillet] = body.circles?.[row[OF_ROW.turned]] || [1 - body.fillet, body.ell, body.fillet], out = rim * c - ell * s;
   const p = posed(live, theta, phi, psi, x + out * Math.cos(phi), y + out * Math.sin(phi), [w1, w2, w3]), lies = row[OF_ROW.kind] > FLIES, high = row[OF_ROW.height];

@@ -8,7 +8,7 @@ const RANGE = {
 };
 const CONTACTS = ["rolling", "smooth", "coulomb", "viscous"]; // in the order of the codes of the core
 // the loss laws in the order of the core, which Python tells: name and label
-const LAWS = Object.fromEntries(["none", ...JSON.parse(document.getElementById("laws").textContent)].map(name => [name, name.replaceAll("-", " ")]));
+const LAWS = Object.fromEntries([["none", N("none")], ...JSON.parse(document.getElementById("laws").textContent).map(name => [name, name.replaceAll("-", " ")])]);
 // i1 and i3 belong to a body that is not a tube, end is the inclination at which it lands, w is a state that is
 // not steady: w1, w2, w3 and the slip. radius, mass and gravity belong to a measured body, in metres,
 // kilograms and m/s^2. patch is the radius of the contact, in R. Without a restitution a motion ends where the body leaves the table. stone has the semi-axes of a rattleback in metres, twist is in radians and spin in
@@ -32,11 +32,12 @@ function address() {
     if (["mu", "patch"].includes(name) && s.contact !== "coulomb" || name === "c" && s.contact !== "viscous" || name === "restitution" && !rubbing() || name === "loss" && s.law === "none" || name === "phi0" && !s.slope) continue;
     words.push(`${name}=${typeof value === "string" ? value : Array.isArray(value) ? value.map(short).join(",") : short(value)}`);
   }
-  return "#" + (figure ? [`figure=${figure}`, ...words] : words).join("&");
+  return "#" + [...figure ? [`figure=${figure}`] : [], ...chosen ? [`language=${chosen}`] : [], ...words].join("&");
 }
 // the size of the body, if known: then times are shown in seconds, and rates also in hertz
 const size = () => s.stone ? Math.max(...s.stone) : s.radius, sized = () => Number.isFinite(size()), second = () => Math.sqrt(size() / s.gravity);
-const timed = (t, d = 2) => sized() ? `${decimal(t * second(), d + 1)} s` : `${decimal(t, d)} √(R/g)`;
+// seconds and milliseconds, with the same last digit
+const timed = (t, d = 2) => !sized() ? `${decimal(t, d)} √(R/g)` : Math.abs(t * second()) < 1 ? `${decimal(1e3 * t * second(), Math.max(0, d - 1))} ms` : `${decimal(t * second(), d + 1)} s`;
 const hertz = turning => turning / (TURN * second()), hertzOf = rate => hertz(rate / Math.sqrt(body.i3));
 // units of time per second at real speed; without a size, for a body with R = 1 cm
 const real = () => sized() ? 1 / second() : Math.sqrt(9.80665 / 0.01);
@@ -47,14 +48,14 @@ function parsed(hash) {
   const found = {};
   odd = [];
   for (const [name, text] of new URLSearchParams(hash.replace(/^#/, ""))) {
-    if (name === "figure") continue;
+    if (name === "figure" || name === "language") continue;
     const numbers = text.split(",").map(Number), [low, high] = RANGE[name] || [];
     if (name === "contact" ? CONTACTS.includes(text) : name === "law" && Object.hasOwn(LAWS, text)) found[name] = text;
     else if (name === "w" && numbers.length === 5 && numbers.every(Number.isFinite)) found.w = numbers;
     else if (name === "stone" && rubs && numbers.length === 3 && numbers.every(x => x > 1e-6 && x < 1e3)) found.stone = numbers;
     else if (low !== undefined && text !== "" && Number.isFinite(numbers[0])) {
       found[name] = Math.min(high, Math.max(low, numbers[0]));
-      if (found[name] !== numbers[0]) odd.push(`${name}=${text} (from ${short(low)} to ${short(high)}${["theta", "end"].includes(name) ? " radians" : ""})`);
+      if (found[name] !== numbers[0]) odd.push(`${name}=${text} (${short(low)} – ${short(high)}${["theta", "end"].includes(name) ? " rad" : ""})`);
     } else odd.push(`${name}=${text}`);
   }
   // addresses have few digits: an inclination next to a right angle becomes one

@@ -9,13 +9,13 @@ let stone = null;
 // a row: t, the six numbers of a pose and their rates, the spin, the upward components of axes 1 and 2, and N
 const spun = row => row[13] / second(), leaning = (row, k) => Math.asin(row[14 + k]) / deg;
 const lengthwise = () => stone.axes[0] < stone.axes[1] ? 1 : 0;
-const ROCKS = ["side to side", "end to end"]; // the slower mode first
+const ROCKS = [N("side to side"), N("end to end")]; // the slower mode first
 const SPUN = [
-  { name: "spin", unit: "", of: spun, colour: "omega", dash: [], both: true, least: 0.5, line: 0 },
-  { name: "end", unit: "°", of: row => leaning(row, lengthwise()), colour: "theta", dash: [], both: true, least: 0.05, line: 0 },
-  { name: "side", unit: "°", of: row => leaning(row, 1 - lengthwise()), colour: "normal", dash: [], both: true, least: 0.05, line: 0 },
+  { name: "spin", word: N("spin"), unit: "", of: spun, colour: "omega", dash: [], both: true, least: 0.5, line: 0 },
+  { name: "end", word: N("end"), unit: "°", of: row => leaning(row, lengthwise()), colour: "theta", dash: [], both: true, least: 0.05, line: 0 },
+  { name: "side", word: N("side"), unit: "°", of: row => leaning(row, 1 - lengthwise()), colour: "normal", dash: [], both: true, least: 0.05, line: 0 },
 ];
-Object.assign(MEANING, { spin: "angular velocity about the vertical, rad/s", end: "rocking " + ROCKS[1], side: "rocking " + ROCKS[0] });
+Object.assign(MEANING, { spin: N("angular velocity about the vertical, rad/s"), end: N("rocking end to end"), side: N("rocking side to side") });
 
 // half of the needle on its plane and of the stripe round the hull, as in `studio/stone_shape.py`
 function stoneMark(colour, end) {
@@ -34,7 +34,7 @@ const stoneLook = () => ({
   marks: [stoneMark(BLUE, 1), stoneMark(ORANGE, -1)],
 });
 
-const plainly = { begin, dress, windowed, look, rowAt, say, knobs, onBody, heard, clocked, flick, pose };
+const plainly = { begin, dress, windowed, look, rowAt, say, knobs, onBody, clocked, flick, pose };
 begin = () => {
   document.documentElement.toggleAttribute("data-stone", !!s.stone);
   TRACKS.splice(0, 3, ...s.stone ? SPUN : usual);
@@ -76,8 +76,6 @@ dress = () => {
   drawnBody = key;
   clothe(stoneLook());
 };
-// the previous kind of body is shown until a change has been solved
-const rattles = () => !!head?.kept;
 windowed = () => rattles() ? head.lasts : plainly.windowed();
 rowAt = t => rattles() ? null : plainly.rowAt(t);
 look = (first, many) => {
@@ -91,48 +89,51 @@ look = (first, many) => {
   ({ reach, half } = live);
 };
 onBody = e => !rattles() && plainly.onBody(e);
-heard = (p, row) => { if (row) plainly.heard(p, row); else if (audio) audio.loud.gain.value = 0; };
 flick = hard => { if (!s.stone) plainly.flick(hard); };
 const turning = x => (Number(Math.abs(x).toFixed(1)) === 0 ? "" : x < 0 ? "−" : "+") + Math.abs(x).toFixed(1);
 clocked = row => {
   if (row) return plainly.clocked(row);
   const past = head.back.filter(t => t <= now).at(-1);
-  return `t = ${timed(now, 1)}\nspin ${turning(pose(live, now).omega[2] / second())} rad/s${past === undefined ? "" : `\nturned back at ${timed(past, 1)}`}${live.over ? "\nit lifts off" : ""}`;
+  return `t = ${timed(now, 1)}\n${W("spin {0} rad/s", turning(pose(live, now).omega[2] / second()))}${past === undefined ? "" : "\n" + W("turned back at {0}", timed(past, 1))}${live.over ? "\n" + W("it lifts off") : ""}`;
 };
 
 // ---- text
-const senses = spin => spin < 0 ? "clockwise" : "counterclockwise";
+const senses = spin => spin < 0 ? W("clockwise") : W("counterclockwise");
 function turnsBack() {
-  const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = s.spin ? "Spun " + senses(s.spin) : "Not spun";
-  if (!(Math.max(slow, fast) > 1e-6)) return ["Nothing turns back", Math.abs(s.twist) < 1e-6 ? "At a twist of 0 its axes of inertia are those of its shape. No rocking grows, whichever way it is spun." : `${way}, no rocking grows.`];
-  const what = when === undefined ? `It does not turn back in ${SHOWN} s` : `It turns back after ${decimal(when * second(), 1)} s`;
+  const [slow, fast] = head.growth.map(x => x / second()), when = head.back[0], way = s.spin ? W("Spun {0}", senses(s.spin)) : W("Not spun");
+  if (!(Math.max(slow, fast) > 1e-6)) return [W("Nothing turns back"), Math.abs(s.twist) < 1e-6 ? W("At a twist of 0 its axes of inertia are those of its shape. No rocking grows, whichever way it is spun.") : W("{0}, no rocking grows.", way)];
+  const what = when === undefined ? W("It does not turn back in {0} s", SHOWN) : W("It turns back after {0} s", decimal(when * second(), 1));
   const name = fast > 0 ? 1 : 0, rate = decimal([slow, fast][name], Math.max(slow, fast) < 1 ? 2 : 1);
   return [what, name
-    ? `${way}, its rocking end to end grows at a rate of ${rate} per second. It takes up the energy of the spin, and then drives the stone the other way round.`
-    : `${way}, only its rocking from side to side grows, at a rate of ${rate} per second. That from end to end dies away; spun the other way, it grows ${decimal(-fast / slow, 1)} times as fast.`];
+    ? W("{0}, its rocking end to end grows at a rate of {1} per second. It takes up the energy of the spin, and then drives the stone the other way round.", way, rate)
+    : W("{0}, only its rocking from side to side grows, at a rate of {1} per second. That from end to end dies away; spun the other way, it grows {2} times as fast.", way, rate, decimal(-fast / slow, 1))];
 }
 say = on => {
   if (!s.stone) { plainly.say(on); return; }
-  const [what, why] = known() ? turnsBack() : ["No answer", body.why];
+  const [what, why] = known() ? turnsBack() : [W("No answer"), body.why];
   $("what").textContent = what;
-  $("because").textContent = why + (head?.ending ? ` At ${timed(head.ends, 1)} it lifts off.` : "");
+  $("because").textContent = why + (head?.ending ? " " + W("At {0} {1}.", timed(head.ends, 1), W("it lifts off")) : "");
   $("others").replaceChildren();
-  const told = odd.length ? [`not understood in the address: ${odd.join(", ")}`] : [];
+  const told = odd.length ? [W("not understood in the address: {0}", odd.join(", "))] : [];
   if (known()) {
-    for (const i of [1, 0]) told.push(`${ROCKS[i]} ${decimal(head.frequency[i] / (TURN * second()))} Hz, growth ${decimal(head.growth[i] / second())} per second`);
-    told.push(`half an ellipsoid, ${decimal(200 * Math.max(...s.stone), 1)} cm long`, `pushed by ${decimal(PUSH / deg)}° about both axes`);
-    told.push(head.error < 0.1 ? `error below ${head.error.toExponential(0)}` : "the last part is one of many possible motions");
+    for (const i of [1, 0]) told.push(W("{0} {1} Hz, growth {2} per second", W(ROCKS[i]), decimal(head.frequency[i] / (TURN * second())), decimal(head.growth[i] / second())));
+    told.push(W("half an ellipsoid, {0} mm long", decimal(2000 * Math.max(...s.stone), 0)), W("pushed by {0}° about both axes", decimal(PUSH / deg)));
+    told.push(head.error < 0.1 ? W("error below {0}", head.error.toExponential(0)) : W("the last part is one of many possible motions"));
   }
   $("details").textContent = told.map(x => x.replaceAll(" ", "\u00a0").replaceAll("-", "−")).join(" · ");
   clearTimeout(say.later);
-  say.later = setTimeout(() => { $("said").textContent = `${what}. ${why} Twist ${degrees(s.twist)}. ${$("details").textContent}`; }, 700);
+  say.later = setTimeout(() => { $("said").textContent = `${what}. ${why} ${W("twist {0}", degrees(s.twist))}. ${$("details").textContent}`; }, 700);
 };
 
 window.spincyl.stone = stoneLook; // for tests
 
+
 // ---- the slider and the buttons
-$("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span>twist of its mass against its shape</span><input type="range" id="twist" min="-6" max="6" step="0.1"><output aria-live="off"></output></label>
-<button type="button" id="clockwise">spin it ↻ clockwise</button><button type="button" id="counterclockwise">spin it ↺ counterclockwise</button></form>`);
+$("knobs").insertAdjacentHTML("afterend", `<form id="twirl" autocomplete="off"><label><span></span><input type="range" id="twist" min="-6" max="6" step="0.1"><output aria-live="off"></output></label>
+<button type="button" id="clockwise"></button><button type="button" id="counterclockwise"></button></form>`);
+worded($("twirl").querySelector("span"), N("twist of its mass against its shape"));
+worded($("clockwise"), N("spin it ↻ clockwise"));
+worded($("counterclockwise"), N("spin it ↺ counterclockwise"));
 $("twirl").onsubmit = () => false;
 $("twist").oninput = () => { held_ = true; change({ twist: $("twist").valueAsNumber * deg }); };
 for (const [way, sign] of [["clockwise", -1], ["counterclockwise", 1]]) $(way).onclick = () => { change({ spin: sign * (Math.abs(s.spin) || 5) }, { restart: true }); play(true); };
