@@ -80,7 +80,7 @@ fn a_ball_whose_slips_turn_back_loses_what_its_impacts_take_and_rolls_in_the_end
         if k % 5 == 0 {
             ask.losses = Losses::of(Law::AirLinear, 0.05);
         }
-        let times: Vec<f64> = (0..60).map(|k| f64::from(k)).collect();
+        let times: Vec<f64> = (0..60).map(f64::from).collect();
         let m = bounces(&ball, start, &ask, &times).unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {

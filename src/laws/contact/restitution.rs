@@ -97,7 +97,7 @@ mod tests {
     /// most two straight pieces (Routh 1860), for a slip u > 0 before.
     fn planar(law: ImpactLaw, [a, b, c]: [f64; 3], [u, lift]: [f64; 2], mu: f64, e: f64) -> [f64; 3] {
         let stops = if mu * a > b { u / (mu * a - b) } else { f64::INFINITY };
-        let push = if (b / a).abs() <= mu { -b / a } else { mu * b.signum() * -1.0 };
+        let push = if (b / a).abs() <= mu { -b / a } else { -(mu * b.signum()) };
         let first = c - mu * b;
         let second = c + push * b;
         let u_n = |p: f64| lift + first * p.min(stops) + second * (p - stops).max(0.0);
