@@ -188,10 +188,14 @@ def compared_with_recipe():
         for _ in range(3):
             for name, app in apps.items():
                 out = subprocess.run([app / "target/release/app"], capture_output=True, text=True, check=True)
-                least[name] = [min(old, float(new)) for old, new in zip(least[name], out.stdout.split(), strict=True)]
+                least[name] = [
+                    min(old, float(new)) for old, new in zip(least[name], out.stdout.split(), strict=True)
+                ]
         plain, better = least.values()
         for what, old, new in zip(("a survey", "single motions", "with hops"), plain, better, strict=True):
-            print(f"{what}: {old:.3f} s as cargo makes it, {new:.3f} s with the recipe: {old / new:.2f} times as fast")
+            print(
+                f"{what}: {old:.3f} s as cargo makes it, {new:.3f} s with the recipe: {old / new:.2f} times as fast"
+            )
 
 
 def program(folder, added):

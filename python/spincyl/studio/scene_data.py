@@ -36,8 +36,8 @@ _SYMBOLS = (
 )
 _SLIPS = "-mu N u/|u| at the contact point, where u is its velocity over the table"
 _RESTITUTION_IS = {
-    "Stronge": "its square is the share of the work of compression that the normal force gives back (Stronge);"
-    " null: nothing strikes the table",
+    "Stronge": "its square is the share of the work of compression that the normal force gives back"
+    " (Stronge); null: nothing strikes the table",
     "Newton": "the normal velocity after an impact is minus this times that before (Newton)",
     "Poisson": "the normal impulse after compression is this times that of compression (Poisson)",
     "Walton": "the normal velocity of the ball after an impact is minus this times that before, its slip"
