@@ -458,7 +458,7 @@ def measurements():
         ),
         "data.fit_motion": (
             sc.data.fit_motion,
-            {"guess": motion(), "measured": {"t": motion().t[:9], "theta": motion().theta[:9]}, "free": ["w1", "w3"], "errors": {"theta": 0.01}, "loss": "linear"},
+            {"guess": motion(), "measured": {"t": motion().t[:9], "theta": motion().theta[:9]}, "free": ["w1"], "errors": {"theta": 0.01}, "loss": "linear"},
         ),
         "data.fit_bounces": (
             sc.data.fit_bounces, {"t": [0.0, 1.0, 1.9, 2.71, 3.439], "sound": None, "error": None, "released": -0.55, "gravity": 9.81},

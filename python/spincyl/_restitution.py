@@ -1,6 +1,6 @@
 """Laws of restitution of an impact, for comparison with programs that have another one than Stronge's."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias
 
 from spincyl._input.equality import compared_by_value
@@ -139,6 +139,11 @@ def coefficient_of(restitution: Any) -> float:
     return float(restitution.e if isinstance(restitution, _ImpactLaw) else restitution)
 
 
+def with_coefficient(restitution: Restitution, e: float) -> Restitution:
+    """The same law with another coefficient of normal restitution."""
+    return replace(restitution, e=e) if isinstance(restitution, _ImpactLaw) else e
+
+
 def law_for_core(restitution: Any) -> tuple[str, float] | None:
     """The name of a law and its tangential restitution; None for that of a number."""
     if not isinstance(restitution, _ImpactLaw):
@@ -150,8 +155,8 @@ def restitution_as_words(restitution: Any) -> dict[str, float | str]:
     """The law as plain numbers and words, by name, for an attribute of a file."""
     if not isinstance(restitution, _ImpactLaw):
         return {} if restitution is None else {"restitution": restitution}
-    more = {"tangential": restitution.tangential} if isinstance(restitution, Walton) else {}
-    return {"restitution": restitution.e, "impact_law": type(restitution).__name__} | more
+    words: dict[str, float | str] = {"restitution": restitution.e, "impact_law": type(restitution).__name__}
+    return words | ({"tangential": restitution.tangential} if isinstance(restitution, Walton) else {})
 
 
 def restitution_from_words(words: Any) -> Restitution:

@@ -11,10 +11,13 @@ from spincyl._contact import Coulomb, Viscous
 from spincyl._loss import Loss, marked_as_si
 from spincyl._measured import in_si
 from spincyl._motion import Motion
+from spincyl._restitution import coefficient_of, with_coefficient
 from spincyl._scale import si_factor
 from spincyl.studio.shape import steepest
 
 _MOST = 1e6  #: Largest coefficient and angular velocity of the model.
+#: The range of a share.
+_SHARE = 0.0, 1.0
 
 
 class Number(NamedTuple):
@@ -63,8 +66,8 @@ def numbers_of_motion(guess: Motion) -> dict[str, Number]:
         if scale is not None:
             c = float(Viscous.from_si(1.0, scale=guess.body).c)
             found["c"] = found["c"]._replace(factor=1 / c, unit="s/m")
-    if m._asked.restitution is not None:
-        add("restitution", m._asked.restitution, 0.0, 1.0, 0.1, "1")
+    if (bounce := m._asked.restitution) is not None:
+        add("restitution", coefficient_of(bounce), *_SHARE, 0.1, "1")
     for law in () if m.losses is None else m.losses.laws:
         if law._function is None:
             factor, unit = law._printed(scale)
@@ -98,11 +101,14 @@ def with_numbers(guess: Motion, values: Mapping[str, float], times: "np.ndarray[
         contact = replace(contact, c=values["c"])
     if losses is not None:
         losses = _with_coefficients(losses, values)
+    restitution = asked.restitution
+    if "restitution" in values and restitution is not None:
+        restitution = with_coefficient(restitution, values["restitution"])
     asked = asked._replace(
         times=times,
         contact=contact,
         losses=losses,
-        restitution=values.get("restitution", asked.restitution),
+        restitution=restitution,
         t0=values.get("t0", asked.t0),
     )
     made = replace(m, start=start, contact=contact)._again(asked)

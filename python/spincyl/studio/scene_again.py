@@ -30,7 +30,7 @@ _AFTER = 1.001
 
 def natural_data(m: Motion) -> dict[str, Any]:
     """Body, start and options of a motion in natural units, whose time begins at 0."""
-    asked, stone = m._asked, isinstance(m.body, Ellipsoid)
+    asked, stone = m._asked, _is_stone(m.body)
     start: dict[str, Any] = {"state": _state_data(m.start), "slip": _slip(m), "time": 0.0, "aloft": None}
     if m.start.height is not None:
         start["aloft"] = [float(np.asarray(x)) for x in (m.start.height, m.start.lift)]
@@ -52,8 +52,12 @@ def natural_data(m: Motion) -> dict[str, Any]:
     return {"stone" if stone else "body": _body_data(m.body), "start": start, "ask": ask}
 
 
-def _body_data(body: Body | Ellipsoid) -> dict[str, Any]:
-    if isinstance(body, Ellipsoid):
+def _is_stone(body: Any) -> bool:
+    return bool(body._length == "a")  # that of a body is R
+
+
+def _body_data(body: Any) -> dict[str, Any]:
+    if _is_stone(body):
         end = float(body.theta_end)
         parts = {"axes": body.semi_axes, "inertia": body.inertia, "offset": body.offset}
         numbers = {name: np.asarray(part).tolist() for name, part in parts.items()}
@@ -67,28 +71,32 @@ def _body_data(body: Body | Ellipsoid) -> dict[str, Any]:
 
 
 def _state_data(state: Any) -> dict[str, Any]:
-    names = ("vertical", "w") if isinstance(state, EllipsoidState) else ("theta", "w1", "w2", "w3")
+    names = ("vertical", "w") if hasattr(state, "vertical") else ("theta", "w1", "w2", "w3")
     return {name: np.asarray(getattr(state, name), float).tolist() for name in names}
 
 
 def _slip(m: Motion) -> list[float]:
     """The initial slip; a body on its face has that with which its centre rests, unless it has its own."""
     slip = m.start.slip
-    if slip is None and not isinstance(m.body, Ellipsoid) and "slip" in m._extra and m.theta[0] in (0, np.pi):
+    if slip is None and not _is_stone(m.body) and "slip" in m._extra and m.theta[0] in (0, np.pi):
         slip = m._extra["slip"][0]
     return [0.0, 0.0] if slip is None else [float(x) for x in slip]
 
 
 def _table_data(contact: AnyContact, mu: float) -> Any:
     if isinstance(contact, Coulomb):
-        numbers = {"mu": float(contact.mu), "fixed": _number(contact.static), "patch": float(contact.patch)}
+        numbers = {
+            "mu": float(contact.mu),
+            "fixed": _finite_or_word(contact.static),
+            "patch": float(contact.patch),
+        }
         return {"Rubs": {"Coulomb": numbers}}
     if isinstance(contact, Viscous):
         return {"Rubs": {"Viscous": {"c": float(contact.c)}}}
-    return "Smooth" if contact == "smooth" else {"Rolling": {"mu": _number(mu)}}
+    return "Smooth" if contact == "smooth" else {"Rolling": {"mu": _finite_or_word(mu)}}
 
 
-def _number(x: Any) -> float | str:
+def _finite_or_word(x: Any) -> float | str:
     """A number, or the word for infinity, which JSON has not."""
     return float(x) if math.isfinite(x) else "inf"
 
@@ -100,7 +108,7 @@ def motion_of(data: dict[str, Any]) -> tuple[Motion, Scale]:
     units, natural = data["scale"], data["natural"]
     scale = Scale(units["R"], mass=units["M"], gravity=units["g"])
     start, ask = natural["start"], natural["ask"]
-    contact, mu = _contact(ask)
+    contact, mu = _natural_contact(ask)
     table = Table(
         ask.get("slope", 0.0), phi0=start.get("heading", 0.0), place=tuple(start.get("place", (0.0, 0.0)))
     )
@@ -108,7 +116,7 @@ def motion_of(data: dict[str, Any]) -> tuple[Motion, Scale]:
     by = {} if method == "Exact" else {"Tolerance": "tol", "Step": "step"}
     how = {by[name]: value for name, value in method.items()} if by else {}
     laws = [_law(name, value) for name, value in ask.get("losses", {}).items()]
-    body, known = _body(natural), data["expected"]
+    body, known = _natural_body(natural), data["expected"]
     times, ending = known["time"], known["ending"]
     if ending["kind"] != "DONE":  # a time after the end, which the motion does not reach
         times = [*times, _AFTER * max(ending["time"], times[-1])]
@@ -136,7 +144,7 @@ def _restitution(ask: dict[str, Any]) -> Restitution | None:
     return restitution_from_words({"restitution": e, "impact_law": name} | more)
 
 
-def _contact(ask: dict[str, Any]) -> tuple[AnyContact, float]:
+def _natural_contact(ask: dict[str, Any]) -> tuple[AnyContact, float]:
     table = ask.get("table", {"Rolling": {"mu": "inf"}})
     if table == "Smooth":
         return "smooth", math.inf
@@ -159,7 +167,7 @@ def _law(name: str, coefficient: float) -> Law:
     return law
 
 
-def _body(natural: dict[str, Any]) -> Body | Ellipsoid:
+def _natural_body(natural: dict[str, Any]) -> Body | Ellipsoid:
     if "stone" in natural:
         stone = natural["stone"]
         end = stone["theta_end"]
@@ -181,7 +189,7 @@ def _state(start: dict[str, Any], body: Body | Ellipsoid, contact: AnyContact) -
     height, lift = (None, None) if aloft is None else aloft
     slips = has_friction(contact) or aloft is not None
     slip = tuple(start.get("slip", (0.0, 0.0))) if slips else None
-    if isinstance(body, Ellipsoid):
+    if _is_stone(body):
         own = EllipsoidState(tuple(state["vertical"]), tuple(state["w"]), slip)
         return own if aloft is None else replace(own, height=height, lift=lift)
     return State(state["theta"], state["w1"], state["w2"], state["w3"], slip=slip, height=height, lift=lift)
