@@ -49,10 +49,10 @@ class Newton(_ImpactLaw):
     Examples
     --------
     >>> import spincyl as sc
-    >>> tube = sc.Body.tube(1.0)
-    >>> start = sc.dropped(tube, 1.0, 1.0)
+    >>> can = sc.Body.solid(1.0)
+    >>> start = sc.dropped(can, 1.0, 1.0)
     >>> law, contact = sc.Newton(0.5), sc.Coulomb(0.3)
-    >>> hit = sc.roll(tube, start, 1.5, contact=contact, restitution=law).impacts[0]
+    >>> hit = sc.roll(can, start, 1.5, contact=contact, restitution=law).impacts[0]
     >>> round(-hit.after.lift / hit.before.lift, 12)
     0.5
     """
