@@ -125,7 +125,7 @@ DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
             lambda: sc.data.fit_stop(MEASURED, sc.loss.DryContour, "20deg", ["7,2", "7,1"]),
             "seconds: .* a decimal point, not a comma, and no quotes: 7.2$",
         ),
-        (lambda: parts.ball(diameter="2cm", density="7.85g/cm3"), "density: expected a number in kg/m.3"),
+        (lambda: parts.ball(diameter="2cm", density="stel"), "density = 'stel': expected 'steel'"),
         (lambda: sc.assembled([]), "parts: expected at least one part, not an empty list$"),
         (
             lambda: sc.data.fit_losses(np.arange(8) / 10, np.full(8, 0.35), body=MEASURED),

@@ -12,7 +12,7 @@ SINCE = "2026-11-27T00:00:00Z"
 #: The largest picture of the docs has 480 kB.
 MOST_OF_A_FILE = 640_000
 #: The present tree has 13 MB.
-MOST_IN_ALL = 20_000_000
+MOST_IN_ALL = 21_000_000
 
 
 def git(*words, **how):

@@ -89,7 +89,7 @@ def test_the_lengths_of_a_stone_may_be_texts_and_all_of_them_are():
     assert sc.Ellipsoid.uniform(("3cm", "2cm", "1cm"), mass="15g").scale == sc.Scale(0.03, 0.015)
     with pytest.raises(ValueError, match=r"^half_length = 28.5: expected a text with a unit"):
         sc.Ellipsoid.egg("22mm", 28.5)
-    with pytest.raises(TypeError, match=r"^axes\[1\]: expected real numbers"):
+    with pytest.raises(TypeError, match=r"^semi_axes\[1\]: expected real numbers"):
         sc.Ellipsoid.uniform(("3cm", "wide", "1cm"))
     stone = sc.Ellipsoid.egg("22mm", "28.5mm")
     texts = sc.EllipsoidState.from_si((0, 0, 1), ("1rad/s", 0, "3rad/s"), slip=("1cm/s", 0.0), scale=stone)

@@ -69,12 +69,13 @@ def test_nothing_else_of_the_library_lists_the_laws():
         for path in (ROOT / folder).rglob(kind)
         if named(path.read_text("utf-8")) > len(LAWS) / 2
     }
-    assert listed == {"src/laws/loss/mod.rs", "python/spincyl/loss.py"}
+    # a scene tells the couple of each law in words
+    assert listed == {"src/laws/loss/mod.rs", "src/scene/filled.rs", "python/spincyl/loss.py"}
 
 
 def test_the_command_line_and_the_page_have_the_laws_in_the_order_of_the_core():
     typed = ["dry-contour", "viscous-contour", "rolling-resistance", "drilling"]
     typed += ["air-linear", "air-quadratic", "air-film", "boundary-layer"]
     assert [*_losses._NAMES] == typed and [*_losses._NAMES.values()] == [parameter for _, parameter in LAWS]
-    told = re.search(r"\[[^]]*boundary-layer[^]]*\]", play._body(True))
+    told = re.search(r"\[[^]]*boundary-layer[^]]*\]", "".join(play._body_and_script(True)))
     assert told and json.loads(told[0]) == typed

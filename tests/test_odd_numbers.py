@@ -126,7 +126,7 @@ def test_shapes_that_do_not_fit_are_told_with_their_names():
         (lambda: sc.Body.solid(np.ones(2), np.zeros(3)), r"ell \(2,\), fillet \(3,\)"),
         (lambda: STONES.growth_rates([1, 2, 3]), r"body \(2,\), spin \(3,\)"),
         (lambda: sc.State(1.0, 0.0, 0.0, [1.0, 2.0], slip=(np.ones(3), 0.0)), r"w3 \(2,\), slip\[0\] \(3,\)"),
-        (lambda: sc.Ellipsoid(np.ones((2, 3)), np.ones((3, 3, 3))), r"axes \(2,\), inertia \(3,\)"),
+        (lambda: sc.Ellipsoid(np.ones((2, 3)), np.ones((3, 3, 3))), r"semi_axes \(2,\), inertia \(3,\)"),
         (lambda: sc.drift(FAMILY, np.ones(3), sc.loss.AirLinear(1e-3)), r"body \(2,\), theta \(3,\)"),
         (lambda: sc.thrown(FAMILY, np.ones(3), 0.0), r"body \(2,\), velocity \(3,\)"),
         (

@@ -54,8 +54,7 @@ def test_a_save_that_fails_leaves_what_was_there_and_says_of_which_file(cramped,
 @pytest.mark.parametrize("name", JOBS)
 def test_a_process_that_is_killed_while_it_saves_leaves_what_was_there(cramped, name):
     folder, told = cramped[1]
-    # for a film the signal kills ffmpeg, which writes the file
-    assert told[name].startswith("film.mp4: ffmpeg: ended with code -" if name == "film.mp4" else "signal ")
+    assert told[name].startswith("signal ")
     assert told[name] != "signal 0" and (folder / name).read_text() == f"an older {name}"
 
 
@@ -300,6 +299,7 @@ ALLOWED = {
     ("cli/_output.py", "path.open('ab')"),
     ("studio/plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
     ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),
+    ("studio/sound.py", "wave.open(str(path), 'wb')"),  # the part of a sound, or a folder that goes with a film
 }
 
 
