@@ -113,7 +113,7 @@ def test_a_flick_is_written_in_every_way_that_a_motion_is(capsys, tmp_path):
     with np.load(tmp_path / "flick.npz") as found:
         assert str(found["contact"]) == "Coulomb(0.3)" and found["slip_across"].shape == found["t"].shape
     page = (tmp_path / "flick.html").read_text("utf-8")
-    assert '"phases":[[0.0,1],[' in page and '"speeds":"m/s"' in page
+    assert '"phases":[[0.0,1],[' in page and '"speeds":"mm/s"' in page
 
 
 def test_a_flicked_tube_that_loses_energy_sinks_back_to_its_side_and_its_account_is_kept(capsys, tmp_path):
