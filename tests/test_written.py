@@ -299,7 +299,10 @@ ALLOWED = {
     ("cli/_output.py", "path.open('ab')"),
     ("studio/plot/_style.py", "figure.savefig(made, format=path.suffix[1:].lower(), dpi=dpi)"),
     ("sweep/_save.py", "(store.marks / 'lock').open('ab')"),
-    ("studio/sound.py", "wave.open(str(path), 'wb')"),  # the part of a sound, or a folder that goes with a film
+    (
+        "studio/sound.py",
+        "wave.open(str(path), 'wb')",
+    ),  # the part of a sound, or a folder that goes with a film
 }
 
 
