@@ -33,6 +33,10 @@ def filmed(path):
     return shown(path, fps=5, size=(64, 64))
 
 
+def silent(path):
+    return shown(path, fps=5, size=(64, 64), sound=False)
+
+
 def heard(path):
     return motion().sound(path, scale=sc.Scale(0.01))
 
@@ -68,6 +72,7 @@ JOBS = {
     "play.html": lambda path: sc.play().save(path),
     "spin.glb": shown,
     "film.mp4": filmed,
+    "silent.mp4": silent,
     "film.gif": filmed,
     "whirr.wav": heard,
     "scene.json": scene,

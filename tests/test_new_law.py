@@ -69,8 +69,7 @@ def test_nothing_else_of_the_library_lists_the_laws():
         for path in (ROOT / folder).rglob(kind)
         if named(path.read_text("utf-8")) > len(LAWS) / 2
     }
-    # a scene tells the couple of each law in words
-    assert listed == {"src/laws/loss/mod.rs", "src/scene/filled.rs", "python/spincyl/loss.py"}
+    assert listed == {"src/laws/loss/mod.rs", "python/spincyl/loss.py"}
 
 
 def test_the_command_line_and_the_page_have_the_laws_in_the_order_of_the_core():

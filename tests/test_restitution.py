@@ -20,6 +20,10 @@ def hit_under(law):
         return sc.roll(STICK, LEANS, 0.01, contact=ROUGH, restitution=law).impacts[0]
 
 
+def turning(state):
+    return state.w if isinstance(state, sc.EllipsoidState) else (state.w1, state.w2, state.w3)
+
+
 def test_newtons_law_has_the_ratio_of_velocities_and_poissons_that_of_impulses():
     compressed = hit_under(0.0)
     for e in (0.2, 0.7, 1.0):
@@ -74,6 +78,48 @@ def test_laws_are_numbers_of_a_sweep_and_come_back_from_its_result():
         high = sc.State(1.0, 0.0, 0.0, 0.0, slip=(0.3, 0.1), height=1.0, lift=0.0)
         one = sc.roll(BALL, high, 3.0, contact=ROUGH, restitution=law)
         assert found["w3"][1] == pytest.approx(one.w[-1, 2], abs=1e-8)
+
+
+def test_a_sweep_has_the_motions_that_roll_has_under_every_law_from_any_start():
+    pytest.importorskip("xarray")
+    random = np.random.default_rng(712)
+    odd = np.array([0.0, 1e-300, -1e-16, 1e-8, -0.1, 0.3, 1.0])
+    for body, laws in (
+        (BALL, (sc.Newton(0.6), sc.Walton(0.6, tangential=0.4), sc.Walton(0.0, tangential=1.0))),
+        (sc.Body.solid(0.8), (sc.Newton(0.3), sc.Poisson(0.7))),
+        (sc.Ellipsoid.egg(1.0, 1.4), (sc.Newton(0.3), sc.Poisson(0.7))),
+    ):
+        for law in laws:
+            w, slip, (height, lift) = (random.choice(odd, (n, 12)) for n in (3, 2, 2))
+            if isinstance(body, sc.Body):
+                theta = random.uniform(0.2, 1.4, 12)
+                states = [
+                    sc.State(theta[i], *w[:, i], slip=slip[:, i], height=abs(height[i]), lift=lift[i])
+                    for i in range(12)
+                ]
+                many = sc.State(theta, *w, slip=tuple(slip), height=abs(height), lift=lift)
+            else:
+                up = random.normal(size=(3, 12))
+                up /= np.linalg.norm(up, axis=0)
+                states = [
+                    sc.EllipsoidState(up[:, i], w[:, i], slip=slip[:, i], height=abs(height[i]), lift=lift[i])
+                    for i in range(12)
+                ]
+                many = sc.EllipsoidState(up.T, w.T, slip=slip.T, height=abs(height), lift=lift)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                found = sc.sweep.roll(
+                    body, many, 2.0, contact=ROUGH, restitution=law, want=("final", "lost_in_impacts")
+                )
+                for i, state in enumerate(states):
+                    one = sc.roll(body, state, 2.0, contact=ROUGH, restitution=law)
+                    assert found["status"][i] == one.status, (law, state)
+                    lost = sum(hit.lost for hit in one.impacts)
+                    near = max(1e-8, 10 * one.error, 10 * float(found["error"][i]))
+                    assert abs(found["lost_in_impacts"][i] - lost) < near, (law, state)
+                    for k, name in enumerate(("w1", "w2", "w3")):
+                        end = one.w[-1, k] if one.event is None else turning(one.event.state)[k]
+                        assert abs(float(found[name][i]) - end) < near, (law, state, name, end)
 
 
 @pytest.mark.parametrize("law", [sc.Newton(0.5), sc.Poisson(0.25), sc.Walton(0.5, tangential=0.5)])

@@ -100,6 +100,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
     _measured: ClassVar[dict[str, float]] = {}  # the arguments of `from_metres`, for `__repr__`
     # of `parts.assembled`: name, form and numbers in R about the centre of mass
     _parts: ClassVar[tuple[tuple[str, int, tuple[float, ...]], ...]] = ()
+    _in_files: ClassVar[str] = "body"  # what it is called in files
     _single: ClassVar[bool] = False  # whether every field is a float: one body, not a family
 
     def __post_init__(self) -> None:

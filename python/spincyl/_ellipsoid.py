@@ -101,6 +101,7 @@ class Ellipsoid(StoneStarts):
     # whether a warning about the moments has been issued
     _doubted: bool = field(default=False, kw_only=True, repr=False, compare=False)
     _length: ClassVar[str] = "a"
+    _in_files: ClassVar[str] = "stone"  # what it is called in files
 
     def __post_init__(self) -> None:
         self._check_scale()

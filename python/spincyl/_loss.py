@@ -39,6 +39,7 @@ class LossRow(NamedTuple):
     printed: str  #: the unit in which the coefficient is printed; a text with it is what `from_si` takes
     exponents: tuple[float, float, float]  #: of metre, second and joule in the unit
     in_air: bool  #: whether the law acts on a body in the air
+    couple: str  #: in the file of a scene, with a coefficient in SI; `studio/scene_data.py` has the symbols
 
 
 #: The loss laws by the names of their coefficients, in the order of the core.
@@ -145,8 +146,6 @@ class Law(Loss):
     _sized: "Scale | bool" = False
     #: On the command line: a coefficient in natural units, one in SI, and the law in words.
     _example: ClassVar[tuple[str, str, str]]
-    #: The couple in the file of a scene, with a coefficient in SI; `studio/scene_data.py` has the symbols.
-    _couple_in_si: ClassVar[str]
 
     def __init__(self, coefficient: Reals) -> None:
         raise TypeError(

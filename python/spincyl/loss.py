@@ -97,7 +97,6 @@ class DryContour(Law):
 
     eps: Reals
     _example = "5e-3", "0.2mm", "dry friction along the rim"
-    _couple_in_si = "eps*N*A*sign(q)*h/s"
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
@@ -122,7 +121,6 @@ class ViscousContour(Law):
 
     c: Reals
     _example = "1e-3", "1e-6Nms", "the same, proportional to the speed of the contact point"
-    _couple_in_si = "c*A**2*q*h/s"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -155,7 +153,6 @@ class RollingResistance(Law):
 
     delta: Reals
     _example = "1e-3", "0.04mm", "rolling resistance: distance of the normal force ahead of the contact"
-    _couple_in_si = "-delta*N*t/norm(t)"
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
@@ -180,7 +177,6 @@ class Drilling(Law):
 
     length: Reals
     _example = "1e-3", "0.04mm", "friction against rotation about the vertical"
-    _couple_in_si = "-length*N*sign(w_n)*n"
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
@@ -202,7 +198,6 @@ class AirLinear(Law):
 
     b: Reals
     _example = "1e-4", "1e-7Nms", "air resistance proportional to the angular velocity"
-    _couple_in_si = "-b*w"
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
@@ -232,7 +227,6 @@ class AirQuadratic(Law):
 
     b2: Reals
     _example = "1e-5", "1e-9Nms2", "air resistance proportional to its square"
-    _couple_in_si = "-b2*norm(w)*w"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -266,7 +260,6 @@ class AirFilm(Law):
 
     viscosity: Reals
     _example = "1e-7", "18uPas", "thin film of air under the face: viscosity of the air"
-    _couple_in_si = "pi/4*viscosity*R**3*q*h/s**2"
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR_VISCOSITY, *, scale: Scale | Body) -> Self:
@@ -298,7 +291,6 @@ class BoundaryLayer(Law):
 
     k: Reals
     _example = "1e-6", "0.1C", "boundary layer of air under the face; C is a number of order 0.1"
-    _couple_in_si = "k*abs(q)**1.5*sign(q)*h/s"
 
     @classmethod
     def from_si(

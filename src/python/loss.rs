@@ -42,6 +42,8 @@ pub struct LossRow {
     exponents: [f64; 3],
     /// Whether the law also acts on a body in the air.
     in_air: bool,
+    /// The couple in the file of a scene.
+    couple: &'static str,
 }
 
 /// The rows of the table of loss laws, in its order.
@@ -50,7 +52,8 @@ pub fn loss_laws() -> Vec<LossRow> {
     let row = |law: &Law| {
         let ([measures, natural, si, printed], exponents) = (law.unit().texts(), law.unit().exponents());
         let (parameter, exponent, in_air) = (law.parameter(), law.exponent(), law.acts_in_air());
-        LossRow { parameter, exponent, measures, natural, si, printed, exponents, in_air }
+        let couple = law.couple_in_si();
+        LossRow { parameter, exponent, measures, natural, si, printed, exponents, in_air, couple }
     };
     Law::ALL.iter().map(row).collect()
 }

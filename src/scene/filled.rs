@@ -6,7 +6,6 @@ use super::outline::shape_of;
 use super::words::shortest;
 use super::{SceneError, VERSION};
 use crate::laws::contact::{Friction, ImpactLaw, Table};
-use crate::laws::loss::Law;
 use crate::laws::scale::Scale;
 use crate::motions::Ending;
 use crate::numbers::larger_or_nan;
@@ -29,20 +28,6 @@ const LEAST: f64 = 1e-11;
 const MU: [f64; 3] = [1.0, 1.5, 1e3];
 /// Number of intervals at whose ends the friction that rolling needs is looked at.
 const LOOKS: u32 = 4000;
-
-/// The couple of a law in the symbols of the file, with a coefficient in SI.
-fn couple_of(law: Law) -> &'static str {
-    match law {
-        Law::DryContour => "eps*N*A*sign(q)*h/s",
-        Law::ViscousContour => "c*A**2*q*h/s",
-        Law::RollingResistance => "-delta*N*t/norm(t)",
-        Law::Drilling => "-length*N*sign(w_n)*n",
-        Law::AirLinear => "-b*w",
-        Law::AirQuadratic => "-b2*norm(w)*w",
-        Law::AirFilm => "pi/4*viscosity*R**3*q*h/s**2",
-        Law::BoundaryLayer => "k*abs(q)**1.5*sign(q)*h/s",
-    }
-}
 
 fn reason(ending: Ending) -> &'static str {
     match ending {
@@ -158,7 +143,8 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
         Table::Rolling { mu } => {
             let needed = if ask.restitution.is_none() { needed(natural, last)? } else { f64::INFINITY };
             let [least, over, most] = MU;
-            let enough = (over * needed).max(least).min(most);
+            // What is unknown needs as much as can be.
+            let enough = if needed.is_nan() { most } else { (over * needed).max(least).min(most) };
             SceneFriction::Rolling {
                 mu: if mu.is_finite() { mu } else { enough },
                 needed: needed.is_finite().then_some(needed),
@@ -171,7 +157,7 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
         coefficient: law.parameter().into(),
         value: scale.coefficient_in_si(law, value),
         unit: law.unit().texts()[2].into(),
-        couple: couple_of(law).into(),
+        couple: law.couple_in_si().into(),
     });
     Ok(SceneTable {
         point: Point3::origin(),

@@ -18,6 +18,8 @@ use crate::numbers::larger_or_nan;
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+const UNTOLD: SceneError = SceneError::Motion("motion: its poses or forces are unknown at one of its times");
+
 /// The body or stone of a scene with its start and options, all in natural units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -125,16 +127,17 @@ impl Natural {
                 let ask = ask.with_pose(true).with_force(true);
                 let m = motion::roll_with(body, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
-                let rows = (0..m.states.len()).filter_map(|i| body_at(&m, body, &ask, i)).collect();
+                let rows: Option<_> = (0..m.states.len()).map(|i| body_at(&m, body, &ask, i)).collect();
                 let bounds = m.bounds(body);
-                told(m, rows, bounds, &ask)
+                told(m, rows.ok_or(UNTOLD)?, bounds, &ask)
             }
             Self::Stone { stone: of, start, ask } => {
                 let ask = ask.with_pose(true).with_force(true);
                 let m = stone::roll(of, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
-                let rows: Vec<Known> =
-                    (0..m.states.len()).filter_map(|i| stone_at(&m, of, &ask, i)).collect();
+                let rows: Option<Vec<Known>> =
+                    (0..m.states.len()).map(|i| stone_at(&m, of, &ask, i)).collect();
+                let rows = rows.ok_or(UNTOLD)?;
                 let most = |of: &dyn Fn(&Known) -> f64| rows.iter().map(of).fold(0.0, larger_or_nan);
                 let most = [
                     most(&|now| now.w.norm()),

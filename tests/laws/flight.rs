@@ -52,6 +52,17 @@ pub(crate) fn energy(body: &Body, y: &State, u: [f64; 3], height: f64) -> f64 {
     0.5 * (v.iter().map(|v| v * v).sum::<f64>() + turning) + rim(body, y.theta)[2] + height
 }
 
+/// Energy, heat, what losses have taken and what the impacts before have taken, at one of the times.
+pub(crate) fn account(body: &Body, m: &Motion, i: usize) -> f64 {
+    let path = m.path.as_ref().unwrap();
+    let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+    let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
+    energy(body, &m.states[i], [u, v, lift], height)
+        + path.dissipated[i]
+        + path.work_lost.get(i).unwrap_or(&0.0)
+        + before.map(|hit| hit.lost).sum::<f64>()
+}
+
 /// Body, start in the air, friction and restitution, at random.
 pub(crate) fn any_drop(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let body = match (5.0 * r()) as u8 {
@@ -78,14 +89,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_rim_is_ever_below_the_t
         let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(other_law(k)).with_pose(true);
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
-        let whole = |i: usize| {
-            let [u, v] = path.slip[i];
-            let [height, lift] = path.aloft[i];
-            let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
-            energy(&body, &m.states[i], [u, v, lift], height)
-                + path.dissipated[i]
-                + before.map(|hit| hit.lost).sum::<f64>()
-        };
+        let whole = |i: usize| account(&body, &m, i);
         for i in 0..m.times.len() {
             let off = (whole(i) - whole(0)).abs();
             assert!(off < 1e-12 * (1.0 + whole(0)), "{body:?} {start:?} {mu} {e}: {off:e}");

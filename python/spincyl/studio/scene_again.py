@@ -30,7 +30,7 @@ _AFTER = 1.001
 
 def natural_data(m: Motion) -> dict[str, Any]:
     """Body, start and options of a motion in natural units, whose time begins at 0."""
-    asked, stone = m._asked, _is_stone(m.body)
+    asked, kind = m._asked, m.body._in_files
     start: dict[str, Any] = {"state": _state_data(m.start), "slip": _slip(m), "time": 0.0, "aloft": None}
     if m.start.height is not None:
         start["aloft"] = [float(np.asarray(x)) for x in (m.start.height, m.start.lift)]
@@ -49,25 +49,26 @@ def natural_data(m: Motion) -> dict[str, Any]:
         ask["face"] = _NAMES[m.contact.face]
     if asked.table is not None:
         start["heading"], start["place"] = float(asked.table.phi0), [float(x) for x in asked.table.place]
-    return {"stone" if stone else "body": _body_data(m.body), "start": start, "ask": ask}
+    return {kind: _WRITERS[kind](m.body), "start": start, "ask": ask}
 
 
-def _is_stone(body: Any) -> bool:
-    return bool(body._length == "a")  # that of a body is R
+def _stone_data(stone: Any) -> dict[str, Any]:
+    end = float(stone.theta_end)
+    parts = {"axes": stone.semi_axes, "inertia": stone.inertia, "offset": stone.offset}
+    numbers = {name: np.asarray(part).tolist() for name, part in parts.items()}
+    return numbers | {"theta_end": math.pi if math.isnan(end) else end, "unit": 1.0}
 
 
 def _body_data(body: Any) -> dict[str, Any]:
-    if _is_stone(body):
-        end = float(body.theta_end)
-        parts = {"axes": body.semi_axes, "inertia": body.inertia, "offset": body.offset}
-        numbers = {name: np.asarray(part).tolist() for name, part in parts.items()}
-        return numbers | {"theta_end": math.pi if math.isnan(end) else end, "unit": 1.0}
     numbers = {name: float(getattr(body, name)) for name in ("ell", "i1", "i3", "fillet")}
     if body.rims is not None:
         circles = [{"radius": r, "depth": -z, "fillet": f} for r, z, f in body.circles.tolist()]
         first = circles[0]
         return numbers | {"ell": first["depth"], "fillet": first["fillet"], "circles": circles}
     return numbers if math.isnan(body.theta_end) else numbers | {"theta_end": float(body.theta_end)}
+
+
+_WRITERS = {"body": _body_data, "stone": _stone_data}
 
 
 def _state_data(state: Any) -> dict[str, Any]:
@@ -78,7 +79,7 @@ def _state_data(state: Any) -> dict[str, Any]:
 def _slip(m: Motion) -> list[float]:
     """The initial slip; a body on its face has that with which its centre rests, unless it has its own."""
     slip = m.start.slip
-    if slip is None and not _is_stone(m.body) and "slip" in m._extra and m.theta[0] in (0, np.pi):
+    if slip is None and m.body._in_files == "body" and "slip" in m._extra and m.theta[0] in (0, np.pi):
         slip = m._extra["slip"][0]
     return [0.0, 0.0] if slip is None else [float(x) for x in slip]
 
@@ -189,7 +190,7 @@ def _state(start: dict[str, Any], body: Body | Ellipsoid, contact: AnyContact) -
     height, lift = (None, None) if aloft is None else aloft
     slips = has_friction(contact) or aloft is not None
     slip = tuple(start.get("slip", (0.0, 0.0))) if slips else None
-    if _is_stone(body):
+    if "vertical" in state:
         own = EllipsoidState(tuple(state["vertical"]), tuple(state["w"]), slip)
         return own if aloft is None else replace(own, height=height, lift=lift)
     return State(state["theta"], state["w1"], state["w2"], state["w3"], slip=slip, height=height, lift=lift)

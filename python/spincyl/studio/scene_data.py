@@ -222,7 +222,9 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
     else:
         needed = math.inf if m._asked.restitution is not None else friction_needed(m, t0)
         least, over, most = _MU
-        mu = m._asked.mu if m._asked.mu < math.inf else min(max(least, over * needed), most)
+        # what is unknown needs as much as can be
+        enough = most if math.isnan(needed) else min(max(least, over * needed), most)
+        mu = m._asked.mu if m._asked.mu < math.inf else enough
         friction = {"law": "rolling", "mu": mu, "needed": needed, "force": _ROLLS}
     bounce = m._asked.restitution
     kind, tangential = law_for_core(bounce) or ("Stronge", 0.0)
@@ -232,7 +234,7 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         for x, power in zip((metre, second, joule), law._row.exponents, strict=True):
             value *= x**power
         told = {"law": type(law).__name__, "coefficient": law._parameter, "value": value}
-        losses.append(told | {"unit": law._row.si, "couple": law._couple_in_si})
+        losses.append(told | {"unit": law._row.si, "couple": law._row.couple})
     return {
         "point": [0.0, 0.0, 0.0],
         "normal": [0.0, 0.0, 1.0],

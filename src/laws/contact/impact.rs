@@ -181,19 +181,22 @@ impl ImpactCourse {
         let Some(Restored { number, value }) = self.restores else { return false };
         let left = value - self.work;
         let square = self.lift * self.lift + 2.0 * k * left;
-        // Friction may press the body down again before the work is done.
-        let end = if number == PUSHED {
-            value - self.impulse[2]
-        } else if number == LIFT && (k > 0.0 || most < f64::INFINITY) {
-            if k > 0.0 { (value - self.lift) / k } else { f64::INFINITY }
-        } else if number == LIFT {
-            -self.lift / k
-        } else if square < 0.0 && most < f64::INFINITY {
-            f64::INFINITY
-        } else if self.lift > 0.0 {
-            2.0 * left / (self.lift + square.max(0.0).sqrt())
-        } else {
-            (square.max(0.0).sqrt() - self.lift) / k
+        let end = match number {
+            PUSHED => value - self.impulse[2],
+            LIFT => (value - self.lift) / k,
+            _ if self.lift > 0.0 => 2.0 * left / (self.lift + square.max(0.0).sqrt()),
+            _ => (square.max(0.0).sqrt() - self.lift) / k,
+        };
+        // Friction may press the body down again before that.
+        let pressed = match number {
+            PUSHED => self.lift + k * end < 0.0,
+            LIFT => k <= 0.0,
+            _ => square < 0.0,
+        };
+        let end = match pressed {
+            true if most < f64::INFINITY => f64::INFINITY,
+            true if number != WORK => -self.lift / k,
+            _ => end,
         };
         self.moves(k, push, end.min(most));
         end <= most

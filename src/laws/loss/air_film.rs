@@ -16,6 +16,7 @@ pub(super) struct AirFilm;
 
 impl LossLaw for AirFilm {
     const PARAMETER: &str = "viscosity";
+    const COUPLE: &str = "pi/4*viscosity*R**3*q*h/s**2";
     const UNIT: Unit = Unit::Viscosity;
     const RESISTS: Resists = Resists::Contour;
     const NEEDS_FACE: bool = true;

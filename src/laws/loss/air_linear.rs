@@ -13,6 +13,7 @@ pub(super) struct AirLinear;
 
 impl LossLaw for AirLinear {
     const PARAMETER: &str = "b";
+    const COUPLE: &str = "-b*w";
     const UNIT: Unit = Unit::Damping;
     const RESISTS: Resists = Resists::All;
     const POWERS: EndPowers = EndPowers { face: [1.0; 2], balanced: 1.0, critical: 0.0, upright: 0.0 };

@@ -13,6 +13,7 @@ pub(super) struct AirQuadratic;
 
 impl LossLaw for AirQuadratic {
     const PARAMETER: &str = "b2";
+    const COUPLE: &str = "-b2*norm(w)*w";
     const UNIT: Unit = Unit::Drag;
     const RESISTS: Resists = Resists::All;
     const ROOT: Option<Speed> = Some(Speed::Whole);

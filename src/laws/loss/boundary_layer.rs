@@ -14,6 +14,7 @@ pub(super) struct BoundaryLayer;
 
 impl LossLaw for BoundaryLayer {
     const PARAMETER: &str = "k";
+    const COUPLE: &str = "k*abs(q)**1.5*sign(q)*h/s";
     const UNIT: Unit = Unit::Layer;
     const RESISTS: Resists = Resists::Contour;
     const NEEDS_FACE: bool = true;

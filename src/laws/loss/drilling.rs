@@ -15,6 +15,7 @@ pub(super) struct Drilling;
 
 impl LossLaw for Drilling {
     const PARAMETER: &str = "length";
+    const COUPLE: &str = "-length*N*sign(w_n)*n";
     const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Drilling;
     const PRESSES: bool = true;

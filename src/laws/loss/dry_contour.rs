@@ -15,6 +15,7 @@ pub(super) struct DryContour;
 
 impl LossLaw for DryContour {
     const PARAMETER: &str = "eps";
+    const COUPLE: &str = "eps*N*A*sign(q)*h/s";
     const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Contour;
     const PRESSES: bool = true;

@@ -92,6 +92,8 @@ pub(crate) struct EndPowers {
 pub(crate) trait LossLaw {
     /// The name of the coefficient.
     const PARAMETER: &'static str;
+    /// The couple in the symbols of the file of a scene, with the coefficient in SI.
+    const COUPLE: &'static str;
     /// The unit of the coefficient.
     const UNIT: Unit;
     /// The motion that the law resists.

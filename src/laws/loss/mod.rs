@@ -66,6 +66,12 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::PARAMETER,)+ }
             }
 
+            /// The couple of this law in the symbols of the file of a scene, with the coefficient in SI.
+            #[cfg(any(feature = "python", feature = "scene"))]
+            pub(crate) fn couple_in_si(self) -> &'static str {
+                match self { $(Self::$Law => $file::$Law::COUPLE,)+ }
+            }
+
             /// The unit of the coefficient of this law.
             pub(crate) const fn unit(self) -> Unit {
                 match self { $(Self::$Law => $file::$Law::UNIT,)+ }

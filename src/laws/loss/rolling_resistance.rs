@@ -17,6 +17,7 @@ pub(super) struct RollingResistance;
 
 impl LossLaw for RollingResistance {
     const PARAMETER: &str = "delta";
+    const COUPLE: &str = "-delta*N*t/norm(t)";
     const UNIT: Unit = Unit::Length;
     const RESISTS: Resists = Resists::Rolling;
     const PRESSES: bool = true;

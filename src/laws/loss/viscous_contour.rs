@@ -15,6 +15,7 @@ pub(super) struct ViscousContour;
 
 impl LossLaw for ViscousContour {
     const PARAMETER: &str = "c";
+    const COUPLE: &str = "c*A**2*q*h/s";
     const UNIT: Unit = Unit::Damping;
     const RESISTS: Resists = Resists::Contour;
     const POWERS: EndPowers = EndPowers { face: [-1.0; 2], balanced: 3.0, critical: 2.0, upright: 2.0 };
