@@ -11,13 +11,12 @@ last column is the least rate, in units of the true one, at which the narrow end
 half a turn: a search with steps of 0.025.
 """
 
-import argparse
 import re
 from itertools import count
-from pathlib import Path
 
 import mujoco
 import numpy as np
+import page_table
 
 import spincyl as sc
 
@@ -135,21 +134,5 @@ def table():
             ]
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--docs", metavar="PAGE", help="write the table into a page, below the comment")
-    args = parser.parse_args()
-    rows = []
-    for row in table():
-        rows.append("| " + " | ".join(row) + " |")
-        print(rows[-1], flush=True)
-    if args.docs:
-        page = Path(args.docs)
-        before, after = page.read_text(encoding="utf-8").split(MARK)
-        page.write_text(before + MARK + "\n".join(rows) + after[after.index("\n\n") :], encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    page_table.main(__doc__, MARK, table)

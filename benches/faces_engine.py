@@ -9,12 +9,11 @@ contacts whose time constant is two steps. The table has how far the centre, the
 time at which all is at rest are from those of spincyl.
 """
 
-import argparse
 import time
-from pathlib import Path
 
 import mujoco
 import numpy as np
+import page_table
 
 import spincyl as sc
 
@@ -163,21 +162,5 @@ def table():
         yield [case.name, "spincyl", "", "", "", "", "", "", f"{1e3 * own:.1f} ms"]
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--docs", metavar="PAGE", help="write the table into a page, below the comment")
-    args = parser.parse_args()
-    rows = []
-    for row in table():
-        rows.append("| " + " | ".join(row) + " |")
-        print(rows[-1], flush=True)
-    if args.docs:
-        page = Path(args.docs)
-        before, after = page.read_text(encoding="utf-8").split(MARK)
-        page.write_text(before + MARK + "\n".join(rows) + after[after.index("\n\n") :], encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    page_table.main(__doc__, MARK, table)

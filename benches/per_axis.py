@@ -8,10 +8,8 @@ cone limits the size of the friction, |F| <= mu N; the box limits each of its co
 |F_y| <= mu N, as engines do in which friction is two constraints of their own.
 """
 
-import argparse
-from pathlib import Path
-
 import numpy as np
+import page_table
 from scipy.spatial.transform import Rotation
 
 import spincyl as sc
@@ -105,21 +103,5 @@ def table():
             yield [name, "a box" if box else "a cone", *cells]
 
 
-def main():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--docs", metavar="PAGE", help="write the table into a page, below the comment")
-    args = parser.parse_args()
-    rows = []
-    for row in table():
-        rows.append("| " + " | ".join(row) + " |")
-        print(rows[-1], flush=True)
-    if args.docs:
-        page = Path(args.docs)
-        before, after = page.read_text(encoding="utf-8").split(MARK)
-        page.write_text(before + MARK + "\n".join(rows) + after[after.index("\n\n") :], encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    page_table.main(__doc__, MARK, table)
