@@ -91,7 +91,7 @@ class Impact(NamedTuple):
         `Motion.contact_force`.
     lost : float
         Energy lost in the impact, in M g R or J; with `stays` also that of the bounces that are summed.
-        Negative for an impact that has gained energy, which only the laws `Newton` and `Poisson` allow.
+        Negative for an impact that has gained energy, as it may under the law `Newton`.
     before : State or EllipsoidState
         State before the impact, with its slip and `lift` < 0. Its theta refers to the rim that lands; for a
         body of several circles always to its lower end.

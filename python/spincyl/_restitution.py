@@ -66,7 +66,7 @@ class Poisson(_ImpactLaw):
     """Poisson's law, for `restitution=`: the normal impulse after compression is e times that of compression.
 
     Compression ends where the normal velocity is zero; if friction presses the point down once more, at the
-    last zero. Everything else is as under `Newton`.
+    last zero. A motion under this law ends where a second circle or a face lands.
 
     Parameters
     ----------

@@ -6,9 +6,9 @@
 //! Walton    a ball: P_t = -(1 + e_t) u/a_h up to mu P_n, so that a slip that is gripped turns back to -e_t u
 //! ```
 //! All follow the same [impact](super::impact), and agree where e = 0, and for every ball with e_t = 0; the first three also where
-//! the slip keeps its direction. Where friction stops or turns it, Newton's and Poisson's laws may gain energy (Kane and
-//! Levinson, Dynamics (1985); Stronge 1990). Where friction presses the point down once more, Poisson's compression ends
-//! at the last zero of u_n.
+//! the slip keeps its direction. Where friction stops or turns it, Newton's law may gain energy (Kane and Levinson, Dynamics
+//! (1985); Stronge 1990). Where friction presses the point down once more, Poisson's compression ends at the last zero of
+//! u_n.
 //!
 //! Error: that of the impact.
 
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn planar_impacts_under_three_laws_consist_of_straight_pieces() {
-        let mut gains = [0; 2];
+        let mut gains = [0; 3];
         for k in 1..600 {
             let (mu, e) = (1.3 * part(k, 0), part(k, 1));
             let rim = [1.2 + 3.0 * part(k, 2), 4.0 * part(k, 3) - 2.0, 1.2 + 2.5 * part(k, 4)];
@@ -144,13 +144,10 @@ mod tests {
                 let off = [found.impulse[0] - known[0], found.impulse[2] - known[1], found.lift - known[2]];
                 let off = off.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
                 assert!(off < 1e-12 && found.impulse[1] == 0.0, "{law:?} {k} {off:e} {found:?} {known:?}");
-                if i > 0 && found.lost < -1e-6 {
-                    gains[i - 1] += 1;
-                }
-                assert!(i > 0 || found.lost > -1e-14, "{k} {found:?}");
+                gains[i] += usize::from(found.lost < -1e-13);
             }
         }
-        assert!(gains[0] > 5 && gains[1] == 0, "{gains:?}");
+        assert!(gains[0] == 0 && gains[1] > 5 && gains[2] == 0, "{gains:?}");
     }
 
     #[test]
@@ -174,10 +171,11 @@ mod tests {
                     x.hypot(y) <= mu * p * (1.0 + 1e-12) && p >= compressed.impulse[2] - 1e-12,
                     "{k} {found:?}"
                 );
+                assert!(law == Newton || found.lost > -1e-13, "{law:?} {k} {found:?}");
                 match law {
                     Newton => assert!((found.lift - e).abs() < 1e-11, "{k} {found:?}"),
                     Poisson => pressed += usize::from(p > (1.0 + e) * compressed.impulse[2] + 1e-9),
-                    _ => assert!(found.lost > -1e-13, "{k} {found:?}"),
+                    _ => {}
                 }
             }
         }

@@ -229,7 +229,7 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         Next::Own(Kind::Flying)
     }
 
-    /// Claims the energy that an impact has gained by its rounding errors: only other laws than Stronge's gain any.
+    /// Claims the energy that an impact has gained by its rounding errors, unless the law of restitution may give some.
     pub fn claims_no_gain(&mut self, lost: f64) {
         if self.ask.impact_law == ImpactLaw::Stronge {
             self.claims(-lost);
