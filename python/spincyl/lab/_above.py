@@ -17,7 +17,7 @@ from spincyl._input.numbers import Floats, number, reals, si, whole
 from spincyl._measured import sized_body
 from spincyl._scale import Scale
 from spincyl.lab._alias import Reading, Readings, read
-from spincyl.lab._columns import Columns
+from spincyl.lab._columns import Camera, Columns
 from spincyl.lab._filmed import Filmed
 from spincyl.lab._report import counted
 from spincyl.lab._tracker import read_tracker
@@ -134,7 +134,8 @@ def from_above(
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
-    first, second = (_positions(tracks, name) for name in _ends(tracks, ends))
+    names = _ends(tracks, ends)
+    first, second = (_positions(tracks, name) for name in names)
     t, marks, unseen = _both_ends(first, second)
     between = marks[:, 0] - marks[:, 1]
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
@@ -169,6 +170,7 @@ def from_above(
         mark_err=math.nan if mark_err is None else mark_err,
         ruler=ruler,
         window=window,
+        camera=_camera(tracks, names[0]),
     )
     told = _warning_of_uneven_turning(films.taken) or told
     if told:
@@ -264,6 +266,14 @@ def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
             raise ValueError(f"tracks[{name!r}]: expected columns of equal length; {key} has {values.shape}")
         found.append(values * units[unit])
     return found[0], found[1] + 1j * found[2]
+
+
+def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
+    """Axes and scale of a project, in pixels per metre; None for other tracks."""
+    columns = tracks[name]
+    if not isinstance(columns, Columns) or columns.camera is None:
+        return None
+    return columns.camera._replace(scale=columns.camera.scale / _METRES[columns.units["x"]])
 
 
 def _both_ends(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Any, int]:

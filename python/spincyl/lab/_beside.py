@@ -19,7 +19,7 @@ from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._upward import function_of_method
 from spincyl.lab._filmed import Filmed, slope, slopes
-from spincyl.lab._report import section, written
+from spincyl.lab._report import section
 from spincyl.lab._vary import in_units_of, with_numbers
 
 if TYPE_CHECKING:
@@ -45,8 +45,9 @@ class FilmComparison(NamedTuple):
         The film.
     computed : dict of ndarray, (n,)
         Outputs of the motion in each frame, as the film would show them: theta in radians, precession in
-        rad/s, x and y of the centre in metres; NaN before the start of the motion and after its end. The
-        precession is the slope of phi over the same frames and with the same weights as in the film.
+        rad/s, x and y of the centre in metres, and phi in radians; NaN before the start of the motion and
+        after its end. The precession is the slope of phi over the same frames and with the same weights as in
+        the film.
     residual : dict of ndarray, (n,)
         Measured minus computed values, in the same units.
     away : dict of ndarray, (n,)
@@ -89,12 +90,13 @@ class FilmComparison(NamedTuple):
         for name, (words, unit) in units.items():
             off = self.residual[name][np.isfinite(self.residual[name])] * factor[unit]
             if off.size:
-                mean = float(off.mean())
+                # the place is fitted, so that the mean of x and y is 0
+                mean = "" if name in ("x", "y") else f"mean {float(off.mean()):+.2g}, "
                 rms = math.sqrt(float(np.mean(off**2)))
                 far = float(np.nanmax(np.abs(self.away[name])))
-                told.append((words, f"mean {mean:+.2g}, rms {rms:.2g} {unit}, at most {far:.1f} errors"))
+                told.append((words, f"{mean}rms {rms:.2g} {unit}, at most {far:.1f} errors"))
         lines = section("Film beside a motion", rows) + section("Measured minus computed", told)
-        return "\n".join(lines + section("Chi-square", [(n, written(x)) for n, x in self.chi2.items()]))
+        return "\n".join(lines + section("Chi-square", [(n, f"{x:.3g}") for n, x in self.chi2.items()]))
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw inclination, precession and centre against time, measured and computed, on three axes."""
@@ -117,25 +119,15 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
         raise ValueError(
             f"theta: the marks of {film.t.size} frames do not give their errors; give from_above(mark_err=)"
         )
-    scale = motion.scale or film.scale
-    source = motion if "pose" in motion.natural._asked.want else motion.wanting("pose")
-    natural = film.t / float(scale.seconds(1.0))
-    inside = natural >= source.natural._asked.t0
-    if not inside.any():
+    if film.t[-1] < begin_of(motion, film):
         raise ValueError(f"theta: the film ends at {film.t[-1]:.4g} s, before the motion begins")
-    times = np.unique(np.r_[source.natural._asked.t0, natural[inside]])
-    m = with_numbers(source, {}, times).motion
-    rows = np.searchsorted(times, natural[inside])
-    rows, seen = rows[rows < m.t.size], np.flatnonzero(inside)[rows < m.t.size]
+    m, theta, phi, path = motion_at(motion, film, film.t)
+    seen = np.flatnonzero(np.isfinite(theta))
     if seen.size < 3:
         raise ValueError(
             f"body: the motion ends ({m.status}) after {seen.size} of the {film.t.size} frames;"
             " expected at least three"
         )
-    phi, theta = (np.full(film.t.size, np.nan) for _ in range(2))
-    path = np.full(film.t.size, complex(np.nan, np.nan))
-    phi[seen], theta[seen] = m.phi[rows], m.theta[rows]
-    path[seen] = scale.metres(1.0) * (m.centre[rows, 0] + 1j * m.centre[rows, 1])
     turned = float(np.sum(np.diff(phi[seen]))) * float(film.direction[seen[-1]] - film.direction[seen[0]])
     mirrored = turned < 0
     if mirrored:
@@ -148,6 +140,7 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
         "precession": slope(phi, slope_rows, weights),
         "x": path.real.copy(),
         "y": path.imag.copy(),
+        "phi": phi + phi0,
     }
     frames = film.frames
     residual = {name: frames[name] - computed[name] for name in _OUTPUTS}
@@ -161,6 +154,47 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
     point = float(place.real), float(place.imag)
     made = in_units_of(motion, m)
     return FilmComparison(made, film, computed, residual, away, chi2, phi0, point, mirrored)
+
+
+class At(NamedTuple):
+    """A motion at times of a film, NaN before its start and after its end."""
+
+    motion: Motion  #: in natural units
+    theta: Floats
+    phi: Floats
+    path: Any  #: of the centre, x + iy in metres
+
+
+def begin_of(motion: Motion, film: Filmed) -> float:
+    """Time in the film at which a motion begins, in seconds."""
+    scale = motion.scale or film.scale
+    return float(scale.seconds(motion.natural._asked.t0))
+
+
+def motion_at(motion: Motion, film: Filmed, seconds: Floats) -> At:
+    """A motion at ascending times of a film, with the axes and the origin of the motion."""
+    scale = motion.scale or film.scale
+    source = motion if "pose" in motion.natural._asked.want else motion.wanting("pose")
+    natural, begin = seconds / float(scale.seconds(1.0)), source.natural._asked.t0
+    inside = natural >= begin
+    times = np.unique(np.r_[begin, natural[inside]])
+    m = with_numbers(source, {}, times).motion
+    rows = np.searchsorted(times, natural[inside])
+    rows, seen = rows[rows < m.t.size], np.flatnonzero(inside)[rows < m.t.size]
+    phi, theta = (np.full(seconds.size, np.nan) for _ in range(2))
+    path = np.full(seconds.size, complex(np.nan, np.nan))
+    phi[seen], theta[seen] = m.phi[rows], m.theta[rows]
+    path[seen] = scale.metres(1.0) * (m.centre[rows, 0] + 1j * m.centre[rows, 1])
+    return At(m, theta, phi, path)
+
+
+def in_film(found: FilmComparison, seconds: Floats) -> At:
+    """The compared motion at other times, turned and moved into the film."""
+    at = motion_at(found.motion, found.film, seconds)
+    if found.mirrored:
+        at = at._replace(phi=-at.phi, path=at.path.conj())
+    path = complex(*found.place) + at.path * np.exp(1j * found.phi0)
+    return at._replace(phi=at.phi + found.phi0, path=path)
 
 
 def _placed(film: Filmed, phi: Floats, path: Any, error: Floats) -> tuple[float, complex]:

@@ -11,6 +11,7 @@ four neighbouring frames, with weights of unit norm, has the standard error of a
 
 import math
 from collections.abc import Sequence
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,9 +19,10 @@ import numpy as np
 from spincyl._body import Body
 from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats
+from spincyl._motion import Motion
 from spincyl._scale import Scale
 from spincyl._upward import function_of_method
-from spincyl.lab._columns import Columns
+from spincyl.lab._columns import Camera, Columns
 from spincyl.lab._report import section, variables, with_error
 
 if TYPE_CHECKING:
@@ -43,7 +45,7 @@ class Scatter(NamedTuple):
 class Filmed(NamedTuple):
     """A tube, measured in a film from above, as a whole and frame by frame; returned by `from_above`.
 
-    Methods: ``report()`` and ``plot()``.
+    Methods: ``report()``, ``plot()`` and ``over(motion)``.
 
     Attributes
     ----------
@@ -85,6 +87,8 @@ class Filmed(NamedTuple):
         Relative standard error of the film's scale of length, as given.
     window : int
         Number of frames whose directions give the precession in a frame, as given.
+    camera : Camera or None
+        Axes and scale of the Tracker project, in pixels and metres; None for other tracks.
     predicted : float
         The one of `inclinations` that is nearest to `theta`; NaN if there is none.
     frames : Columns
@@ -130,6 +134,7 @@ class Filmed(NamedTuple):
     mark_err: float = math.nan
     ruler: float = 0.0
     window: int = 5
+    camera: Camera | None = None
 
     @property
     def frames(self) -> Columns:
@@ -211,6 +216,63 @@ class Filmed(NamedTuple):
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw inclination, precession and centre against time, with error bars, on three axes."""
         drawn: list[Axes] = function_of_method("Filmed.plot")(self, axes)
+        return drawn
+
+    def over(
+        self,
+        motion: Motion,
+        frames: "np.ndarray[Any, Any] | str | PathLike[str] | None" = None,
+        *,
+        t: float | None = None,
+        first: int = 0,
+        fps: float | None = None,
+        camera: Sequence[float] | None = None,
+        ax: "Axes | None" = None,
+    ) -> "Axes":
+        """Draw a motion on a frame of the film, beside the marks.
+
+        The circles are the marks of one turn, filled in this frame. The lines are the outline of the computed
+        tube in this frame, and the computed paths of its ends during this turn; the crosses are its ends.
+
+        Parameters
+        ----------
+        motion : Motion
+            Motion as for `compare`, which turns and moves it into the film.
+        frames : array, path or None
+            Picture of the frame, an array of the shape (height, width) or (height, width, 3 or 4); or the
+            path of a picture or of a film. Default: an empty frame.
+        t : float, optional
+            Time in seconds; the nearest frame with both marks is drawn. Default: the first.
+        first : int
+            Number of the frame in the file that has the time 0, counted from 0; in Tracker the start frame.
+        fps : float, optional
+            Frames of the file per second of `t`, also if the file is played in slow motion. Default: from the
+            times of the marks, if each frame was tracked.
+        camera : sequence of four numbers, optional
+            Pixel x and y of the origin, from the upper left corner, pixels per metre, and angle of the x axis
+            in degrees, counterclockwise. Default: those of a Tracker project.
+        ax : matplotlib Axes, optional
+            Axes to draw on, in pixels. Default: new axes.
+
+        Returns
+        -------
+        Axes
+            The axes.
+
+        Raises
+        ------
+        ValueError
+            If the camera is not known, or the file has no such frame. As in `compare`.
+        TypeError
+            If an argument is of the wrong type; the message names it.
+        ImportError
+            If matplotlib, or for a film ffmpeg, is missing: install spincyl[film].
+        OSError
+            If a file cannot be read.
+        """
+        drawn: Axes = function_of_method("Filmed.over")(
+            self, motion, frames, t=t, first=first, fps=fps, camera=camera, ax=ax
+        )
         return drawn
 
 
