@@ -559,6 +559,6 @@ def offence(call, good, argument, value):
                 return None
             return f"{type(e).__name__}: {str(e)[:100]}"
         except Exception as e:
-            written = isinstance(e, OSError) and name in ("path", "tracks")
+            written = isinstance(e, OSError) and name in ("path", "tracks", "frames")
             return None if written else f"{type(e).__name__}: {str(e)[:100]}"
     return None

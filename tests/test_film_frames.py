@@ -107,15 +107,23 @@ def test_another_motion_is_many_errors_away_and_says_in_what():
 
 def test_frames_give_the_friction_of_a_film_by_fit_motion():
     true = nodding(FRAMES, rolls="0.5mm")
-    film = read(true, mark_err=PIXEL)
+    film = read(true, mark_err=PIXEL, turned=0.0)
     guess = nodding(FRAMES, rolls="0.3mm")
-    track = {name: film.frames[name] for name in ("t", "theta", "precession")}
-    errors = {name: film.errors[name] for name in ("theta", "precession")}
-    whole = np.isfinite(errors["precession"])
-    track, errors = ({k: v[whole] for k, v in x.items()} for x in (track, errors))
-    found = sc.data.fit_motion(guess, track, free=["DryContour"], errors=errors)
+    found = sc.data.fit_motion(guess, film.frames, free=["DryContour", "x", "y"], errors=film.errors)
     off = abs(found.values["DryContour"] - 0.5)
     assert off < 3 * found.errors["DryContour"] < 0.05
+    assert found.values["x"] == pytest.approx(0.12, abs=1e-3)
+    # a precession without an error, as beside a gap, has to be missing
+    gap = marked(true, turned=0.0)
+    gap["O"]["x"][20:27] = np.nan
+    with warnings.catch_warnings(action="ignore"):
+        lost = sc.data.from_above(gap, TUBE, mark_err=PIXEL)
+    assert np.isnan(lost.errors["precession"]).any()
+    again = sc.data.fit_motion(guess, lost.frames, free=["DryContour", "x", "y"], errors=lost.errors)
+    assert abs(again.values["DryContour"] - 0.5) < 3 * again.errors["DryContour"]
+    seen = lost.frames | {"precession": np.nan_to_num(lost.frames["precession"])}
+    with pytest.raises(ValueError, match=r"errors\['precession'\]: expected positive"):
+        sc.data.fit_motion(guess, dict(seen), free=["DryContour"], errors=lost.errors)
 
 
 def test_a_long_gap_has_no_precession_and_a_wild_mark_does_not_change_the_errors():

@@ -137,7 +137,7 @@ def _picture(frames: Any, index: int) -> Any:
             except Exception as e:  # Pillow raises errors of many kinds for a damaged file
                 raise ValueError(f"frames: {path} is not a picture: {e}") from None
         return pictures.imread(BytesIO(_frame_of_film(path, index)))
-    picture = np.asarray(frames)
+    picture = np.asarray(reals("frames", frames)) if not isinstance(frames, np.ndarray) else frames
     if picture.dtype.kind not in "uif" or not picture.size:
         raise TypeError(f"frames: expected an array of a picture, or a path, not {type(frames).__name__}")
     if picture.ndim not in (2, 3) or (picture.ndim == 3 and picture.shape[2] not in (3, 4)):
