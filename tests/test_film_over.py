@@ -152,3 +152,12 @@ def test_the_frame_of_a_film_is_found_by_its_number_also_in_slow_motion(tmp_path
         film().over(motion(), tmp_path / "text.mp4")
     with pytest.raises(OSError, match="no file"):
         film().over(motion(), tmp_path / "none.mp4")
+
+
+def test_a_tube_that_turns_clockwise_is_drawn_where_its_marks_are():
+    tracks = sc.data.read_tracker(sc.data.example("tube_from_above"))
+    turned = {name: {"t": x["t"], "x": x["x"], "y": -x["y"]} for name, x in tracks.items()}
+    other = sc.data.from_above(turned, TUBE)
+    for t in (0.02, 0.1):
+        shown = drawn(other.over(motion(), t=t, camera=(640, 360, 9000, 5)))
+        assert np.abs(shown["x"][0][:, None] - shown["o"][1][None]).max(axis=2).min(axis=1).max() < 6
