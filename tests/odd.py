@@ -90,6 +90,13 @@ def filmed():
 
 
 @cache
+def tube_motion():
+    """The motion of that film."""
+    tube, _ = filmed()
+    return sc.roll(tube, tube.steady(1.456), np.arange(34) / 240)
+
+
+@cache
 def heard():
     t, sound = sc.data.read_sound(sc.data.example("whirr"))
     return t[t.size // 2 :], sound[t.size // 2 :]
@@ -443,8 +450,9 @@ def measurements():
         ),
         "data.fit_losses of the precession": (sc.data.fit_losses, fits | {"precession": drift().precession(time), "theta": None}),
         "data.from_above": (
-            sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0},
+            sc.data.from_above, {"tracks": tracks, "tube": tube, "scale": None, "ends": None, "ruler": 0.0, "mark_err": None, "window": 5},
         ),
+        "data.compare of a film": (sc.data.compare, {"body": tube_motion(), "theta": sc.data.from_above(tracks, tube)}),
         "data.wobble": (sc.data.wobble, {"t": t, "sound": sound, "between": (2.0, 200.0)}),
         "data.example": (sc.data.example, {"name": "flicks"}),
         "data.Columns": (sc.data.Columns, {"columns": [("t", np.ones(2))]}),
@@ -488,6 +496,12 @@ def pictures(folder):
         "plot.drift": (sc.plot.drift, {"found": drift(), "ax": None}),
         "plot.flicks": (sc.plot.flicks, {"found": ends, "ax": None}),
         "plot.losses": (sc.plot.losses, {"found": lossfit(), "axes": None}),
+        "plot.film": (sc.plot.film, {"found": sc.data.from_above(*filmed()[::-1]), "axes": None}),
+        "data.Filmed.over": (
+            sc.data.from_above(*filmed()[::-1]).over,
+            {"motion": tube_motion(), "frames": None, "t": 0.05, "first": 0, "fps": 240.0, "camera": (640.0, 360.0, 9000.0, 5.0), "ax": None},
+        ),
+        "data.Filmed.plot": (sc.data.from_above(*filmed()[::-1]).plot, {"axes": None}),
         "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),
         "plot.exposure": (
             sc.plot.exposure,
@@ -545,6 +559,6 @@ def offence(call, good, argument, value):
                 return None
             return f"{type(e).__name__}: {str(e)[:100]}"
         except Exception as e:
-            written = isinstance(e, OSError) and name in ("path", "tracks")
+            written = isinstance(e, OSError) and name in ("path", "tracks", "frames")
             return None if written else f"{type(e).__name__}: {str(e)[:100]}"
     return None

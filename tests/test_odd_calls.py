@@ -24,7 +24,7 @@ MADE = {
         "custom", "data", "loss", "parts", "plot", "sweep",
     },
     "custom.": set(),
-    "data.": {"Bounces", "MotionFit", "Comparison", "Filmed", "FittedLoss", "FittedStop", "Line", "LossFit", "StopFit", "Wobble"},
+    "data.": {"Bounces", "MotionFit", "Comparison", "FilmComparison", "Filmed", "FittedLoss", "FittedStop", "Line", "LossFit", "StopFit", "Wobble"},
     "loss.": {"Loss"},
     "parts.": {"Part"},
     "plot.": {"Landmark"},
@@ -125,6 +125,7 @@ def results():
     return {
         "Wobble": sc.data.wobble(t, sound),
         "Filmed": sc.data.from_above(tracks, tube),
+        "FilmComparison": sc.data.compare(odd.tube_motion(), sc.data.from_above(tracks, tube)),
         "Comparison": sc.data.compare(odd.BODY, theta, odd.BODY.rate(theta)),
         "LossFit": fit,
         "FittedLoss": fit.best,

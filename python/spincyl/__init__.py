@@ -139,6 +139,9 @@ HOMES.update(
     {
         "Body.roll": ("spincyl._roll", "roll"),
         "Comparison.plot": ("spincyl.lab._figures", "comparison"),
+        "FilmComparison.plot": ("spincyl.lab._filmfigures", "film"),
+        "Filmed.over": ("spincyl.lab._over", "over"),
+        "Filmed.plot": ("spincyl.lab._filmfigures", "film"),
         "Drift.plot": ("spincyl.studio.plot._drift", "drift"),
         "LossFit.plot": ("spincyl.lab._figures", "losses"),
         "Motion.plot": ("spincyl.studio.plot._motions", "motion"),

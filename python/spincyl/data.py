@@ -1,11 +1,13 @@
 """Measured data: read tables and sound, and compare steady states and spin-downs with those of a body."""
 
-from spincyl.lab._above import Filmed, from_above
+from spincyl.lab._above import from_above
+from spincyl.lab._beside import FilmComparison
 from spincyl.lab._bounces import Bounces, fit_bounces
 from spincyl.lab._columns import Columns
 from spincyl.lab._compare import Comparison, compare
 from spincyl.lab._contents import MOST_BYTES as MOST_BYTES
 from spincyl.lab._examples import example
+from spincyl.lab._filmed import Filmed
 from spincyl.lab._line import Line
 from spincyl.lab._losses import fit_losses
 from spincyl.lab._lossfit import FittedLoss, LossFit
@@ -19,6 +21,7 @@ __all__ = [
     "Bounces",
     "Columns",
     "Comparison",
+    "FilmComparison",
     "Filmed",
     "FittedLoss",
     "FittedStop",

@@ -4,6 +4,7 @@ Most functions draw on the axes `ax=`, or on new ones, and return the axes; none
 """
 
 from spincyl.lab._figures import comparison, losses
+from spincyl.lab._filmfigures import film
 from spincyl.studio.plot._drift import drift
 from spincyl.studio.plot._figures import figures
 from spincyl.studio.plot._flicks import flicks
@@ -19,6 +20,7 @@ __all__ = [
     "energy",
     "exposure",
     "figures",
+    "film",
     "flicks",
     "frame",
     "landmarks",

@@ -9,18 +9,17 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from spincyl._body import Body
-from spincyl._input.equality import compared_by_value
-from spincyl._input.numbers import Floats, number, reals
+from spincyl._input.numbers import Floats, number, reals, si, whole
 from spincyl._measured import sized_body
 from spincyl._scale import Scale
 from spincyl.lab._alias import Reading, Readings, read
-from spincyl.lab._columns import Columns
-from spincyl.lab._report import counted, section, variables, with_error
+from spincyl.lab._columns import Camera, Columns
+from spincyl.lab._filmed import Filmed
+from spincyl.lab._report import counted
 from spincyl.lab._tracker import read_tracker
 
 _METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
@@ -33,98 +32,6 @@ _FARTHEST = 1e12  # metres or seconds: larger numbers raise an error
 _LARGEST_WANDER = 0.3  # radians: a direction that deviates more from uniform rotation causes a warning
 
 
-@compared_by_value
-class Filmed(NamedTuple):
-    """Steady state of a tube, measured in a film from above; returned by `from_above`.
-
-    Method: ``report()``.
-
-    Attributes
-    ----------
-    body : Body
-        The tube.
-    scale : Scale
-        Size of the tube.
-    t : ndarray, (n,)
-        Times of the frames in which both ends were tracked, in seconds, ascending.
-    direction : ndarray, (n,)
-        Direction of the line from the second end of the tube to the first, as seen from above, in radians,
-        unwrapped.
-    line : ndarray, (n,)
-        Length of this line in the film, in metres.
-    hertz : float
-        Turns per second, positive for both senses of rotation.
-    hertz_err : float
-        Standard error of `hertz`.
-    rate : float
-        Reduced rate.
-    rate_err : float
-        Standard error of `rate`.
-    theta : float
-        Measured inclination, in radians; NaN if the line is longer than the tube.
-    theta_err : float
-        Standard error of `theta`.
-    inclinations : ndarray, (k,)
-        Steady inclinations of the body at this rate, ascending.
-    unseen : int
-        Number of frames in which one of the ends was not tracked.
-    aliases : ndarray, (m,)
-        Turns per second of other rates that look the same from frame to frame, and for which the measured
-        inclination is steady as well; empty if the film is unambiguous.
-    predicted : float
-        The one of `inclinations` that is nearest to `theta`; NaN if there is none.
-    """
-
-    body: Body
-    scale: Scale
-    t: Floats
-    direction: Floats
-    line: Floats
-    hertz: float
-    hertz_err: float
-    rate: float
-    rate_err: float
-    theta: float
-    theta_err: float
-    inclinations: Floats
-    unseen: int
-    aliases: Floats
-
-    @property
-    def predicted(self) -> float:
-        """Steady inclination at this rate that is nearest to the measured one; NaN if there is none."""
-        if not self.inclinations.size:
-            return math.nan
-        near = math.pi / 2 if math.isnan(self.theta) else self.theta
-        return float(self.inclinations[np.abs(self.inclinations - near).argmin()])
-
-    def report(self) -> str:
-        """Return the measured values with their errors, and the steady inclination, in lmfit's style."""
-        turns = float(np.ptp(self.direction)) / (2 * math.pi)
-        rows = [
-            ("body", repr(self.body)),
-            ("frames", f"{self.t.size}, and {self.unseen} more in which an end was not found"),
-            ("film", f"{turns:.3g} turns in {float(np.ptp(self.t)):.4g} s"),
-        ]
-        degrees = [math.degrees(x) for x in (self.theta, self.theta_err, self.predicted)]
-        told = "(this rate has no steady state)" if math.isnan(degrees[2]) else f"(steady: {degrees[2]:.2f})"
-        found = variables(
-            [
-                ("turns per second", self.hertz, self.hertz_err, ""),
-                ("reduced rate", self.rate, self.rate_err, ""),
-                ("inclination, degrees", degrees[0], degrees[1], told),
-            ]
-        )
-        return "\n".join(section("Film from above", rows) + found)
-
-    def __repr__(self) -> str:
-        theta, theta_err, predicted = map(math.degrees, (self.theta, self.theta_err, self.predicted))
-        return (
-            f"<Filmed: {with_error(self.hertz, self.hertz_err)} turns a second,"
-            f" {with_error(theta, theta_err)} degrees, steady at {predicted:.3g}; {self.t.size} frames>"
-        )
-
-
 def from_above(
     tracks: Mapping[str, Any] | str | PathLike[str],
     tube: Any,
@@ -132,9 +39,14 @@ def from_above(
     scale: Scale | None = None,
     ends: Sequence[str] | None = None,
     ruler: float = 0.0,
+    mark_err: float | str | None = None,
+    window: int = 5,
     encoding: str | None = None,
 ) -> Filmed:
     """Measure the rate and inclination of a tube whose two ends were tracked in a film from straight above.
+
+    The result has the steady rate and inclination, and the inclination, the precession and the centre in each
+    frame.
 
     Parameters
     ----------
@@ -152,13 +64,20 @@ def from_above(
     ruler : float
         Relative standard error of the film's scale of length; 0.01 means one per cent. Near 90 degrees this
         error limits the accuracy of the inclination.
+    mark_err : float or str, optional
+        Standard error of each coordinate of a mark, in metres, or with a unit as in "0.3mm". It determines
+        the errors of single frames. Default: estimated from the scatter of the marks.
+    window : int
+        Number of neighbouring frames, at least 3, whose directions give the precession in a frame. More
+        frames give a smaller error, but average over faster changes.
     encoding : str, optional
         Encoding of the file, as in `read_table`.
 
     Returns
     -------
     Filmed
-        ``.report()`` summarises the measurement; `compare` takes ``theta``, ``rate`` and their errors.
+        ``.report()`` summarises the measurement, ``.plot()`` draws it; `compare` takes ``theta``, ``rate``
+        and their errors, or the whole film beside a motion.
 
     Raises
     ------
@@ -191,6 +110,9 @@ def from_above(
     this rate is taken, with a warning. Uneven times of the frames also exclude rates. The inclination can
     decide only as well as its error is known: give `ruler`.
 
+    The camera is taken to be far away. At a distance D from the table, a mark at the height z seems to be
+    farther from the middle of the picture by the factor 1 / (1 - z / D), which is not corrected.
+
     Examples
     --------
     >>> import spincyl as sc
@@ -200,6 +122,11 @@ def from_above(
     <Filmed: 7.2936 +- 0.0018 turns a second, 82.98 +- 0.30 degrees, steady at 83.4; 32 frames>
     """
     body, scale = sized_body("tube", tube, scale)
+    window = whole("window", window, 3, 1001)
+    if mark_err is not None:
+        mark_err = number("mark_err", si("mark_err", mark_err, "metre"))
+        if not 0 < mark_err < math.inf:
+            raise ValueError(f"mark_err = {mark_err!r}: expected a positive number, in metres")
     ruler = number("ruler", ruler)
     if not 0 <= ruler < 0.5:
         raise ValueError(f"ruler = {ruler!r}: expected at least 0 and less than 0.5; 0.01 means one per cent")
@@ -207,8 +134,10 @@ def from_above(
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
-    first, second = (_positions(tracks, name) for name in _ends(tracks, ends))
-    t, between, unseen = _line_between_ends(first, second)
+    names = _ends(tracks, ends)
+    first, second = (_positions(tracks, name) for name in names)
+    t, marks, unseen = _both_ends(first, second)
+    between = marks[:, 0] - marks[:, 1]
     tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
     line = np.abs(between)
     share, share_err = _sine_of_inclination(line / tall, ruler)
@@ -237,6 +166,11 @@ def from_above(
         inclinations=inclinations,
         unseen=unseen,
         aliases=np.array([other.hertz for other in films.possible if other is not films.taken]),
+        marks=np.stack([marks.real, marks.imag], axis=-1),
+        mark_err=math.nan if mark_err is None else mark_err,
+        ruler=ruler,
+        window=window,
+        camera=_camera(tracks, names[0]),
     )
     told = _warning_of_uneven_turning(films.taken) or told
     if told:
@@ -334,25 +268,31 @@ def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     return found[0], found[1] + 1j * found[2]
 
 
-def _line_between_ends(
-    first: tuple[Floats, Floats], second: tuple[Floats, Floats]
-) -> tuple[Floats, Floats, int]:
-    """Ascending times, the vector from the second end to the first, and the number of rows that lack one."""
+def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
+    """Axes and scale of a project, in pixels per metre; None for other tracks."""
+    columns = tracks[name]
+    if not isinstance(columns, Columns) or columns.camera is None:
+        return None
+    return columns.camera._replace(scale=columns.camera.scale / _METRES[columns.units["x"]])
+
+
+def _both_ends(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Any, int]:
+    """Ascending times, positions x + iy of both ends, (n, 2), and the number of rows that lack one."""
     (t, one), (s, two) = (_in_order_of_time(*track) for track in (first, second))
     # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
     _, rows, others = np.intersect1d(np.round(t / fine), np.round(s / fine), return_indices=True)
-    t, between = t[rows], one[rows] - two[others]
-    seen = np.isfinite(between)
-    t, between = t[seen], between[seen]
+    t, marks = t[rows], np.column_stack([one[rows], two[others]])
+    seen = np.isfinite(marks).all(axis=1)
+    t, marks = t[seen], marks[seen]
     unseen = max(len(one), len(two)) - t.size
     if t.size < 3:
         rest = f"; in {unseen} rows an end was not found" if unseen else ""
         many = counted(t.size)
         raise ValueError(f"tracks: expected at least three frames with both ends, not {many}{rest}")
-    if not (np.abs(between) > 0).all():
+    if (marks[:, 0] == marks[:, 1]).any():
         raise ValueError("tracks: both ends are at the same place; are these two tracks of the same mark?")
-    return t, between, unseen
+    return t, marks, unseen
 
 
 def _in_order_of_time(t: Floats, place: Floats) -> tuple[Floats, Floats]:

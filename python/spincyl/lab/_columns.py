@@ -1,8 +1,12 @@
 """Columns of a table, whose names in the file contain their units."""
 
+import cmath
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from spincyl._input.equality import equality_key
 from spincyl._input.numbers import Floats
@@ -45,6 +49,20 @@ def cleaned(name: str) -> tuple[str, str]:
     return (name.strip(), unit.strip()) if stroke and unit.strip().lower() in UNITS else (bare, "")
 
 
+class Camera(NamedTuple):
+    """Axes and scale of a film: where a point of the table is in the picture."""
+
+    x: float  #: pixel at the origin, to the right from the upper left corner
+    y: float  #: the same, down
+    scale: float  #: pixels per unit of length
+    degrees: float  #: angle of the x axis, counterclockwise
+
+    def pixels(self, place: Any) -> Any:
+        """Pixels x + iy, downward, of places x + iy."""
+        flat = self.scale * place * cmath.exp(1j * math.radians(self.degrees))
+        return complex(self.x, self.y) + np.conj(flat)
+
+
 class Columns(dict[str, Floats]):
     """Dict of columns of numbers; each has two keys, its name without the unit and its full name in the file.
 
@@ -55,7 +73,13 @@ class Columns(dict[str, Floats]):
         are not converted.
     texts : dict
         Columns of text, such as the names of students: tuples of str, as long as the columns of numbers.
+    camera : Camera or None
+        For a track of a Tracker project with fixed axes: the pixel at the origin (x to the right and y
+        down from the upper left corner), the pixels per unit of length, and the angle of the x axis in
+        degrees, counterclockwise.
     """
+
+    camera: "Camera | None" = None
 
     def __init__(
         self,

@@ -3,7 +3,7 @@
 import math
 import re
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 
@@ -11,11 +11,14 @@ from spincyl._body import Body
 from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, Reals, number, optional_library, reals, turns_per_second
 from spincyl._measured import sized_body
+from spincyl._motion import Motion
 from spincyl._single import one_body
 from spincyl._upward import function_of_method
-from spincyl.lab._balance import Balance, Fit, with_ratio
+from spincyl.lab._balance import Balance, doubts_of_ratio, with_ratio
+from spincyl.lab._beside import FilmComparison, beside
+from spincyl.lab._filmed import Filmed
 from spincyl.lab._points import LEAST, points
-from spincyl.lab._report import counted, section, student, variables, with_error, written
+from spincyl.lab._report import counted, section, variables, with_error, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -210,6 +213,9 @@ class Comparison(NamedTuple):
         return [*rows, ("verdict", self._verdict)]
 
 
+@overload
+def compare(body: Motion, theta: Filmed) -> FilmComparison: ...
+@overload
 def compare(
     body: Body,
     theta: Reals,
@@ -220,14 +226,29 @@ def compare(
     rate_err: Reals | None = None,
     hertz_err: Reals | None = None,
     common: float = 0.0,
-) -> Comparison:
+) -> Comparison: ...
+def compare(
+    body: Body | Motion,
+    theta: Reals | Filmed,
+    rate: Reals | None = None,
+    *,
+    hertz: Reals | None = None,
+    theta_err: Reals | None = None,
+    rate_err: Reals | None = None,
+    hertz_err: Reals | None = None,
+    common: float = 0.0,
+) -> Comparison | FilmComparison:
     """Compare measured inclinations and rates with a body's steady states, and fit its inertia ratio.
+
+    A motion is compared with a whole film: ``compare(motion, film)``.
 
     Parameters
     ----------
-    body : Body
-        Single body with the aspect ratio and the moments of inertia as built.
-    theta : array_like, 1-D or a number
+    body : Body or Motion
+        Single body with the aspect ratio and the moments of inertia as built. Or the motion of a body of
+        revolution on a level table, to compare with a film; its time 0 is that of the film.
+    theta : array_like, 1-D or a number, or Filmed
+        For a motion: the film, as `from_above` returns it, and no further arguments. For a body:
         Measured inclinations in radians, up to pi/2; also larger for balls, and for bodies with steady states
         there. One or two points, such as a single film, need their errors: they are compared with the body as
         built, and no ratio is fitted.
@@ -246,15 +267,16 @@ def compare(
 
     Returns
     -------
-    Comparison
-        ``.report()`` summarises the fit.
+    Comparison, or FilmComparison for a film
+        ``.report()`` summarises the result.
 
     Raises
     ------
     ValueError
         If there are fewer than three different points without errors, shapes differ, or rates or errors are
         not positive. If the fit fails. If the points do not determine the ratio, or do not distinguish it
-        from a common factor.
+        from a common factor. If a film and a motion have fewer than three frames in common, or the film has
+        no errors.
     TypeError
         If an argument is not a body or real numbers; the message names it.
     ImportError
@@ -287,6 +309,11 @@ def compare(
     >>> sc.data.compare(body, 1.4, 1.02 * body.rate(1.4), theta_err=0.01, rate_err=0.02)
     <Comparison: one point, 0.9 errors from a steady state: agrees with the body as built>
     """
+    if isinstance(body, Motion) or isinstance(theta, Filmed):
+        more = {"rate": rate, "hertz": hertz, "theta_err": theta_err, "rate_err": rate_err}
+        if not isinstance(common, float | int) or common != 0:
+            more["common"] = common
+        return _film_beside(body, theta, more | {"hertz_err": hertz_err})
     one_body(body)
     optional_library("odrpack", "lab")
     rate, rate_err, unit = _reduced(body, rate, rate_err, hertz, hertz_err)
@@ -336,7 +363,7 @@ def compare(
         raise ValueError(
             f"theta and rate: no real body has I1/I3 = {ratio:.3g}; give turns a second as hertz="
         )
-    said = _doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
+    said = doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
     if said:
         warnings.warn(said, UserWarning, stacklevel=2)
     _, _, one, one_err = alone.told(known)
@@ -384,40 +411,13 @@ def _reduced(
     return turns, errors, unit
 
 
-def _doubts_of_ratio(
-    found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
-) -> str:
-    """A warning about a fit: no ratio explains the points, or a common factor explains them as well."""
-    one, one_err = alone.told(known)[2:]
-    off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
-    if one > 1.5 or one < 0.7:
-        off = f"{one:.3g} times those of the body as built"
-    if found.chi2 > 10:
-        hint = "give turns a second as hertz="
-        if alone.success and alone.squares < 0.1 * found.squares:
-            hint = f"rates {off} would explain them with the ratio as built: {hint}"
-        return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"
-    if fitted:
-        return ""
-    if both is not None and both.success:
-        ratio, _, factor, factor_err = both.told(known)
-        if abs(factor - 1) > _equivalent_standard_errors(4.0, both.freedom, known) * factor_err:
-            return (
-                f"all rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'}"
-                f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frame rate"
-                " right? common=inf fits the factor as well"
-            )
-    ratio, ratio_err, *_ = found.told(known)
-    as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
-    if abs(ratio - own) > _equivalent_standard_errors(3.0, found.freedom, known) * ratio_err and as_well:
-        return (
-            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
-            f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
-            " frame rate right? common=0.03 allows for an error of three per cent"
-        )
-    return ""
-
-
-def _equivalent_standard_errors(errors: float, freedom: int, known: bool) -> float:
-    """Number of standard errors that is as unlikely as `errors` normal deviates: larger for few points."""
-    return errors if known else student(errors, freedom)
+def _film_beside(body: object, theta: object, more: dict[str, object]) -> FilmComparison:
+    """A film beside a motion; TypeError unless there are just these two."""
+    if not isinstance(body, Motion):
+        raise TypeError(f"body: expected a motion beside a film, not {type(body).__name__}")
+    if not isinstance(theta, Filmed):
+        raise TypeError(f"theta: expected a film from from_above beside a motion, not {type(theta).__name__}")
+    for name, value in more.items():
+        if value is not None:
+            raise TypeError(f"{name}: expected no further argument for a film and a motion")
+    return beside(body, theta)

@@ -4,13 +4,13 @@ import codecs
 import math
 import re
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
 
 from spincyl._input.numbers import Floats
-from spincyl.lab._columns import Columns
+from spincyl.lab._columns import Camera, Columns
 from spincyl.lab._contents import unpacked
 from spincyl.lab._encoding import UTF_16, as_told, found_out, legible
 
@@ -158,14 +158,16 @@ def _tracks_of_points(root: Any) -> dict[str, Columns]:
     if not milliseconds > 0:
         raise ValueError(f"delta_t = {milliseconds!r}: expected a positive duration of a frame")
     t = (_finite(clip, "starttime", 0.0) + (n - first) * milliseconds) / 1e3
-    world, unit = _world(own, n)
+    world, unit, camera = _world(own, n)
     found: dict[str, Columns] = {}
     for name, at in shown.items():
         places = np.full(many, complex(math.nan, math.nan))
         places[[(k - begin) // step for k in at]] = list(at.values())
         x, y = world(places)
         columns = [("t (s)", t.copy()), (f"x{unit}", x), (f"y{unit}", y)]
-        found |= {name: Columns(columns)} if at else {}
+        if at:
+            found[name] = Columns(columns)
+            found[name].camera = camera
     return found
 
 
@@ -188,8 +190,16 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
     return marks, others
 
 
-def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[Floats, Floats]], str]:
-    """The map from positions in the picture, x + iy downward, to coordinates, and the unit of length."""
+class _World(NamedTuple):
+    """Coordinates in a project."""
+
+    map: Callable[[Any], tuple[Floats, Floats]]  #: from positions in the picture, x + iy downward
+    unit: str  #: of length, in brackets
+    camera: Camera | None  #: the same map; None if the axes move or the scales of x and y differ
+
+
+def _world(own: dict[str, Any], frames: Floats) -> _World:
+    """Coordinates of the positions in the frames of a project."""
     keys = ("xorigin", "yorigin", "angle", "xscale", "yscale")
     system = _properties(_object_of_property(own.get("coords")))
     rows = sorted((n, *(_finite(at, key) for key in keys)) for n, at in _frames(system))
@@ -208,4 +218,10 @@ def _world(own: dict[str, Any], frames: Floats) -> tuple[Callable[[Any], tuple[F
         turned = flat * np.exp(-1j * np.radians(angle[held]))
         return np.asarray(turned.real, np.float64), np.asarray(turned.imag, np.float64)
 
-    return world, unit
+    used = np.unique(held)
+    first = used[0]
+    still = (
+        all(np.ptp(column[used]) == 0 for column in (x, y, angle, across, up)) and across[first] == up[first]
+    )
+    axes = Camera(*(float(column[first]) for column in (x, y, across, angle)))
+    return _World(world, unit, axes if still else None)

@@ -99,7 +99,8 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
                 reals(f"errors[{name!r}]", si(f"errors[{name!r}]", given[name], OUTPUTS[name][1]))
             )
             one = one[order, np.newaxis] if one.shape == t.shape else one[order] if one.ndim else one
-            if not ((one > 0) & (one < np.inf)).all():
+            fit = (one > 0) & (one < np.inf) | ~np.isfinite(column)  # a missing value needs no error
+            if not fit.all():
                 raise ValueError(f"errors[{name!r}]: expected positive numbers")
             found[name] = np.broadcast_to(one / factors[name], column.shape)
         else:

@@ -83,7 +83,7 @@ def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound:
     if sound and write is _gif:
         raise ValueError("sound: a GIF has no sound; write an .mp4")
     optional_library("matplotlib", "film")
-    program = _program() if write is _mp4 else ""
+    program = program_of_ffmpeg() if write is _mp4 else ""
     count = what.times.size  # too long a film is refused before anything is written
     heard = None if sound is False or write is _gif else _heard(what, sound is True)
 
@@ -123,7 +123,7 @@ def still(what: Reel, path: Path, t: float | None) -> None:
             vector(what, t / what.unit, part, kind)
 
 
-def _program() -> str:
+def program_of_ffmpeg() -> str:
     """The path of ffmpeg: that of imageio-ffmpeg, or the one on the search path."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
