@@ -81,8 +81,25 @@ quantities! {
     "a moment of inertia" moment <-> kilogram_square_metres "kg m^2" = |s| s.mass * s.radius * s.radius,
 }
 
+impl core::fmt::Display for Scale {
+    /// The radius, the mass and gravity in SI.
+    ///
+    /// ```
+    /// let coin = spincyl::Scale::new(12e-3, 8e-3, 9.81)?;
+    /// assert_eq!(coin.to_string(), "R = 0.012 m, M = 0.008 kg, g = 9.81 m/s^2");
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { radius, mass, gravity } = self;
+        write!(f, "R = {radius:?} m, M = {mass:?} kg, g = {gravity:?} m/s^2")
+    }
+}
+
 impl Scale {
     /// The scale of a rim radius in metres, a mass in kilograms and gravity in m/s^2; all are positive and finite.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a number outside [1e-100, 1e100].
     pub fn new(radius: f64, mass: f64, gravity: f64) -> Result<Self, Error> {
         const POSITIVE: (f64, f64) = (1e-100, 1e100);
         within("radius", radius, POSITIVE, "1e-100 <= radius <= 1e100 (metres)")?;

@@ -43,6 +43,10 @@ const LEVEL_ROUNDING: f64 = 1e-9;
 /// assert_eq!(last, -0.5);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a velocity or a backspin beyond 1e100, for a body of several circles that are not two equal rims,
+/// and for one whose theta_end is below pi/2.
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
     within("velocity", velocity, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= backspin <= 1e100")?;
@@ -72,6 +76,10 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
 /// assert!(launch_number(&tube, &state) > 1.0 && slip[1] != 0.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a body without two equal rims, an impulse or a coefficient of friction outside [0, 1e100], an
+/// angle outside (0, pi/2], and an impulse so large that a speed is not finite.
 pub fn pressed(
     body: &Body,
     impulse: f64,

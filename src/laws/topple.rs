@@ -42,6 +42,9 @@ pub fn pressure_centre(body: &Body, theta: f64, force: &Force) -> [f64; 2] {
 /// assert!(!topples(&can, 0.49)? && topples(&can, 0.51)?);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a `mu` that is negative or not finite, and for a body without a face, such as a ball.
 pub fn topples(body: &Body, mu: f64) -> Result<bool, Error> {
     within("mu", mu, (0.0, f64::MAX), "0 <= mu, finite")?;
     let [a, z] = face(body)?;
@@ -58,6 +61,9 @@ pub fn topples(body: &Body, mu: f64) -> Result<bool, Error> {
 /// assert!(tripped(&can, 1.0)?.w2 < 0.0); // it rises on its leading edge
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a velocity that is negative or not finite, and for a body without a face, such as a ball.
 pub fn tripped(body: &Body, velocity: f64) -> Result<State, Error> {
     within("velocity", velocity, (0.0, f64::MAX), "0 <= velocity, finite")?;
     let [a, z] = face(body)?;

@@ -333,8 +333,9 @@ fn none(value: f64) -> Error {
 /// circle of its convex hull. Parts inside a concave outline do not touch the table. A body has two equal rims if it has
 /// two circles, of which the other is as wide and as far from the centre of mass; then theta_end is pi/2.
 ///
-/// Errors: `OutOfRange` with the number of a part that is out of range, or with "parts" for a body without mass or
-/// extent; and the errors of [`Body::rounded`] and [`Body::profile`].
+/// # Errors
+/// `OutOfRange` with the name of a number of a part that is out of range, or with "parts" for a body without mass or
+/// extent; and those of [`Body::rounded`] and [`Body::profile`].
 pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let (mut masses, mut edges) = (Vec::new(), Vec::new());
     for BodyPart { form, amount } in parts {

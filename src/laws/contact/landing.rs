@@ -120,9 +120,12 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
 ///
-/// With w2 = 0 there is no impact, and only the motion that follows is determined. Friction may allow two
-/// consistent outcomes or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is
-/// an error, too.
+/// With w2 = 0 there is no impact, and only the motion that follows is determined. Friction may allow two consistent
+/// outcomes or none, and in 1e-5 of all cases the search finds none.
+///
+/// # Errors
+/// `OutOfRange` for a body without two equal rims, an inclination other than theta_end, a w2 outside [-1e100, 0],
+/// another speed beyond 1e100, and a `mu` outside [0, 1e100]; `Landing` for two consistent outcomes, or none.
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     within("mu", mu, (0.0, 1e100), "0 <= mu <= 1e100")?;

@@ -63,7 +63,11 @@ impl Friction {
         Self::Coulomb { mu, fixed: mu, patch: 0.0 }
     }
 
-    /// Returns an error for coefficients outside their range; the error names the coefficient.
+    /// Checks that each coefficient is in its range.
+    ///
+    /// # Errors
+    /// `OutOfRange`, with the name of the coefficient, for a `mu` or a `c` that is negative or not finite, a static
+    /// coefficient below `mu`, and a patch outside [0, 1).
     pub fn check(&self) -> Result<(), Error> {
         let finite = (0.0, f64::MAX);
         match *self {

@@ -82,8 +82,10 @@ impl<F> Default for Portrait<'_, F> {
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
 /// The caller is one of `threads` threads. It calls `go_on` with the finished share about fifty times a second, and
-/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified. The error is
-/// `Memory`.
+/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// Panics if an array of `out` does not hold `theta.len() * bodies.len()` numbers.
@@ -249,6 +251,9 @@ fn fill<T: Narrow, C: Stored>(
 /// these arrays may be a single number. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
 ///
 /// The values are those of [`portrait`], bit by bit; `threads` and `go_on` are as for `portrait`.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// Panics if columns differ in length (apart from single numbers), or an array of `out` does not fit them.

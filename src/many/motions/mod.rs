@@ -178,8 +178,11 @@ const FLOWS_PER_BLOCK: usize = 1024;
 ///
 /// A motion gets NaN and the status of [`Ending::Invalid`](crate::motion::Ending::Invalid) if its body, state, contact
 /// or loss is out of the range of [`roll_with`](crate::motion::roll_with), and the status of
-/// [`Ending::Painleve`](crate::motion::Ending::Painleve) if its initial state has no unique contact force. Errors:
-/// `OutOfRange`, before any work, for invalid times, tolerance, step or mu; `Memory` at any time.
+/// [`Ending::Painleve`](crate::motion::Ending::Painleve) if its initial state has no unique contact force.
+///
+/// # Errors
+/// `OutOfRange`, before any work, for invalid times, tolerance, step, mu or other options of the job; `Memory` at any
+/// time.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit

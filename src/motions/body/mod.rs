@@ -50,11 +50,15 @@ use core::f64::consts::PI;
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
 const AXIS_ERROR_SHARE: f64 = 0.25;
 
-/// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
-/// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
-/// motion that is too much work, or whose equations lose their digits on the way, ends there with
-/// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached; so does a motion
-/// that `go_on` interrupts. Error: `Lost` where the equations have lost their digits at the start.
+/// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with). A web page
+/// that needs no other motion calls this function directly, so that its program contains no other code. A motion that
+/// is too much work, or whose equations lose their digits on the way, ends there with
+/// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached;
+/// so does a motion that `go_on` interrupts.
+///
+/// # Errors
+/// `OutOfRange`, `Painleve` and `Memory` as for [`roll_with`](crate::motions::motion::roll_with); `Lost` where the
+/// equations have lost their digits at the start.
 pub fn follow(
     body: &Body,
     start: &Start,

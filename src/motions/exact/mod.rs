@@ -205,8 +205,9 @@ impl Swing {
     /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
     /// well.
     ///
-    /// Errors: `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above
-    /// 1e6 or moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
+    /// # Errors
+    /// `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above 1e6 or
+    /// moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
     pub fn new(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };
