@@ -6,6 +6,12 @@
 //! R is the outer radius of the body, or the largest semi-axis of a stone ([`unit`](super::stone::Ellipsoid::unit)).
 //! Every conversion is one multiplication or division by a unit, which has a few rounding errors. A number that is
 //! converted to SI and back changes by at most 2 ulp, as a test of `units` checks.
+//!
+//! ```
+//! let coin = spincyl::Scale::new(12e-3, 8e-3, 9.81)?;
+//! assert!((coin.seconds(1.0) - 0.034_975).abs() < 1e-6); // sqrt(R/g)
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::loss::Law;
 use crate::error::{Error, within};

@@ -17,6 +17,18 @@
 //! general equation of fourth degree in t, so that both are found as the change of sign of the margin.
 //!
 //! Error: 8 ulp for one circle or a face, and 1e-14 for two circles; a test of `steep` compares with these formulas.
+//!
+//! ```
+//! use spincyl::Body;
+//! use spincyl::steep::{Posture, slip_slope, tip_slope};
+//!
+//! // A can whose centre is 2 above its face slips at mu, and tips at 1/2.
+//! let can = Body::solid(2.0)?;
+//! let slips = slip_slope(&can, 0.0, 0.3, Posture::Standing, 0.0)?;
+//! let tips = tip_slope(&can, 0.0, Posture::Standing, 0.0)?;
+//! assert!((slips.tan() - 0.3).abs() < 1e-15 && (tips.tan() - 0.5).abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::contact::lying::{Lain, Lying};

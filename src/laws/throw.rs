@@ -15,6 +15,18 @@
 //! are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85
 //! (2019), Sec. I.
 //! Error: 8 ulp of the largest term; a test of `throw` compares with a three-dimensional model.
+//!
+//! ```
+//! use spincyl::throw::{launch_number, launch_spin};
+//! use spincyl::{Body, State};
+//!
+//! // A tube on its side that turns at the rate 2 rises if it spins faster than this.
+//! let tube = Body::tube(6.0, 0.8)?;
+//! let w3 = launch_spin(&tube, 2.0, 1.0);
+//! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 2.0, w2: 0.0, w3 };
+//! assert!((launch_number(&tube, &state) - 1.0).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::contact::landing;

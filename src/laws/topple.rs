@@ -11,6 +11,15 @@
 //! v Z before and J |w2| after; the body then turns about that point of its rim. It turns over the point if
 //! v^2 > 2 J (sqrt(a^2 + Z^2) - Z)/Z^2.
 //! Error: 4 ulp; a test of `topple` compares with angular momentum in three dimensions.
+//!
+//! ```
+//! use spincyl::{Body, newton::Force, topple::pressure_centre};
+//!
+//! // A can twice as high as wide slides against a friction of 0.3: the pressure is 0.6 of the radius ahead.
+//! let [ahead, _] = pressure_centre(&Body::solid(2.0)?, 0.0, &Force::new(1.0, 0.0, -0.3));
+//! assert!((ahead - 0.6).abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::newton::Force;

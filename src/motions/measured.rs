@@ -7,6 +7,14 @@
 //! in SI, along the axes of the laboratory: z is up, the table is z = 0, and the body is inclined from +x at time 0.
 //! States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a few
 //! roundings.
+//!
+//! ```
+//! use spincyl::measured::{Measured, Tube};
+//!
+//! let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3))?; // metres, kilograms
+//! assert_eq!(coin.scale().newtons(1.0), 8e-3 * 9.80665); // its weight
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::{Ask, Bounds, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};

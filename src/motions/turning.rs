@@ -18,6 +18,14 @@
 //!
 //! Error of the search: 1e-3 of the spin, within the time of the search. A motion decides only if its estimated error is
 //! smaller than what separates it from the other decision; else it is computed again with a smaller tolerance.
+//!
+//! ```
+//! use spincyl::{Ellipsoid, turning};
+//!
+//! let least = turning::jellett_rising_spin(&Ellipsoid::egg(1.0, 1.4, 0.0)?)?;
+//! assert!((least - 4.146).abs() < 1e-3); // in sqrt(g/a)
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::motion::roll_with;
 use super::{Ask, Method, Motion, Moving, Start, stone};

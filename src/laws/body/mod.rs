@@ -13,6 +13,15 @@
 //! The constructors return an error for numbers that no body can have; no later code checks them again. The inertia
 //! excess is kept as an unevaluated sum of two doubles, because the steady states of a body near the critical shape
 //! depend on the last digits of the excess; `body::tube` gives its error.
+//!
+//! ```
+//! use spincyl::Body;
+//!
+//! // At the critical length both moments of inertia are equal, and so are theta0 and thetaInf.
+//! let can = Body::solid(Body::critical_aspect(0.0, 0.0)?)?;
+//! assert!(can.excess().abs() < 1e-15 && (can.theta_balance() - can.theta_limit()).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod apex;
 mod circles;

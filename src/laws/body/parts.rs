@@ -9,6 +9,17 @@
 //! touches the table.
 //!
 //! Error: a few roundings of the moments about a point within the body; theta_end has as many.
+//!
+//! ```
+//! use spincyl::body::parts::{Amount, BodyPart, Form, assembled};
+//!
+//! // A wheel: a disk, and a ring of the same mass near its edge.
+//! let disk = Form::Solid { radii: [1.0; 2], bores: [0.0; 2], ends: [0.0, 0.2], fillet: 0.0 };
+//! let ring = Form::Ring { radius: 0.9, height: 0.1 };
+//! let wheel = assembled(&[disk, ring].map(|form| BodyPart::new(form, Amount::Mass(2.0))))?;
+//! assert!((wheel.mass - 4.0).abs() < 1e-14 && (wheel.body.i3() - (0.5 + 0.81) / 2.0).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::hull::{Edge, Hull};
 use super::{Body, Circle};

@@ -25,6 +25,19 @@
 //! the impulse opposes that slip.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
+//!
+//! ```
+//! use spincyl::contact::landing::{Outcome, land};
+//! use spincyl::{Body, State};
+//!
+//! // A can that falls on its side, on a table without friction, stays there.
+//! let can = Body::solid(2.0)?;
+//! let falls = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: -0.1, w3: 0.0 };
+//! let landed = land(&can, &falls, [0.0; 2], 0.0)?;
+//! assert_eq!(landed.outcome, Outcome::Lies);
+//! assert!(landed.state.w2.abs() < 1e-15 && landed.lost > 0.0);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::lying::Lying;
 use super::slip::Friction;

@@ -20,6 +20,18 @@
 //!
 //! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
 //! dimensions.
+//!
+//! ```
+//! use spincyl::contact::slip::{Friction, derivative};
+//! use spincyl::{Body, State, loss::Losses};
+//!
+//! // A hoop on edge whose contact point slips: friction mu N slows down the slip at twice the rate mu.
+//! let hoop = Body::tube(0.0, 1.0)?;
+//! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+//! let (_, slows, force) = derivative(&hoop, &state, [0.0, 5.0], &Friction::coulomb(0.25), &Losses::NONE);
+//! assert!((force.along + 0.25).abs() < 1e-14 && (slows[1] + 0.5).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::JAMMED;
 use super::patch::rubs;

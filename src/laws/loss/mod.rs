@@ -16,6 +16,17 @@
 //! is then zero, and the module `motion` computes the couple that acts.
 //!
 //! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
+//!
+//! ```
+//! use spincyl::loss::{Law, Losses};
+//! use spincyl::{Body, steady};
+//!
+//! let coin = Body::solid(0.0)?;
+//! let state = steady::state(&coin, 0.5)?;
+//! let power = Losses::of(Law::ViscousContour, 1e-3).power(&coin, &state, 1.0);
+//! assert!((power / (1e-3 * state.spin().powi(2)) - 1.0).abs() < 1e-12); // c (A psi')^2
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod air_film;
 mod air_linear;

@@ -4,6 +4,18 @@
 //! [`stability`](crate::states::stability) in eight lanes, with the same bits as the single call, for any thread count,
 //! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
 //! rim is taken in that precision, and every other quantity is rounded once.
+//!
+//! ```
+//! use spincyl::sweep::{Portrait, portrait};
+//! use spincyl::{Body, steady};
+//!
+//! let (theta, body) = ([1.2, 1.3], Body::solid(2.5)?);
+//! let mut rate = [0.0; 2];
+//! let wanted = Portrait { rate: Some(&mut rate[..]), ..Portrait::default() };
+//! assert!(portrait(&theta, &[Some(body)], wanted, 1, |_| true)?);
+//! assert_eq!(rate, theta.map(|theta| steady::rate(&body, theta)));
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod areas;
 mod best;

@@ -15,6 +15,17 @@
 //! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
 //! error against the three-dimensional model at 40 digits. The inputs are taken as exact: a change of the inputs by
 //! half an ulp moves a motion that lingers by more than the estimate.
+//!
+//! ```
+//! use spincyl::{Body, Contact, exact::Swing, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let start = steady::state(&body, 1.3)?.kicked(0.05);
+//! let swing = Swing::new(&body, &start, Contact::Rolling, false)?;
+//! let again = swing.state(swing.period());
+//! assert!((again.theta - start.theta).abs() < 1e-12 && (again.w2 - start.w2).abs() < 1e-12);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod carry;
 mod claim;

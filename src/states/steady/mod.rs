@@ -15,6 +15,17 @@
 //! ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every body and every double theta in (0, pi/2], subnormal ones
 //! too. The bound also holds next to folds, where n of a sharp rim is at most 1/(1 - sqrt(-d)) = 3.4 times n + d cos
 //! theta. The module `rounded` gives the error for a rounded rim. Tests of `hard_cases` and `laws` check it.
+//!
+//! ```
+//! use spincyl::{Body, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let state = steady::state(&body, 1.3)?;
+//! assert!(state.centre_radius(&body) < 1e-12);
+//! let all = steady::inclinations(&body, steady::rate(&body, 1.3));
+//! assert!(all.iter().any(|theta| (theta - 1.3).abs() < 1e-10));
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod branch;
 #[cfg(test)]
