@@ -18,6 +18,7 @@ mod file;
 pub(crate) mod law;
 mod state;
 
+use super::contact::Contact;
 use crate::error::{Error, within};
 use crate::numbers::vector::{Symmetric, cross, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -250,10 +251,21 @@ impl Ellipsoid {
         core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
     }
 
-    /// Kinetic and potential energy in M g a of a stone that rolls without slip, or if `smooth` of a stone whose centre
-    /// of mass has no horizontal velocity. Heights are above the table.
-    pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
-        self.energy_slipping(y, [0.0; 2], smooth)
+    /// Kinetic and potential energy in M g a of a stone that rolls without slip, or on a smooth table of a stone whose
+    /// centre of mass has no horizontal velocity. Heights are above the table.
+    ///
+    /// ```
+    /// use spincyl::{Contact, Ellipsoid};
+    ///
+    /// // A rattleback that spins upright rolls about its centre of mass, which is at rest with either contact.
+    /// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.03, None)?;
+    /// let state = stone.spinning(-0.4, 0.0, 0.0);
+    /// let [rolling, smooth] = [Contact::Rolling, Contact::Smooth].map(|contact| stone.energy(&state, contact));
+    /// assert!((rolling - smooth).abs() < 1e-15);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn energy(&self, y: &StoneState, contact: Contact) -> f64 {
+        self.energy_slipping(y, [0.0; 2], contact == Contact::Smooth)
     }
 
     /// The energy of a stone whose contact point has the slip `slip`.
