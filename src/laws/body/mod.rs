@@ -517,23 +517,20 @@ pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
 }
 
 impl core::fmt::Display for Body {
-    /// The numbers of the body in its natural units, and how many circles it has if they are several that are not two
-    /// equal rims. The fillet of a sharp rim, and a theta_end that follows from the shape, are left out.
+    /// The numbers of the body in its natural units; of a body of several circles, those of the one on which it stands.
+    /// The fillet of a sharp rim is left out, and so is a theta_end of pi/2 or pi.
     ///
     /// ```
     /// use spincyl::Body;
     ///
     /// assert_eq!(Body::solid(0.0)?.to_string(), "ell = 0, I1 = 0.25, I3 = 0.5");
     /// assert_eq!(Body::ball(-0.2, 0.4, 0.42)?.to_string(), "ell = -0.2, I1 = 0.4, I3 = 0.42, fillet = 1");
-    /// let cone = Body::cone(2.0)?.to_string();
-    /// assert!(cone.starts_with("2 circles, ell = 1."));
+    /// let bottle = Body::new(2.0, 1.5, 0.5)?.with_theta_end(1.2)?;
+    /// assert_eq!(bottle.to_string(), "ell = 2, I1 = 1.5, I3 = 0.5, theta_end = 1.2");
     /// # Ok::<(), spincyl::Error>(())
     /// ```
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { ell, i1, i3, fillet, theta_end, .. } = self;
-        if self.has_row() {
-            write!(f, "{} circles, ", self.circles().len())?;
-        }
         write!(f, "ell = {ell}, I1 = {i1}, I3 = {i3}")?;
         if *fillet > 0.0 {
             write!(f, ", fillet = {fillet}")?;
