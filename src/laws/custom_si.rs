@@ -34,7 +34,7 @@ pub struct TurningInSi {
 /// use spincyl::motion::Ask;
 /// use spincyl::steady;
 ///
-/// let coin = Measured::tube(&Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() })?;
+/// let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3))?;
 /// // Friction that falls from 0.4 at rest to 0.2 at some 0.1 m/s, and air that takes 2e-8 N m s of each rotation.
 /// let stribeck = InSi::new(coin.scale(), |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp());
 /// let air = InSi::new(coin.scale(), |of: &TurningInSi| -2e-8 * of.w);

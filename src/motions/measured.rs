@@ -30,7 +30,7 @@ use nalgebra::{Point3, UnitQuaternion, Vector3};
 /// ```
 /// use spincyl::measured::{Measured, Tube};
 ///
-/// let coin = Tube { outer_diameter: 24e-3, length: 2e-3, mass: 8e-3, ..Tube::default() };
+/// let coin = Tube::solid(24e-3, 2e-3, 8e-3);
 /// assert_eq!(Measured::tube(&coin)?.body().ell(), 2.0 / 24.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -246,7 +246,7 @@ impl Measured {
     /// ```
     /// use spincyl::{measured::{Measured, Tube}, motion::Ask, steady};
     ///
-    /// let tube = Tube { outer_diameter: 15.875e-3, inner_diameter: 12.7e-3, length: 95.25e-3, mass: 20e-3, ..Tube::default() };
+    /// let tube = Tube::solid(15.875e-3, 95.25e-3, 20e-3).with_inner_diameter(12.7e-3);
     /// let pipe = Measured::tube(&tube)?;
     /// let start = steady::state(pipe.body(), 1.4)?.kicked(0.05);
     /// let motion = pipe.roll(start, &[0.0, 1.0, 2.0], &Ask::default(), || true)?.expect("not interrupted");
@@ -302,7 +302,7 @@ impl MeasuredMotion {
     /// use spincyl::{measured::{Measured, Tube}, motion::{Ask, Start}};
     /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
     ///
-    /// let can = Measured::tube(&Tube { outer_diameter: 0.05, length: 0.02, mass: 0.1, ..Tube::default() })?;
+    /// let can = Measured::tube(&Tube::solid(0.05, 0.02, 0.1))?;
     /// let (q, w) = (UnitQuaternion::from_euler_angles(0.7, 0.3, 1.2), Vector3::new(1.0, -2.0, 5.0));
     /// let (turning, up) = (w.map(|w| can.scale().angular_velocity(w)), can.scale().length(0.2));
     /// let start = Start::from_twist(can.body(), &q, turning, Vector3::zeros(), Some(up))?;

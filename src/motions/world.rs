@@ -44,7 +44,7 @@ const NEAR_THE_TABLE: f64 = 1e-9;
 /// use spincyl::nalgebra::{Isometry3, UnitQuaternion, Vector3};
 /// use spincyl::world::WorldStart;
 ///
-/// let can = Measured::tube(&Tube { outer_diameter: 0.05, length: 0.02, mass: 0.1, ..Tube::default() })?;
+/// let can = Measured::tube(&Tube::solid(0.05, 0.02, 0.1))?;
 /// let turned = UnitQuaternion::from_euler_angles(0.7, 0.3, 1.2);
 /// let pose = Isometry3::from_parts(Vector3::new(0.3, 0.4, 0.2).into(), turned); // the centre of mass, 20 cm high
 /// let thrown = WorldStart::new(pose, Vector3::new(0.3, 0.1, 0.2), Vector3::new(1.0, -2.0, 5.0));
