@@ -82,6 +82,17 @@ pub mod drift {
     //! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a
     //! high power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and
     //! `test_late_drifts` check these bounds.
+    //!
+    //! ```
+    //! use spincyl::Body;
+    //! use spincyl::drift::{Drift, End};
+    //! use spincyl::loss::{Law, Losses};
+    //!
+    //! // A coin comes down on its face.
+    //! let drift = Drift::at_rest(&Body::solid(0.08)?, 0.1, &Losses::of(Law::RollingResistance, 1e-3))?;
+    //! assert!(drift.ended() == End::Face && drift.theta(0.5 * drift.stops_at()) < 0.1);
+    //! # Ok::<(), spincyl::Error>(())
+    //! ```
 
     pub use crate::many::columns::LossColumns;
     pub use crate::many::drifts::{
@@ -103,6 +114,16 @@ pub mod custom {
     //! in [`loss`](crate::loss), since nothing is known of the laws in advance.
     //!
     //! Source of the example: Armstrong-Helouvry, Dupont and Canudas de Wit, Automatica 30, 1083 (1994), for Stribeck's law.
+    //!
+    //! ```
+    //! use spincyl::{Body, custom::Custom};
+    //!
+    //! // Stribeck's friction falls from 0.4 at rest to 0.2 at high speed; static friction has to be at least that at rest.
+    //! let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp();
+    //! let (hoop, laws) = (Body::tube(0.0, 1.0)?, Custom::default().with_friction(&stribeck));
+    //! assert!(laws.check(&hoop, 0.4).is_ok() && laws.check(&hoop, 0.3).is_err());
+    //! # Ok::<(), spincyl::Error>(())
+    //! ```
 
     pub use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
     pub use crate::laws::custom_si::{InSi, TurningInSi};
@@ -125,6 +146,15 @@ pub mod stone {
     //!
     //! Sources: Walker, Sci. Am. 241(4), 172 (1979); Kane and Levinson, Int. J. Non-Linear Mech. 17, 175 (1982); Moffatt and
     //! Shimomura, Nature 416, 385 (2002), for the rising egg.
+    //!
+    //! ```
+    //! use spincyl::Ellipsoid;
+    //!
+    //! let stone = Ellipsoid::uniform([1.0, 0.5, 0.5])?;
+    //! assert!((stone.moments()[0] - 0.1).abs() < 1e-15); // (a2^2 + a3^2)/5
+    //! assert!((stone.lowest_point([0.0, 0.0, 1.0])[2] + 0.5).abs() < 1e-15);
+    //! # Ok::<(), spincyl::Error>(())
+    //! ```
 
     pub use crate::laws::stone::{Ellipsoid, StonePose, StoneState};
     #[cfg(feature = "many")]

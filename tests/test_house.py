@@ -398,6 +398,29 @@ def test_every_public_module_is_on_the_map():
     assert sorted(on_map) == sorted({*inner, *given} - {"rolling", "smooth"})
 
 
+def public_modules():
+    """The public modules outside of lib.rs: those at the front door, and `pub mod` in one of these."""
+    found = [path for path in front_door().values() if path in HOMES]
+    for module in found:
+        inner = re.findall(r"^pub mod (\w+);", HOMES[module].read_text("utf-8"), re.M)
+        found += [(*module, word) for word in inner]
+    return sorted({*found, ("scene",)})
+
+
+def test_every_public_module_begins_with_an_example():
+    def has_example(head):
+        # every second fence opens a block; one without a word is run
+        return "" in re.findall(r"^ *//! ```(.*)$", head, re.M)[::2]
+
+    heads = {
+        "::".join(module): re.match(r"(?://!.*\n)*", HOMES[module].read_text("utf-8"))[0]
+        for module in public_modules()
+    }
+    inline = re.findall(r"^pub mod (\w+) \{\n((?: +//!.*\n)+)", (SRC / "lib.rs").read_text("utf-8"), re.M)
+    assert len(heads) > 25 and len(inline) == 3
+    assert not [word for word, head in [*heads.items(), *inline] if not has_example(head)]
+
+
 def test_no_layer_uses_a_later_one():
     order = {layer: rank for rank, layer in enumerate(layers_of_src())}
     found = list(uses())

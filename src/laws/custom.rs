@@ -89,9 +89,12 @@ impl<'a> Custom<'a> {
         self.couple.is_some_and(CoupleLaw::has_failed) || self.friction.is_some_and(FrictionLaw::has_failed)
     }
 
-    /// Checks the laws. Returns an error if a couple supplies energy, is not finite, or jumps when the motion is at rest.
-    /// Returns an error if a coefficient of friction is negative, is not finite, jumps, or at rest exceeds that of static
-    /// friction (`fixed`).
+    /// Checks the laws at about a thousand states and speeds; `fixed` is the coefficient of static friction.
+    ///
+    /// # Errors
+    /// `OutOfRange` with the name "couple" if the couple supplies energy, is not finite, or jumps when the motion is
+    /// at rest; with the name "mu" if the coefficient of friction is negative, is not finite or jumps; with the name
+    /// "static" if the coefficient at rest exceeds that of static friction (`fixed`).
     pub fn check(&self, body: &Body, fixed: f64) -> Result<(), Error> {
         self.couple.map_or(Ok(()), |law| check_couple(law, body))?;
         self.check_friction(fixed)

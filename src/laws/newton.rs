@@ -15,6 +15,18 @@
 //! in any textbook. The module [`contact`](super::contact) gives the contact force.
 //!
 //! Error: 4 ulp of the largest term.
+//!
+//! ```
+//! use spincyl::newton::{Force, derivative};
+//! use spincyl::{Body, State};
+//!
+//! // On a table that carries its weight, a body at theta0 stays balanced on a point of its rim.
+//! let body = Body::solid(2.0)?;
+//! let balanced = State { theta: body.theta_balance(), w1: 0.0, w2: 0.0, w3: 0.0 };
+//! let rate = derivative(&body, &balanced, &Force::new(1.0, 0.0, 0.0), [0.0; 3]);
+//! assert!(rate.w2.abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::{Body, Shape};
 use super::state::State;

@@ -10,6 +10,15 @@
 //! Motions start at phi = psi = 0 with the contact point at the origin: e2 = y, and e1 leans toward +x.
 //! Angles are kept as whole turns and a remainder, so that a long motion loses no digits of the direction:
 //! `rest` adds 1e-16 to the error of the angle.
+//!
+//! ```
+//! use spincyl::{Body, State, pose::Pose};
+//!
+//! let coin = Body::solid(0.0)?;
+//! let centre = Pose::start().centre(&coin, &State { theta: 0.5, w1: 0.0, w2: 0.0, w3: 0.0 });
+//! assert!((centre.z - 0.5f64.sin()).abs() < 1e-15); // half as high as the top of the coin
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::state::State;

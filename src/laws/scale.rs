@@ -6,6 +6,12 @@
 //! R is the outer radius of the body, or the largest semi-axis of a stone ([`unit`](super::stone::Ellipsoid::unit)).
 //! Every conversion is one multiplication or division by a unit, which has a few rounding errors. A number that is
 //! converted to SI and back changes by at most 2 ulp, as a test of `units` checks.
+//!
+//! ```
+//! let coin = spincyl::Scale::new(12e-3, 8e-3, 9.81)?;
+//! assert!((coin.seconds(1.0) - 0.034_975).abs() < 1e-6); // sqrt(R/g)
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::loss::Law;
 use crate::error::{Error, within};
@@ -81,8 +87,25 @@ quantities! {
     "a moment of inertia" moment <-> kilogram_square_metres "kg m^2" = |s| s.mass * s.radius * s.radius,
 }
 
+impl core::fmt::Display for Scale {
+    /// The radius, the mass and gravity in SI.
+    ///
+    /// ```
+    /// let coin = spincyl::Scale::new(12e-3, 8e-3, 9.81)?;
+    /// assert_eq!(coin.to_string(), "R = 0.012 m, M = 0.008 kg, g = 9.81 m/s^2");
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { radius, mass, gravity } = self;
+        write!(f, "R = {radius:?} m, M = {mass:?} kg, g = {gravity:?} m/s^2")
+    }
+}
+
 impl Scale {
     /// The scale of a rim radius in metres, a mass in kilograms and gravity in m/s^2; all are positive and finite.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a number outside [1e-100, 1e100].
     pub fn new(radius: f64, mass: f64, gravity: f64) -> Result<Self, Error> {
         const POSITIVE: (f64, f64) = (1e-100, 1e100);
         within("radius", radius, POSITIVE, "1e-100 <= radius <= 1e100 (metres)")?;

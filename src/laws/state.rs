@@ -9,6 +9,14 @@
 //! The axes (e1, e2, e3) follow the inclination and the precession, not the spin: e3 is the symmetry axis, e2 is
 //! horizontal, z = sin theta e1 + cos theta e3. They are those of Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II.
 //! Every number here is computed with a few roundings: the relative error is below 8 ulp of the largest term.
+//!
+//! ```
+//! use spincyl::State;
+//!
+//! // While its axis goes round once, the body turns twice the other way: from above two still symbols are seen.
+//! let state = State::from_rates(1.3, 0.0, 0.7, -1.4);
+//! assert!((state.contact_radius() - 2.0).abs() < 1e-14);
+//! ```
 
 use super::body::Body;
 use crate::numbers::Real;

@@ -17,6 +17,18 @@
 //! general equation of fourth degree in t, so that both are found as the change of sign of the margin.
 //!
 //! Error: 8 ulp for one circle or a face, and 1e-14 for two circles; a test of `steep` compares with these formulas.
+//!
+//! ```
+//! use spincyl::Body;
+//! use spincyl::steep::{Posture, slip_slope, tip_slope};
+//!
+//! // A can whose centre is 2 above its face slips at mu, and tips at 1/2.
+//! let can = Body::solid(2.0)?;
+//! let slips = slip_slope(&can, 0.0, 0.3, Posture::Standing, 0.0)?;
+//! let tips = tip_slope(&can, 0.0, Posture::Standing, 0.0)?;
+//! assert!((slips.tan() - 0.3).abs() < 1e-15 && (tips.tan() - 0.5).abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::contact::lying::{Lain, Lying};
@@ -69,6 +81,12 @@ fn seen(body: &Body, theta: f64, phi: f64) -> (Body, f64) {
 /// assert!((slope.tan() - 0.6).abs() < 1e-15); // three times mu
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a `mu` that is negative or not finite, a `phi` that is not finite, and a body that stands on its
+/// face but has none, such as a ball. A body that lies or rolls on one circle must have its centre of mass in the plane
+/// of this circle (else the name is "ell"); if it rolls and is no uniform ball, its axis must be across the slope (else
+/// the name is "phi").
 pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) -> Result<f64, Error> {
     within("mu", mu, (0.0, f64::MAX), "0 <= mu, finite")?;
     within("phi", phi, (-f64::MAX, f64::MAX), "a finite angle")?;
@@ -107,6 +125,9 @@ pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) 
 
 /// The slope, in radians, beyond which a body tips over the edge of its face, or over the lower circle of the two on which
 /// it lies; pi/2 if it never does. Arguments as for [`slip_slope`].
+///
+/// # Errors
+/// `OutOfRange` for a `phi` that is not finite, and for a body that stands on its face but has none, such as a ball.
 pub fn tip_slope(body: &Body, theta: f64, posture: Posture, phi: f64) -> Result<f64, Error> {
     within("phi", phi, (-f64::MAX, f64::MAX), "a finite angle")?;
     if posture == Posture::Standing {
@@ -134,6 +155,9 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
 
 /// What a body at rest on a table needs, as a share of what holds it there, from slipping, rolling and tipping: the last two
 /// numbers are the slope and phi.
+///
+/// # Errors
+/// Those of [`slip_slope`], unless `mu` is infinite, and of [`tip_slope`].
 pub fn shares(
     body: &Body,
     theta: f64,

@@ -15,6 +15,18 @@
 //! are those of Newton's and Euler's equations; the launch is that of Jackson et al., Am. J. Phys. 87, 85
 //! (2019), Sec. I.
 //! Error: 8 ulp of the largest term; a test of `throw` compares with a three-dimensional model.
+//!
+//! ```
+//! use spincyl::throw::{launch_number, launch_spin};
+//! use spincyl::{Body, State};
+//!
+//! // A tube on its side that turns at the rate 2 rises if it spins faster than this.
+//! let tube = Body::tube(6.0, 0.8)?;
+//! let w3 = launch_spin(&tube, 2.0, 1.0);
+//! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 2.0, w2: 0.0, w3 };
+//! assert!((launch_number(&tube, &state) - 1.0).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::contact::landing;
@@ -43,6 +55,10 @@ const LEVEL_ROUNDING: f64 = 1e-9;
 /// assert_eq!(last, -0.5);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a velocity or a backspin beyond 1e100, for a body of several circles that are not two equal rims,
+/// and for one whose theta_end is below pi/2.
 pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
     within("velocity", velocity, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= backspin <= 1e100")?;
@@ -72,6 +88,10 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
 /// assert!(launch_number(&tube, &state) > 1.0 && slip[1] != 0.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a body without two equal rims, an impulse or a coefficient of friction outside [0, 1e100], an
+/// angle outside (0, pi/2], and an impulse so large that a speed is not finite.
 pub fn pressed(
     body: &Body,
     impulse: f64,

@@ -11,6 +11,15 @@
 //! v Z before and J |w2| after; the body then turns about that point of its rim. It turns over the point if
 //! v^2 > 2 J (sqrt(a^2 + Z^2) - Z)/Z^2.
 //! Error: 4 ulp; a test of `topple` compares with angular momentum in three dimensions.
+//!
+//! ```
+//! use spincyl::{Body, newton::Force, topple::pressure_centre};
+//!
+//! // A can twice as high as wide slides against a friction of 0.3: the pressure is 0.6 of the radius ahead.
+//! let [ahead, _] = pressure_centre(&Body::solid(2.0)?, 0.0, &Force::new(1.0, 0.0, -0.3));
+//! assert!((ahead - 0.6).abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::body::Body;
 use super::newton::Force;
@@ -42,6 +51,9 @@ pub fn pressure_centre(body: &Body, theta: f64, force: &Force) -> [f64; 2] {
 /// assert!(!topples(&can, 0.49)? && topples(&can, 0.51)?);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a `mu` that is negative or not finite, and for a body without a face, such as a ball.
 pub fn topples(body: &Body, mu: f64) -> Result<bool, Error> {
     within("mu", mu, (0.0, f64::MAX), "0 <= mu, finite")?;
     let [a, z] = face(body)?;
@@ -58,6 +70,9 @@ pub fn topples(body: &Body, mu: f64) -> Result<bool, Error> {
 /// assert!(tripped(&can, 1.0)?.w2 < 0.0); // it rises on its leading edge
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for a velocity that is negative or not finite, and for a body without a face, such as a ball.
 pub fn tripped(body: &Body, velocity: f64) -> Result<State, Error> {
     within("velocity", velocity, (0.0, f64::MAX), "0 <= velocity, finite")?;
     let [a, z] = face(body)?;

@@ -7,6 +7,14 @@
 //! in SI, along the axes of the laboratory: z is up, the table is z = 0, and the body is inclined from +x at time 0.
 //! States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a few
 //! roundings.
+//!
+//! ```
+//! use spincyl::measured::{Measured, Tube};
+//!
+//! let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3))?; // metres, kilograms
+//! assert_eq!(coin.scale().newtons(1.0), 8e-3 * 9.80665); // its weight
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::{Ask, Bounds, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};
@@ -159,14 +167,34 @@ pub struct MeasuredMotion {
     pub turn: f64,
 }
 
+impl core::fmt::Display for Measured {
+    /// The body in its natural units, and these units in SI.
+    ///
+    /// ```
+    /// use spincyl::measured::{Measured, Tube};
+    ///
+    /// let coin = Measured::tube(&Tube::solid(24e-3, 3e-3, 8e-3).with_gravity(9.81))?;
+    /// let told = coin.to_string();
+    /// assert!(told.starts_with("ell = 0.125, I1 = 0.255") && told.contains(", I3 = 0.5; R = 0.012 m"));
+    /// assert!(told.ends_with(", M = 0.008 kg, g = 9.81 m/s^2"));
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{}; {}", self.body, self.scale)
+    }
+}
+
 impl Measured {
     /// A body with these natural units.
     pub fn new(body: Body, scale: Scale) -> Self {
         Self { body, scale }
     }
 
-    /// A uniform tube. Errors: those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than
-    /// 0.01 kg/m^3, a hundredth of the density of air, as of one whose millimetres were taken for metres.
+    /// A uniform tube.
+    ///
+    /// # Errors
+    /// Those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than 0.01 kg/m^3, a
+    /// hundredth of the density of air, as of one whose millimetres were taken for metres.
     pub fn tube(of: &Tube) -> Result<Self, Error> {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
         let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
@@ -179,9 +207,6 @@ impl Measured {
     /// `fillet` the radius of the rounded edge, both in metres; `i1` and `i3` are the moments about the centre of mass,
     /// in kg m^2.
     ///
-    /// Errors: those of [`Body::rounded`], and `OutOfRange` for moments that are so small or large for this mass and
-    /// radius that they must be in another unit.
-    ///
     /// ```
     /// use spincyl::{Body, Scale, measured::Measured};
     ///
@@ -192,6 +217,10 @@ impl Measured {
     /// assert!(Body::new(1.0 / 12.0, 2.9e-7, 5.76e-7).is_err()); // in kg m^2
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// Those of [`Body::rounded`], and `OutOfRange` for moments that are so small or large for this mass and radius
+    /// that they must be in another unit.
     pub fn with_moments(scale: Scale, [height, fillet]: [f64; 2], [i1, i3]: [f64; 2]) -> Result<Self, Error> {
         let [low, high] = [1e-3, 1e4].map(|natural| scale.kilogram_square_metres(natural));
         within("i1", i1, (low, high), "1e-3 to 1e4 M R^2, in kg m^2")?;
@@ -211,8 +240,8 @@ impl Measured {
     }
 
     /// The motion from a start, at these times in seconds; poses and forces are always computed. The start and the
-    /// options are in natural units. Errors and `go_on`: as for [`roll_with`](motion::roll_with), whose times are in
-    /// natural units.
+    /// options are in natural units. `go_on` is as for [`roll_with`](motion::roll_with), whose times are in natural
+    /// units.
     ///
     /// ```
     /// use spincyl::{measured::{Measured, Tube}, motion::Ask, steady};
@@ -225,6 +254,9 @@ impl Measured {
     /// assert_eq!((last.time, (1e3 * last.force.z).round()), (2.0, 178.0)); // seconds, millinewtons
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// Those of [`roll_with`](motion::roll_with).
     pub fn roll(
         &self,
         start: impl Into<Start>,

@@ -10,6 +10,19 @@
 //! ```
 //! The first assumption that fails is the [`Event`] that ends the motion; states after the event are computed only with
 //! [`Ask::beyond`].
+//!
+//! ```
+//! use spincyl::motion::{Ask, roll_with};
+//! use spincyl::{Body, steady};
+//!
+//! // In a steady state the axis goes round at a constant rate.
+//! let body = Body::solid(2.5)?;
+//! let (start, ask) = (steady::state(&body, 1.3)?, Ask::default().with_pose(true));
+//! let motion = roll_with(&body, start, &[0.0, 10.0], &ask, || true)?.expect("not interrupted");
+//! let poses = motion.poses.expect("they are wanted");
+//! assert!((poses[1].phi.radians() - 10.0 * start.precession()).abs() < 1e-10);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::exact::Swing;
 pub use super::{
@@ -26,8 +39,7 @@ use crate::motions::slope::check_slope;
 /// Computes the motion of `body`, which rolls, from the state `start` at the first of the `times`, up to the event that
 /// ends it.
 ///
-/// The times are in sqrt(R/g). The method is exact, without poses and forces; [`roll_with`] has the other options, and
-/// the errors of both.
+/// The times are in sqrt(R/g). The method is exact, without poses and forces; [`roll_with`] has the other options.
 ///
 /// ```
 /// use spincyl::{Body, roll, steady};
@@ -39,6 +51,9 @@ use crate::motions::slope::check_slope;
 /// assert!(motion.error < 1e-12); // the motion estimates its own error
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`roll_with`].
 pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> {
     // For a first time that is not finite the error has to name `t`, not `t0`.
     let time = times.first().copied().filter(|t| t.is_finite()).unwrap_or(0.0);
@@ -50,13 +65,9 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// a slip. The times are in order and all after or all before the initial time; with a law of friction or losses they
 /// are not before it. `ask` chooses the contact, the losses, the method and the outputs.
 ///
-/// `go_on` is called about fifty times a second. If it returns false, the motion ends there with [`Ending::Bounded`] and
-/// [`Limit::Interrupted`], and its error is infinite unless the first integrals show it; the result is `Ok(None)` if
-/// the motion has not advanced. Errors before any work:
-/// `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step` for a fixed step
-/// that is too long for fast precession or nutation; `Painleve` for an initial state without a unique contact force.
-/// Errors at any time: `Memory` if the memory does not suffice for the outputs; for a body that slips or loses energy
-/// also the errors of [`path`].
+/// `go_on` is called about fifty times a second. If it returns false, the motion ends there with [`Ending::Bounded`]
+/// and [`Limit::Interrupted`], and its error is infinite unless the first integrals show it; the result is `Ok(None)`
+/// if the motion has not advanced.
 ///
 /// ```
 /// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
@@ -72,6 +83,12 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// assert!((path.phases[1].time - 5.0 / 0.5).abs() < 1e-12);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// Before any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step`
+/// for a fixed step that is too long for fast precession or nutation; `Painleve` for an initial state without a unique
+/// contact force. At any time: `Memory` if the memory does not suffice for the outputs; for a body that slips or loses
+/// energy also the errors of [`path::follow`].
 pub fn roll_with(
     body: &Body,
     start: impl Into<Start>,

@@ -18,6 +18,14 @@
 //!
 //! Error of the search: 1e-3 of the spin, within the time of the search. A motion decides only if its estimated error is
 //! smaller than what separates it from the other decision; else it is computed again with a smaller tolerance.
+//!
+//! ```
+//! use spincyl::{Ellipsoid, turning};
+//!
+//! let least = turning::jellett_rising_spin(&Ellipsoid::egg(1.0, 1.4, 0.0)?)?;
+//! assert!((least - 4.146).abs() < 1e-3); // in sqrt(g/a)
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::motion::roll_with;
 use super::{Ask, Method, Motion, Moving, Start, stone};
@@ -52,7 +60,7 @@ const DECISION_TOLERANCES: [f64; 3] = [1e-8, 1e-11, 1e-14];
 /// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's number;
 /// infinite if with every spin the top is unstable upside down or stable upright, unless 1 - l < I1/I3 < 1 + l.
 ///
-/// Error: a few roundings. Errors: `OutOfRange` unless the body is a ball with its centre of mass below its middle.
+/// Error: a few roundings.
 ///
 /// ```
 /// use spincyl::{Body, turning};
@@ -61,6 +69,9 @@ const DECISION_TOLERANCES: [f64; 3] = [1e-8, 1e-11, 1e-14];
 /// assert!((turning::jellett_spin(&top)? - 2.496).abs() < 1e-3);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` unless the body is a ball with its centre of mass below its middle.
 pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
     let [over, up] = jellett_spins(top)?;
     Ok(over.max(up))
@@ -93,11 +104,14 @@ fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
 /// the spin of [`jellett_spin`]. The weaker the friction, the longer a top needs; with more time the result may be less.
 ///
 /// The top has turned over when its axis comes within 0.14 rad of the vertical. A top that leaves the table comes down
-/// again, without a bounce. Error: 1e-3 of the spin. On rough tables a larger spin may fail where
-/// a smaller one does not, and the result is one limit of several. The result is never less than half of the spin with
-/// which the top is stable upside down. Errors: those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1],
-/// a `time` outside (0, 1e6] or coefficients out of range; those of [`roll_with`](super::motion::roll_with); `Undecided`
-/// for a motion that is given up, or whose error at the smallest tolerance is too large to tell.
+/// again, without a bounce. Error: 1e-3 of the spin. On rough tables a larger spin may fail where a smaller one does
+/// not, and the result is one limit of several. The result is never less than half of the spin with which the top is
+/// stable upside down.
+///
+/// # Errors
+/// Those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1], a `time` outside (0, 1e6] or coefficients
+/// out of range; those of [`roll_with`](super::motion::roll_with); `Undecided` for a motion that is given up, or whose
+/// error at the smallest tolerance is too large to tell.
 pub fn turning_spin(
     top: &Body,
     friction: Friction,
@@ -115,8 +129,10 @@ pub fn turning_spin(
 /// Jellett's number; infinite if with every spin the egg is unstable on its ends, or something on the way is stable.
 ///
 /// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
-/// few roundings. Errors: `OutOfRange` for another body, for an egg that stands on an end without spin, and for one
-/// that cannot lie.
+/// few roundings.
+///
+/// # Errors
+/// `OutOfRange` for another body, for an egg that stands on an end without spin, and for one that cannot lie.
 pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
     let LyingEgg { theta, height, moment } = LyingEgg::of(egg)?;
     let ([b, _, a], [_, _, d], [i1, _, i3, ..]) = (egg.axes(), egg.offset(), egg.inertia.0);
@@ -143,8 +159,12 @@ pub fn jellett_rising_spin(egg: &Ellipsoid) -> Result<f64, Error> {
 /// raised by `lean` and its centre at rest. The result is infinite if the egg does not rise with ten times the spin of
 /// [`jellett_rising_spin`].
 ///
-/// The egg has risen when its axis comes within 0.2 rad of the vertical. `time`, error and errors are as for
+/// The egg has risen when its axis comes within 0.2 rad of the vertical. `time` and the error are as for
 /// [`turning_spin`], in sqrt(a/g).
+///
+/// # Errors
+/// Those of [`jellett_rising_spin`], and those of [`turning_spin`] for the friction, the `lean`, the `time` and the
+/// motions.
 pub fn rising_spin(
     egg: &Ellipsoid,
     friction: Friction,

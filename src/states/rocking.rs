@@ -112,16 +112,19 @@ impl Ellipsoid {
     /// Computes the rocking of a stone that spins upright at the rate `spin`, with axis 3 up and the contact
     /// point at rest.
     ///
-    /// Errors: `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, because axis 3 is not a
-    /// principal axis or does not pass through the centre of mass.
+    /// # Errors
+    /// `OutOfRange` for a spin beyond 1e6, and for a stone that cannot spin upright, because axis 3 is not a principal
+    /// axis or does not pass through the centre of mass.
     pub fn rocking(&self, spin: f64) -> Result<Rocking, Error> {
         self.is_upright()?;
         within("spin", spin, (-1e6, 1e6), "|spin| <= 1e6 sqrt(g/a)")?;
         Ok(self.modes(&self.quartic(spin), spin))
     }
 
-    /// The spins, in ascending order, at which a stone that spins upright becomes stable or unstable. Errors:
-    /// those of [`rocking`](Self::rocking).
+    /// The spins, in ascending order, at which a stone that spins upright becomes stable or unstable.
+    ///
+    /// # Errors
+    /// Those of [`rocking`](Self::rocking) for the stone.
     pub fn spin_limits(&self) -> Result<Vec<f64>, Error> {
         self.is_upright()?;
         // Polynomials in W^2 from their values at W = 0, 1 and 2.

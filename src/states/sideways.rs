@@ -12,6 +12,18 @@
 //! kappa < 0 it leaves the steady state.
 //!
 //! Error: 64 ulp of the largest term; of second order in the slope as a law of motions.
+//!
+//! ```
+//! use spincyl::{Body, State, sideways::slope_drift, steady};
+//!
+//! // A body that turns the other way drifts to the other side.
+//! let tube = Body::tube(6.0, 0.8)?;
+//! let State { theta, w1, w3, .. } = steady::state(&tube, 1.45)?;
+//! let [one, other] = [1.0, -1.0].map(|way| State { theta, w1: way * w1, w2: 0.0, w3: way * w3 });
+//! let ([one, _], [other, _]) = (slope_drift(&tube, &one), slope_drift(&tube, &other));
+//! assert!((one + other).abs() < 1e-12);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::stability;
 use crate::laws::body::Body;

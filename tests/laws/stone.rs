@@ -100,7 +100,7 @@ proptest! {
     #[test]
     fn a_stone_that_rolls_keeps_its_energy(stone in any_stone(), start in any_start()) {
         let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond(true));
-        let energy = |y: &StoneState| stone.energy(y, false);
+        let energy = |y: &StoneState| stone.energy(y, Contact::Rolling);
         let fastest = motion.states.iter().flat_map(|y| y.w).fold(1.0, |most: f64, w| most.max(w.abs()));
         for y in &motion.states {
             let off = (energy(y) - energy(&motion.states[0])).abs();

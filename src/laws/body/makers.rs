@@ -25,6 +25,11 @@ impl Body {
     /// assert!((cup.i1() - 0.512_453_524_7).abs() < 1e-10);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// `OutOfRange` for radii outside [0, 1e50] or both 0, for a height outside [1e-50, 1e50], for a wall that is
+    /// negative or thicker than the smaller radius, and for a body that is too flat or too long; and those of
+    /// [`profile`](Self::profile).
     pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> Result<Self, Error> {
         within("bottom", bottom, LENGTH, "a radius of 0 to 1e50")?;
         within("top", top, LENGTH, "a radius of 0 to 1e50, and one of both radii above 0")?;
@@ -43,6 +48,9 @@ impl Body {
     }
 
     /// Uniform cone that stands on its tip, of this height over the radius R of its base.
+    ///
+    /// # Errors
+    /// Those of [`frustum`](Self::frustum), for this height.
     pub fn cone(height: f64) -> Result<Self, Error> {
         Self::frustum(0.0, 1.0, height, None)
     }
@@ -56,6 +64,11 @@ impl Body {
     /// assert_eq!(cup.circles().len(), 2);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// `OutOfRange`, with the name "points", for radii outside [0, 1e50], for heights outside [-1e50, 1e50], for a
+    /// line that encloses no volume or does not rise from its lower end, and for heights far from 0; and those of
+    /// [`profile`](Self::profile).
     pub fn lathe(points: &[[f64; 2]]) -> Result<Self, Error> {
         for [radius, height] in points {
             within("points", *radius, LENGTH, "radii of 0 to 1e50")?;
@@ -80,6 +93,10 @@ impl Body {
 
     /// Two solid balls of one density and of these radii, the lower one first, which touch (`separation = 1`) or have their
     /// centres `separation` times the sum of the radii apart on a light rod. The body is told in R, the larger radius.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a separation outside [1, 1000], and for radii that are not positive, that exceed 1e50, or of
+    /// which one is less than a thousandth of the other.
     pub fn unequal_balls(radii: [f64; 2], separation: f64) -> Result<Self, Error> {
         within("separation", separation, (1.0, 1e3), "1 <= separation <= 1000")?;
         let [lower, upper] = radii;

@@ -13,6 +13,15 @@
 //! The constructors return an error for numbers that no body can have; no later code checks them again. The inertia
 //! excess is kept as an unevaluated sum of two doubles, because the steady states of a body near the critical shape
 //! depend on the last digits of the excess; `body::tube` gives its error.
+//!
+//! ```
+//! use spincyl::Body;
+//!
+//! // At the critical length both moments of inertia are equal, and so are theta0 and thetaInf.
+//! let can = Body::solid(Body::critical_aspect(0.0, 0.0)?)?;
+//! assert!(can.excess().abs() < 1e-15 && (can.theta_balance() - can.theta_limit()).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod apex;
 mod circles;
@@ -69,12 +78,18 @@ pub struct Body {
 
 impl Body {
     /// Solid cylinder of aspect ratio `ell` in [0, 1e150]; `ell = 0` is the thin disk.
+    ///
+    /// # Errors
+    /// `OutOfRange` for an `ell` outside [0, 1e150].
     pub fn solid(ell: f64) -> Result<Self, Error> {
         Self::tube(ell, 0.0)
     }
 
     /// Uniform tube of aspect ratio `ell` in [0, 1e150]. Its `bore` in [0, 1] is the ratio of inner to outer radius: 0
     /// is a solid cylinder, 1 a thin wall (a hoop for `ell = 0`).
+    ///
+    /// # Errors
+    /// `OutOfRange` for an `ell` outside [0, 1e150] or a `bore` outside [0, 1].
     pub fn tube(ell: f64, bore: f64) -> Result<Self, Error> {
         within("ell", ell, ELL, "0 <= ell <= 1e150")?;
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
@@ -85,6 +100,10 @@ impl Body {
     /// Uniform tube of half length `half_length` over the outer radius, whose outer edges are rounded with the radius
     /// `fillet` in [0, 1]. The fillet is at most half the length, and at most the wall that the bore leaves. The tube
     /// is a coin or a can for `bore = 0`, and a capsule or a ball for `fillet = 1`.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a half length outside [0, 1e150] (its name is "ell"), a bore outside [0, 1], and a fillet
+    /// outside [0, 1] or larger than the half length or the wall 1 - bore.
     pub fn rounded_tube(half_length: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
         within("ell", half_length, ELL, "0 <= ell <= 1e150")?;
         let expected = "0 <= fillet <= 1, at most half the length";
@@ -114,6 +133,9 @@ impl Body {
     /// A real body has `0 < i3 <= 2 i1`; equality holds for a flat body. An `i1` below 1e-3 is an error: such a body
     /// would have its mass within 3 % of R of its centre, and the moments of most hand-held bodies in kg m^2 are as
     /// small. Use [`Measured::with_moments`](crate::Measured::with_moments) for moments in SI.
+    ///
+    /// # Errors
+    /// Those of [`rounded`](Self::rounded), for a fillet of 0.
     pub fn new(ell: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         Self::rounded(ell, i1, i3, 0.0)
     }
@@ -125,6 +147,11 @@ impl Body {
     /// A body with `ell > 0` is assumed to be equally long on both sides of its centre and to land on its other rim at
     /// pi/2, except for a ball, which has no other rim; [`with_theta_end`](Self::with_theta_end) sets another
     /// inclination.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a fillet outside [0, 1], an `ell` outside [0, 1e150] (of a ball, outside (-1, 1e150]), an `i1`
+    /// outside [1e-3, 1e300], an `i3` outside [1e-150, 1e150], an `i1/i3` above 1e300, and an `i1 i3 + i1 + i3 ell^2`
+    /// above 1e301; `Moments` for `i3 > 2 i1`.
     pub fn rounded(ell: f64, i1: f64, i3: f64, fillet: f64) -> Result<Self, Error> {
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
         let (low, expected) = if fillet == 1.0 {
@@ -163,6 +190,9 @@ impl Body {
 
     /// Two equal solid balls (Hurricane balls), which touch (`separation = 1`) or have their centres `separation`
     /// diameters apart on a light rod. The second ball lands at pi/2.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a separation outside [1, 1e75].
     pub fn balls(separation: f64) -> Result<Self, Error> {
         within("separation", separation, (1.0, 1e75), "1 <= separation <= 1e75")?;
         let body = Self::rounded(separation, 0.4 + separation * separation, 0.4, 1.0)?;
@@ -171,6 +201,9 @@ impl Body {
 
     /// A ball whose centre of mass lies `offset` above its centre, with `offset` > -1; the offset of a tippe top at
     /// rest is negative. The moments are about the centre of mass. The motion of the ball can pass through both poles.
+    ///
+    /// # Errors
+    /// `OutOfRange` for an offset outside (-1, 1e150]; and those of [`rounded`](Self::rounded) for the moments.
     pub fn ball(offset: f64, i1: f64, i3: f64) -> Result<Self, Error> {
         within("offset", offset, ((-1f64).next_up(), ELL.1), "-1 < offset <= 1e150")?;
         Self::rounded(offset, i1, i3, 1.0)
@@ -178,6 +211,9 @@ impl Body {
 
     /// Returns this body with another end of its motion: the inclination `theta_end` in (0, pi], in radians, at which a
     /// stem, a cap or the shoulder of a bottle lands.
+    ///
+    /// # Errors
+    /// `OutOfRange` for an inclination outside [1e-6, pi].
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
         Ok(Self { theta_end, low: 0.0, row: None, ..self })
@@ -198,6 +234,11 @@ impl Body {
     /// assert!((cup.theta_end() - (2.0f64).atan2(0.3)).abs() < 1e-15);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// `OutOfRange`, with the name "circles", without a circle, for more than 8 that touch the table, for circles that
+    /// are not in order from the lower end up, for one that lies inside another, for radii or fillets outside [0,
+    /// 1e100], and for depths outside [-1e100, 1e100]; and those of [`rounded`](Self::rounded) for the moments.
     pub fn profile(circles: &[Circle], i1: f64, i3: f64) -> Result<Self, Error> {
         let row = CircleRow::of(circles)?;
         Self::bare(0.0, 0.0).with_moments(i1, i3)?.on(row).of_this_world()
@@ -211,6 +252,11 @@ impl Body {
 
     /// Uniform tube with these dimensions in metres (or in any other common unit); `fillet` is the radius of its outer
     /// edges.
+    ///
+    /// # Errors
+    /// `OutOfRange` for an outer diameter that is not positive, an inner diameter that is negative or larger than the
+    /// outer one, a negative length, and a fillet that is negative or larger than half the outer diameter; and those of
+    /// [`rounded_tube`](Self::rounded_tube).
     pub fn from_metres(
         outer_diameter: f64,
         inner_diameter: f64,
@@ -263,6 +309,9 @@ impl Body {
 
     /// The half length over the outer radius at which a tube of this `bore` and `fillet` has I1 = I3 and
     /// theta0 = thetaInf; for a sharp rim it is (sqrt(3)/2) sqrt(1 + bore^2). The relative error is below 4 ulp.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a bore or a fillet outside [0, 1], and for a fillet larger than the wall 1 - bore.
     pub fn critical_aspect(bore: f64, fillet: f64) -> Result<f64, Error> {
         within("bore", bore, (0.0, 1.0), "0 <= bore <= 1")?;
         within("fillet", fillet, FILLET, "0 <= fillet <= 1")?;
@@ -468,6 +517,18 @@ pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
 }
 
 impl core::fmt::Display for Body {
+    /// The numbers of the body in its natural units; of a body of several circles, those of the one on which it stands.
+    /// The fillet of a sharp rim is left out, and so is a theta_end of pi/2 or pi.
+    ///
+    /// ```
+    /// use spincyl::Body;
+    ///
+    /// assert_eq!(Body::solid(0.0)?.to_string(), "ell = 0, I1 = 0.25, I3 = 0.5");
+    /// assert_eq!(Body::ball(-0.2, 0.4, 0.42)?.to_string(), "ell = -0.2, I1 = 0.4, I3 = 0.42, fillet = 1");
+    /// let bottle = Body::new(2.0, 1.5, 0.5)?.with_theta_end(1.2)?;
+    /// assert_eq!(bottle.to_string(), "ell = 2, I1 = 1.5, I3 = 0.5, theta_end = 1.2");
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let Self { ell, i1, i3, fillet, theta_end, .. } = self;
         write!(f, "ell = {ell}, I1 = {i1}, I3 = {i3}")?;

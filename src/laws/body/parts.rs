@@ -9,6 +9,17 @@
 //! touches the table.
 //!
 //! Error: a few roundings of the moments about a point within the body; theta_end has as many.
+//!
+//! ```
+//! use spincyl::body::parts::{Amount, BodyPart, Form, assembled};
+//!
+//! // A wheel: a disk, and a ring of the same mass near its edge.
+//! let disk = Form::Solid { radii: [1.0; 2], bores: [0.0; 2], ends: [0.0, 0.2], fillet: 0.0 };
+//! let ring = Form::Ring { radius: 0.9, height: 0.1 };
+//! let wheel = assembled(&[disk, ring].map(|form| BodyPart::new(form, Amount::Mass(2.0))))?;
+//! assert!((wheel.mass - 4.0).abs() < 1e-14 && (wheel.body.i3() - (0.5 + 0.81) / 2.0).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::hull::{Edge, Hull};
 use super::{Body, Circle};
@@ -333,8 +344,9 @@ fn none(value: f64) -> Error {
 /// circle of its convex hull. Parts inside a concave outline do not touch the table. A body has two equal rims if it has
 /// two circles, of which the other is as wide and as far from the centre of mass; then theta_end is pi/2.
 ///
-/// Errors: `OutOfRange` with the number of a part that is out of range, or with "parts" for a body without mass or
-/// extent; and the errors of [`Body::rounded`] and [`Body::profile`].
+/// # Errors
+/// `OutOfRange` with the name of a number of a part that is out of range, or with "parts" for a body without mass or
+/// extent; and those of [`Body::rounded`] and [`Body::profile`].
 pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     let (mut masses, mut edges) = (Vec::new(), Vec::new());
     for BodyPart { form, amount } in parts {

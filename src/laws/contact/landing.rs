@@ -25,6 +25,19 @@
 //! the impulse opposes that slip.
 //!
 //! Error: 1e-12 of the largest velocity; a test of `throw` compares with the three-dimensional model.
+//!
+//! ```
+//! use spincyl::contact::landing::{Outcome, land};
+//! use spincyl::{Body, State};
+//!
+//! // A can that falls on its side, on a table without friction, stays there.
+//! let can = Body::solid(2.0)?;
+//! let falls = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: -0.1, w3: 0.0 };
+//! let landed = land(&can, &falls, [0.0; 2], 0.0)?;
+//! assert_eq!(landed.outcome, Outcome::Lies);
+//! assert!(landed.state.w2.abs() < 1e-15 && landed.lost > 0.0);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::lying::Lying;
 use super::slip::Friction;
@@ -120,9 +133,12 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
 ///
-/// With w2 = 0 there is no impact, and only the motion that follows is determined. Friction may allow two
-/// consistent outcomes or none, which is an error; in 1e-5 of all cases the search finds no outcome, which is
-/// an error, too.
+/// With w2 = 0 there is no impact, and only the motion that follows is determined. Friction may allow two consistent
+/// outcomes or none, and in 1e-5 of all cases the search finds none.
+///
+/// # Errors
+/// `OutOfRange` for a body without two equal rims, an inclination other than theta_end, a w2 outside [-1e100, 0],
+/// another speed beyond 1e100, and a `mu` outside [0, 1e100]; `Landing` for two consistent outcomes, or none.
 pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     within("mu", mu, (0.0, 1e100), "0 <= mu <= 1e100")?;

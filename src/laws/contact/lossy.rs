@@ -13,6 +13,17 @@
 //! |lambda| or |nu| above (Filippov 1960).
 //!
 //! Error: a few roundings of the terms written above; a test of `losses` compares them with [`newton`].
+//!
+//! ```
+//! use spincyl::loss::{Law, Losses};
+//! use spincyl::{Body, Contact, contact::lossy, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let state = steady::state(&body, 1.3)?;
+//! let (_, power) = lossy::derivative(Contact::Rolling, &body, &state, &Losses::of(Law::AirLinear, 1e-3));
+//! assert!((power / (1e-3 * state.angular_velocity().norm_squared()) - 1.0).abs() < 1e-12); // b w.w
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::reduced::{Coefficients, Rates, Reduced};
 use super::{Contact, rolling};

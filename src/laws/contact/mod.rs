@@ -9,6 +9,16 @@
 //! |F_horizontal| <= mu N: the friction that rolling needs is only compared with mu N, never limited to it.
 //!
 //! Error: 64 ulp of the largest term, by comparison with a three-dimensional model in a test of `laws`.
+//!
+//! ```
+//! use spincyl::{Body, Contact, contact, steady};
+//!
+//! // A body whose centre is at rest needs no friction, and the table carries its weight.
+//! let body = Body::solid(2.5)?;
+//! let force = contact::force(Contact::Rolling, &body, &steady::state(&body, 1.3)?);
+//! assert!((force.normal - 1.0).abs() < 1e-12 && force.friction() < 1e-12);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 pub(crate) mod delassus;
 pub(crate) mod face;

@@ -16,6 +16,15 @@
 //! q^2), and their Chebyshev series on [0, 1] fall as 5.83^-n.
 //!
 //! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
+//!
+//! ```
+//! use spincyl::contact::patch;
+//!
+//! // A patch that only drills has a couple of 3 pi/16 mu N eps, and resists a small slip by a small force.
+//! let [force, couple] = patch::of(0.0);
+//! assert!(force == 0.0 && (couple - 3.0 * std::f64::consts::PI / 16.0).abs() < 1e-14);
+//! assert!((patch::of(patch::slip_for(0.5))[0] - 0.5).abs() < 1e-12);
+//! ```
 
 use crate::methods::search::crossing;
 use crate::numbers::{Dual, Real};

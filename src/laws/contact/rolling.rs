@@ -13,6 +13,15 @@
 //!
 //! Error: a few roundings of the terms written above. The contact force does no work: dE/dt = 0 to 16 ulp of the
 //! largest power at any state, and a test of `laws` checks this.
+//!
+//! ```
+//! use spincyl::{Body, rolling, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let rate = rolling::derivative(&body, &steady::state(&body, 1.3)?);
+//! assert!(rate.w1.abs().max(rate.w2.abs()).max(rate.w3.abs()) < 1e-12); // a steady state does not change
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::Contact;
 use crate::laws::body::{Body, Shape};

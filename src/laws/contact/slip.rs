@@ -20,6 +20,18 @@
 //!
 //! Error: a few roundings of the terms written above; a test of `slip` compares them with Newton's equations in three
 //! dimensions.
+//!
+//! ```
+//! use spincyl::contact::slip::{Friction, derivative};
+//! use spincyl::{Body, State, loss::Losses};
+//!
+//! // A hoop on edge whose contact point slips: friction mu N slows down the slip at twice the rate mu.
+//! let hoop = Body::tube(0.0, 1.0)?;
+//! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
+//! let (_, slows, force) = derivative(&hoop, &state, [0.0, 5.0], &Friction::coulomb(0.25), &Losses::NONE);
+//! assert!((force.along + 0.25).abs() < 1e-14 && (slows[1] + 0.5).abs() < 1e-14);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::JAMMED;
 use super::patch::rubs;
@@ -63,7 +75,11 @@ impl Friction {
         Self::Coulomb { mu, fixed: mu, patch: 0.0 }
     }
 
-    /// Returns an error for coefficients outside their range; the error names the coefficient.
+    /// Checks that each coefficient is in its range.
+    ///
+    /// # Errors
+    /// `OutOfRange`, with the name of the coefficient, for a `mu` or a `c` that is negative or not finite, a static
+    /// coefficient below `mu`, and a patch outside [0, 1).
     pub fn check(&self) -> Result<(), Error> {
         let finite = (0.0, f64::MAX);
         match *self {

@@ -13,6 +13,15 @@
 //!
 //! Error: a few roundings of the terms above. Energy and both momenta change by less than 64 ulp of the largest power
 //! or torque at any state, and a test of `laws` checks this.
+//!
+//! ```
+//! use spincyl::{Body, State, smooth};
+//!
+//! // A vertical force has no moment about the axis of the body.
+//! let rate = smooth::derivative(&Body::solid(2.5)?, &State { theta: 1.3, w1: 0.3, w2: -0.2, w3: 2.0 });
+//! assert!(rate.theta == 0.2 && rate.w3.abs() < 1e-15);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 use super::Contact;
 use crate::laws::body::{Body, Shape};

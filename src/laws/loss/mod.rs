@@ -16,6 +16,17 @@
 //! is then zero, and the module `motion` computes the couple that acts.
 //!
 //! Error: a few roundings of the terms written in each law; a property of `losses` says P = -m.w.
+//!
+//! ```
+//! use spincyl::loss::{Law, Losses};
+//! use spincyl::{Body, steady};
+//!
+//! let coin = Body::solid(0.0)?;
+//! let state = steady::state(&coin, 0.5)?;
+//! let power = Losses::of(Law::ViscousContour, 1e-3).power(&coin, &state, 1.0);
+//! assert!((power / (1e-3 * state.spin().powi(2)) - 1.0).abs() < 1e-12); // c (A psi')^2
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod air_film;
 mod air_linear;
@@ -300,7 +311,10 @@ impl Losses {
         Law::ALL.iter().copied().zip(self.coefficients).filter(|(_, coefficient)| *coefficient != 0.0)
     }
 
-    /// Returns an error for coefficients outside their range, from 0 to 1e6; the error names the coefficient.
+    /// Checks that each coefficient is in its range.
+    ///
+    /// # Errors
+    /// `OutOfRange`, with the name of the coefficient, for one outside [0, 1e6].
     pub fn check(&self) -> Result<(), Error> {
         for &law in Law::ALL {
             let value = self.coefficient(law);
@@ -314,7 +328,11 @@ impl Losses {
         Ok(())
     }
 
-    /// Returns an error for coefficients outside their range, and for a ball under a law that needs a flat face.
+    /// Checks the coefficients, and that the body has what each law acts on.
+    ///
+    /// # Errors
+    /// Those of [`check`](Self::check), and `OutOfRange` with the name "fillet" for a ball under a law that needs a
+    /// flat face.
     pub fn check_for(&self, body: &Body) -> Result<(), Error> {
         self.check()?;
         let face = Law::ALL.iter().any(|law| law.needs_face() && self.coefficients[*law as usize] != 0.0);
@@ -325,8 +343,11 @@ impl Losses {
         Ok(())
     }
 
-    /// Returns an error for coefficients outside their range, and for laws that act along a rim, which a stone does not
-    /// have.
+    /// Checks the coefficients, and that no law acts along a rim, which a stone does not have.
+    ///
+    /// # Errors
+    /// Those of [`check`](Self::check), and `OutOfRange` with the name of the coefficient of a law that acts along a
+    /// rim.
     pub fn check_for_stone(&self) -> Result<(), Error> {
         self.check()?;
         let Some((law, value)) = self.iter().find(|(law, _)| law.is_along_contour()) else { return Ok(()) };
@@ -375,6 +396,28 @@ impl Losses {
     pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
         let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
         of.at(&seen).under(normal.max(0.0))
+    }
+}
+
+impl core::fmt::Display for Losses {
+    /// The laws that are present, each with the name of its coefficient.
+    ///
+    /// ```
+    /// use spincyl::loss::{Law, Losses};
+    ///
+    /// let both = Losses::of(Law::DryContour, 5e-3) + Losses::of(Law::AirFilm, 1e-7);
+    /// assert_eq!(both.to_string(), "dry contour: eps = 0.005, air film: viscosity = 1e-7");
+    /// assert_eq!(Losses::NONE.to_string(), "no losses");
+    /// ```
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        if self.iter().next().is_none() {
+            return f.write_str("no losses");
+        }
+        for (k, (law, coefficient)) in self.iter().enumerate() {
+            let before = if k > 0 { ", " } else { "" };
+            write!(f, "{before}{law}: {} = {coefficient:?}", law.parameter())?;
+        }
+        Ok(())
     }
 }
 

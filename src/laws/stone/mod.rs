@@ -18,6 +18,7 @@ mod file;
 pub(crate) mod law;
 mod state;
 
+use super::contact::Contact;
 use crate::error::{Error, within};
 use crate::numbers::vector::{Symmetric, cross, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -51,9 +52,10 @@ impl Ellipsoid {
     /// the centre of mass from the centre of the ellipsoid, all in one unit of length. The largest semi-axis becomes the
     /// unit of the body.
     ///
-    /// Errors: `OutOfRange` for semi-axes outside `[1e-30, 1e30]` or in a ratio above 1e6, for a tensor that is not
-    /// symmetric, and for a centre of mass outside the ellipsoid; `Inertia` for impossible principal moments (each has to
-    /// be positive and at most the sum of the two others).
+    /// # Errors
+    /// `OutOfRange` for semi-axes outside `[1e-30, 1e30]` or in a ratio above 1e6, for a tensor that is not symmetric,
+    /// and for a centre of mass outside the ellipsoid; `Inertia` for impossible principal moments (each has to be
+    /// positive and at most the sum of the two others).
     pub fn new(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
         let stone = Self::shaped(axes, inertia, offset)?;
         stone.checked(stone.moments())
@@ -100,6 +102,9 @@ impl Ellipsoid {
     }
 
     /// A uniform ellipsoid with these semi-axes.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) for the semi-axes.
     pub fn uniform(axes: [f64; 3]) -> Result<Self, Error> {
         Self::turned(axes, uniform(axes), 0.0, [0.0; 3])
     }
@@ -107,6 +112,9 @@ impl Ellipsoid {
     /// A rattleback with these semi-axes and these principal moments per mass about the centre of mass. The principal axes
     /// are turned by `twist` (radians) about axis 3 from the axes of the ellipsoid, counterclockwise as seen from above.
     /// Without moments the stone is the lower half of a uniform ellipsoid, with its edge at the height of its centre.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a twist beyond 1e6 rad; and those of [`new`](Self::new).
     pub fn rattleback(
         axes: [f64; 3],
         moments: Option<[f64; 3]>,
@@ -125,6 +133,9 @@ impl Ellipsoid {
 
     /// An egg: a uniform spheroid with the semi-axes `radius`, `radius` and `half_length`, whose centre of mass lies
     /// `offset` above its centre along axis 3; the moments about the centre of mass are those of the uniform spheroid.
+    ///
+    /// # Errors
+    /// `OutOfRange` for a radius or a half length outside [1e-30, 1e30]; and those of [`new`](Self::new).
     pub fn egg(radius: f64, half_length: f64, offset: f64) -> Result<Self, Error> {
         let axes = [radius, radius, half_length];
         within("radius", radius, AXES, "1e-30 <= radius <= 1e30")?;
@@ -156,6 +167,9 @@ impl Ellipsoid {
     }
 
     /// Returns this stone with an edge that lands at the inclination `theta_end` of axis 3, in (0, pi], radians.
+    ///
+    /// # Errors
+    /// `OutOfRange` for an inclination outside [1e-6, pi].
     pub fn with_theta_end(self, theta_end: f64) -> Result<Self, Error> {
         within("theta_end", theta_end, (1e-6, PI), "1e-6 <= theta_end <= pi (radians)")?;
         Ok(Self { theta_end, ..self })
@@ -165,8 +179,11 @@ impl Ellipsoid {
     pub const NAMES: [&str; 13] =
         ["a1", "a2", "a3", "i11", "i22", "i33", "i23", "i13", "i12", "d1", "d2", "d3", "theta_end"];
 
-    /// Makes a stone from its numbers: semi-axes, moments 11, 22, 33, 23, 13 and 12, offset, and theta_end, which is NaN
-    /// without an edge. Errors: those of [`new`](Self::new).
+    /// Makes a stone from its numbers: semi-axes, moments 11, 22, 33, 23, 13 and 12, offset, and theta_end, which is
+    /// NaN without an edge.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new) and of [`with_theta_end`](Self::with_theta_end).
     pub fn of_numbers([a, b, c, i, j, k, l, m, n, x, y, z, end]: [f64; 13]) -> Result<Self, Error> {
         Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?.with_edge(end)
     }
@@ -234,10 +251,21 @@ impl Ellipsoid {
         core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
     }
 
-    /// Kinetic and potential energy in M g a of a stone that rolls without slip, or if `smooth` of a stone whose centre
-    /// of mass has no horizontal velocity. Heights are above the table.
-    pub fn energy(&self, y: &StoneState, smooth: bool) -> f64 {
-        self.energy_slipping(y, [0.0; 2], smooth)
+    /// Kinetic and potential energy in M g a of a stone that rolls without slip, or on a smooth table of a stone whose
+    /// centre of mass has no horizontal velocity. Heights are above the table.
+    ///
+    /// ```
+    /// use spincyl::{Contact, Ellipsoid};
+    ///
+    /// // A rattleback that spins upright rolls about its centre of mass, which is at rest with either contact.
+    /// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.03, None)?;
+    /// let state = stone.spinning(-0.4, 0.0, 0.0);
+    /// let [rolling, smooth] = [Contact::Rolling, Contact::Smooth].map(|contact| stone.energy(&state, contact));
+    /// assert!((rolling - smooth).abs() < 1e-15);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn energy(&self, y: &StoneState, contact: Contact) -> f64 {
+        self.energy_slipping(y, [0.0; 2], contact == Contact::Smooth)
     }
 
     /// The energy of a stone whose contact point has the slip `slip`.

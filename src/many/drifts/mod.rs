@@ -22,8 +22,11 @@ use crate::numbers::{LANES, level};
 const DRIFTS_PER_BLOCK: usize = 4096;
 
 /// Computes the ends of all drifts and fills `out`, on `threads` threads, of which the calling thread is one. The
-/// calling thread calls `go_on` about fifty times a second with the finished share of the work, and stops if it returns
-/// false. Returns whether all drifts are done; if not, the contents are unspecified. The error is `Memory`.
+/// calling thread calls `go_on` about fifty times a second with the finished share of the work, and stops if it
+/// returns false. Returns whether all drifts are done; if not, the contents are unspecified.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit
@@ -89,6 +92,10 @@ fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize,
 }
 
 /// The drift of row `i`.
+///
+/// # Errors
+/// `OutOfRange` or `Moments` for a body that does not exist; and those of [`Drift::at_rest`] or, if the centre is not
+/// held at rest, of [`Drift::rolling`].
 pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
     starts.row(i).drift(starts.centre)
 }
@@ -111,6 +118,9 @@ pub const WIDTH: usize = 5;
 /// Computes one quantity of many drifts: for each k that of the drift number `of[k]`, at the inclination or time `x[k]`.
 /// Writes [`WIDTH`] numbers for each k, with NaN where there is no value. Elements with the same drift should follow one another, so that
 /// the drift is computed only once.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// The function panics if `of` and `x` differ in length, if `out` does not have [`WIDTH`] numbers for each, or if

@@ -14,7 +14,10 @@ use core::f64::consts::FRAC_PI_2;
 /// `theta` ascends. The map itself is not computed. For a sharp rim bisection finds the changes of sign, and every
 /// inclination is evaluated if a sign is uncertain; for a rounded rim the curves between the regions are computed, and
 /// single inclinations are evaluated only around them. The sums equal those of the map; two tests of `sweep` check it.
-/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished.
+/// `threads` and `go_on` are as for [`portrait`](super::portrait); None if the work is not finished.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// Panics if theta and weights differ in length, or theta does not ascend.

@@ -4,6 +4,18 @@
 //! [`stability`](crate::states::stability) in eight lanes, with the same bits as the single call, for any thread count,
 //! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
 //! rim is taken in that precision, and every other quantity is rounded once.
+//!
+//! ```
+//! use spincyl::sweep::{Portrait, portrait};
+//! use spincyl::{Body, steady};
+//!
+//! let (theta, body) = ([1.2, 1.3], Body::solid(2.5)?);
+//! let mut rate = [0.0; 2];
+//! let wanted = Portrait { rate: Some(&mut rate[..]), ..Portrait::default() };
+//! assert!(portrait(&theta, &[Some(body)], wanted, 1, |_| true)?);
+//! assert_eq!(rate, theta.map(|theta| steady::rate(&body, theta)));
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod areas;
 mod best;
@@ -82,8 +94,10 @@ impl<F> Default for Portrait<'_, F> {
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
 /// The caller is one of `threads` threads. It calls `go_on` with the finished share about fifty times a second, and
-/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified. The error is
-/// `Memory`.
+/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// Panics if an array of `out` does not hold `theta.len() * bodies.len()` numbers.
@@ -249,6 +263,9 @@ fn fill<T: Narrow, C: Stored>(
 /// these arrays may be a single number. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
 ///
 /// The values are those of [`portrait`], bit by bit; `threads` and `go_on` are as for `portrait`.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 ///
 /// # Panics
 /// Panics if columns differ in length (apart from single numbers), or an array of `out` does not fit them.

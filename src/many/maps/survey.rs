@@ -14,8 +14,11 @@ use fearless_simd::Level;
 
 /// The extrema of the squared rate, of both kappas and of the energy over a map that is not stored.
 ///
-/// `threads`, `go_on` and the error are as for [`portrait`](super::portrait); None if the work is not finished. Of
-/// equal values the first in row-major order counts.
+/// `threads` and `go_on` are as for [`portrait`](super::portrait); None if the work is not finished. Of equal values
+/// the first in row-major order counts.
+///
+/// # Errors
+/// `Memory` if the memory does not suffice.
 pub fn extrema(
     theta: &[f64],
     bodies: &[Option<Body>],

@@ -11,6 +11,21 @@
 //! farther than the end. A motion for which neither is precise enough is computed alone: one random initial state in a
 //! thousand. The method is chosen for each motion separately, so that the result has the same bits for any number of
 //! threads, any SIMD width and any other motions in the call. RK4 with a fixed step is used on request (`steps`).
+//!
+//! ```
+//! use spincyl::ensemble::{Job, MotionColumns, MotionOutput, roll};
+//! use spincyl::{Body, motion::Ending, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let state = steady::state(&body, 1.3)?;
+//! let columns: MotionColumns = [0.0, 0.01, 0.02].into_iter().map(|kick| (body, state.kicked(kick))).collect();
+//! let (mut error, mut method, mut status) = ([0.0; 3], [0; 3], [0; 3]);
+//! let out = MotionOutput::new(&mut error, &mut method, &mut status);
+//! assert!(roll(&columns.starts(), &Job::new(&[10.0]), out, 1, |_| true)?);
+//! assert!(error.iter().all(|error| *error < 1e-10));
+//! assert!(status.iter().all(|code| Ending::from_code(*code) == Some(Ending::Done)));
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod columns;
 mod customs;
@@ -178,8 +193,11 @@ const FLOWS_PER_BLOCK: usize = 1024;
 ///
 /// A motion gets NaN and the status of [`Ending::Invalid`](crate::motion::Ending::Invalid) if its body, state, contact
 /// or loss is out of the range of [`roll_with`](crate::motion::roll_with), and the status of
-/// [`Ending::Painleve`](crate::motion::Ending::Painleve) if its initial state has no unique contact force. Errors:
-/// `OutOfRange`, before any work, for invalid times, tolerance, step or mu; `Memory` at any time.
+/// [`Ending::Painleve`](crate::motion::Ending::Painleve) if its initial state has no unique contact force.
+///
+/// # Errors
+/// `OutOfRange`, before any work, for invalid times, tolerance, step, mu or other options of the job; `Memory` at any
+/// time.
 ///
 /// # Panics
 /// The function panics if columns differ in length (apart from single numbers), or if an array of `out` does not fit

@@ -301,8 +301,7 @@ impl Start {
     /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles);
     /// [`readings_from`](crate::measured::MeasuredMotion::readings_from) puts it back to where it began.
     ///
-    /// Errors: `OutOfRange` for a velocity that is not finite or that, on the table, would move the lowest point up or
-    /// down. Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.
+    /// Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.
     ///
     /// ```
     /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
@@ -315,6 +314,9 @@ impl Start {
     /// assert!(Start::from_twist(&ball, &turned, w, Vector3::z(), None).is_err());
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// `OutOfRange` for a velocity that is not finite or that, on the table, would move the lowest point up or down.
     pub fn from_twist(
         body: &Body,
         orientation: &UnitQuaternion<f64>,

@@ -8,8 +8,15 @@ use crate::numbers::larger_or_nan;
 use core::f64::consts::PI;
 use core::fmt::Debug;
 
-/// A state of a moving body, as a few numbers, with the types of its pose and of its contact force.
-pub trait Moving: Copy + Debug + PartialEq {
+/// The trait that only the states of this crate have, so that [`Moving`] can grow.
+pub(crate) mod sealed {
+    /// A state of this crate.
+    pub trait OwnState {}
+}
+
+/// A state of a moving body, as a few numbers, with the types of its pose and of its contact force. The states of a body and
+/// of a stone are the only ones.
+pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     /// Safety factor in the estimated error, which multiplies the scaled difference of two runs.
     const SAFETY: f64 = 30.0;
     /// The numbers of the state.
@@ -71,6 +78,8 @@ pub trait Moving: Copy + Debug + PartialEq {
         a.as_ref().iter().zip(b.as_ref()).fold(0.0, |most, (a, b)| larger_or_nan(most, (a - b).abs()))
     }
 }
+
+impl sealed::OwnState for State {}
 
 impl Moving for State {
     type Numbers = [f64; 4];

@@ -12,6 +12,21 @@
 //! Error: the path is computed twice, the second time with a tolerance up to ten thousand times as large, in about a
 //! third of the time. The estimated error is thirty times the difference of the two paths, scaled by the ratio of the
 //! tolerances.
+//!
+//! ```
+//! use spincyl::contact::Friction;
+//! use spincyl::motion::{Ask, Start, path::Kind, roll_with};
+//! use spincyl::{Body, State};
+//!
+//! // A hoop that slides without turning begins to roll.
+//! let hoop = Body::tube(0.0, 1.0)?;
+//! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
+//! let (start, ask) = (Start::from(state).with_slip([0.0, 1.0]), Ask::on(Friction::coulomb(0.25)));
+//! let motion = roll_with(&hoop, start, &[0.0, 10.0], &ask, || true)?.expect("not interrupted");
+//! let kinds: Vec<Kind> = motion.path.expect("there is friction").phases.iter().map(|phase| phase.kind).collect();
+//! assert_eq!(kinds, [Kind::Slipping, Kind::Rolling]);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 pub(crate) mod body_walk;
 pub(crate) mod face;
@@ -50,11 +65,15 @@ use core::f64::consts::PI;
 /// The share of the estimated error of the states that counts as an error of a ball's axis.
 const AXIS_ERROR_SHARE: f64 = 0.25;
 
-/// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with).
-/// A web page that needs no other motion calls this function directly, so that its program contains no other code. A
-/// motion that is too much work, or whose equations lose their digits on the way, ends there with
-/// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached; so does a motion
-/// that `go_on` interrupts. Error: `Lost` where the equations have lost their digits at the start.
+/// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with). A web page
+/// that needs no other motion calls this function directly, so that its program contains no other code. A motion that
+/// is too much work, or whose equations lose their digits on the way, ends there with
+/// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached;
+/// so does a motion that `go_on` interrupts.
+///
+/// # Errors
+/// `OutOfRange`, `Painleve` and `Memory` as for [`roll_with`](crate::motions::motion::roll_with); `Lost` where the
+/// equations have lost their digits at the start.
 pub fn follow(
     body: &Body,
     start: &Start,

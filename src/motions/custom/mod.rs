@@ -35,14 +35,13 @@ const CUSTOM_NUMBERS: usize = 14;
 
 /// Computes the motion of a body with user-defined laws at `times`, up to the event that ends it.
 ///
-/// `ask` gives the contact, losses, restitution, poses and forces. In the air the couple is called with a normal
-/// force of 0; a body with two rims is seen from the lower one. Along the impact of one rim the coefficient of friction is
+/// `ask` gives the contact, losses, restitution, poses and forces. In the air the couple is called with a normal force
+/// of 0; a body with two rims is seen from the lower one. Along the impact of one rim the coefficient of friction is
 /// that of the current speed; where both rims land at once it is that of the slip after the impact. A motion beyond
-/// events is an error, and so is friction of the user on a patch of contact. The default tolerance of a step is 1e-10. With
-/// `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. Errors: those of
-/// [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`], and at any time `Couple` or `Coefficient` if
-/// a law is not finite or supplies energy. A motion whose law is so stiff that it would need too many steps ends there
-/// with [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
+/// events is an error, and so is friction of the user on a patch of contact. The default tolerance of a step is 1e-10.
+/// With `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. A
+/// motion whose law is so stiff that it would need too many steps ends there with
+/// [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
 /// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
 ///
 /// ```
@@ -58,6 +57,12 @@ const CUSTOM_NUMBERS: usize = 14;
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-8); // the hoop rolls back as under any friction
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`]; `OutOfRange` for a motion beyond
+/// events, on a table that turns, with friction of the user on a patch of contact, beside a tangential restitution, or
+/// on another contact than Coulomb's friction; at any time `Couple` or `Coefficient` if a law is not finite or
+/// supplies energy.
 pub fn roll_with(
     body: &Body,
     start: impl Into<Start>,
@@ -72,9 +77,9 @@ pub fn roll_with(
     Ok(Motion::from(followed(body, &start, times, (ask, true), custom, &mut go_on)?).advanced(start.time))
 }
 
-/// Computes the motion of a stone with a user-defined law of friction at `times`, as [`stone::roll`] does under the laws of
-/// the library, with the options and the errors of [`roll_with`]. A couple of the user is an error, since it is a function
-/// of the inclination of an axis.
+/// Computes the motion of a stone with a user-defined law of friction at `times`, as [`stone::roll`] does under the
+/// laws of the library, with the options of [`roll_with`]. A couple is not possible, since it is a function of the
+/// inclination of an axis.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, contact::Friction, custom::{self, Custom}, motion::Ask};
@@ -87,6 +92,10 @@ pub fn roll_with(
 /// assert!(motion.path.unwrap().heat > 0.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// Those of [`stone::roll`]; with a law of friction also those of [`roll_with`] for this law; `OutOfRange` for a
+/// couple.
 ///
 /// [`stone::roll`]: crate::stone::roll
 pub fn roll_stone(

@@ -52,9 +52,6 @@ impl Drift {
     /// The drift of a body whose centre is kept at rest, from the inclination `theta`. [`Drift::rolling`] is the drift
     /// of a body that rolls.
     ///
-    /// Errors: those of [`steady::state`](crate::states::steady::state) and of [`Losses::check`]; `OutOfRange` without
-    /// losses, for ell above 1e6 and for moments outside 1e-12 to 1e12.
-    ///
     /// ```
     /// use spincyl::drift::{Drift, End};
     /// use spincyl::loss::{Law, Losses};
@@ -67,6 +64,10 @@ impl Drift {
     /// assert_eq!(drift.ended(), End::Face);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
+    ///
+    /// # Errors
+    /// Those of [`steady::state`](crate::states::steady::state) and of [`Losses::check_for`]; `OutOfRange` without
+    /// losses, for ell above 1e6 and for moments outside 1e-12 to 1e12; `Lost` where the time overflows.
     pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         check_drift(body, losses)?;
         Ok(Self { kind: DriftVariant::Rest(Box::new(Rest::new(body, theta, losses)?)) })
@@ -74,8 +75,10 @@ impl Drift {
 
     /// The drift of a body that rolls, from a steady state whose centre is at rest or moves along a circle.
     ///
-    /// Errors: as for [`at_rest`](Self::at_rest), and `OutOfRange` for a state that is not steady to six digits and for
-    /// a state that is unstable in rolling, kappa <= 0.
+    /// # Errors
+    /// Those of [`Losses::check_for`]; `OutOfRange` without losses, for ell above 1e6 and for moments outside 1e-12 to
+    /// 1e12, for a state that is not steady to six digits, and for one that is unstable in rolling, kappa <= 0; `Lost`
+    /// where the drift cannot be computed up to its end.
     pub fn rolling(body: &Body, y: &State, losses: &Losses) -> Result<Self, Error> {
         check_drift(body, losses)?;
         Ok(Self { kind: DriftVariant::Rolling(Box::new(DriftCourse::new(body, y, losses)?)) })

@@ -15,6 +15,17 @@
 //! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
 //! error against the three-dimensional model at 40 digits. The inputs are taken as exact: a change of the inputs by
 //! half an ulp moves a motion that lingers by more than the estimate.
+//!
+//! ```
+//! use spincyl::{Body, Contact, exact::Swing, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let start = steady::state(&body, 1.3)?.kicked(0.05);
+//! let swing = Swing::new(&body, &start, Contact::Rolling, false)?;
+//! let again = swing.state(swing.period());
+//! assert!((again.theta - start.theta).abs() < 1e-12 && (again.w2 - start.w2).abs() < 1e-12);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod carry;
 mod claim;
@@ -205,8 +216,9 @@ impl Swing {
     /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
     /// well.
     ///
-    /// Errors: `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above
-    /// 1e6 or moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
+    /// # Errors
+    /// `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above 1e6 or
+    /// moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
     pub fn new(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };

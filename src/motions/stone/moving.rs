@@ -2,7 +2,10 @@
 
 use crate::laws::stone::{StonePose, StoneState};
 use crate::motions::Moving;
+use crate::motions::ask::moving::sealed;
 use nalgebra::Vector3;
+
+impl sealed::OwnState for StoneState {}
 
 impl Moving for StoneState {
     /// Larger than for a body of revolution: a stone may pass over a sharp edge or linger near an unstable

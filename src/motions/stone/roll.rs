@@ -23,14 +23,14 @@ use core::cell::RefCell;
 
 /// Computes the motion of a stone at `times`, in ascending order and not before the time of the initial state.
 ///
-/// `start` is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to
-/// length 1. The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the
-/// laboratory frame in which the stone is turned from upright by the smallest angle. `ask` has
-/// the contact, the losses, the restitution, the tolerance, `beyond` and the outputs; a stone has no fixed step and no
-/// second rim that could land. With a restitution it may start in the air, and goes on where it leaves the table; the edge
-/// of a half ellipsoid ends the motion where it lands. The `heading` of a start turns that laboratory about the vertical, and its `place` is that of the
-/// first contact point; on a slope x points downhill. `go_on` and the limits of the work are as for a body ([`roll_with`](crate::motion::roll_with)).
-/// Errors: `OutOfRange`, which names the argument; `Painleve` for an initial state without a unique contact force.
+/// `start` is a [`StoneState`], or a [`Start`] with a slip and a time; the vertical of a state is scaled to length 1.
+/// The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the laboratory
+/// frame in which the stone is turned from upright by the smallest angle. `ask` has the contact, the losses, the
+/// restitution, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim that could land.
+/// With a restitution it may start in the air, and goes on where it leaves the table; the edge of a half ellipsoid
+/// ends the motion where it lands. The `heading` of a start turns that laboratory about the vertical, and its `place`
+/// is that of the first contact point; on a slope x points downhill. `go_on` and the limits of the work are as for a
+/// body ([`roll_with`](crate::motion::roll_with)).
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -44,6 +44,10 @@ use core::cell::RefCell;
 /// assert!(motion.states[0].spin() < -0.5 && motion.states.iter().any(|y| y.spin() > 0.1));
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange`, which names the argument, for a state, slip, time, tolerance or coefficient out of range; `Painleve`
+/// for an initial state without a unique contact force; `Memory` if the memory does not suffice for the outputs.
 pub fn roll(
     stone: &Ellipsoid,
     start: impl Into<Start<StoneState>>,

@@ -46,7 +46,6 @@ pub struct RollingStone {
 /// and its estimated error.
 ///
 /// `tol` is the tolerance of a step. `go_on` is called often; if it returns false, the result is `Ok(None)`.
-/// Errors: `OutOfRange` for an angular velocity beyond 1e6; `Endless` if the motion hardly advances.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, stone};
@@ -58,6 +57,10 @@ pub struct RollingStone {
 /// assert!(rows.iter().any(|row| row.state.spin() > 0.1) && error < 1e-4);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
+///
+/// # Errors
+/// `OutOfRange` for an angular velocity beyond 1e6; `Endless` if the motion hardly advances, and `Lost` if rounding
+/// errors outweigh it.
 pub fn rolling(
     stone: &Ellipsoid,
     start: StoneState,

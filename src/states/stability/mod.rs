@@ -18,6 +18,17 @@
 //!
 //! Dual numbers, which carry a derivative, give kappa from the law of motion; for maps, `at_rest` has a closed form of
 //! kappa with the centre at rest. Error of `kappa` of a state: 64 ulp of the largest term; a test of `laws` runs it.
+//!
+//! ```
+//! use spincyl::stability::{Region, at_rest, nutation, region};
+//! use spincyl::{Body, Contact};
+//!
+//! let body = Body::solid(2.5)?;
+//! assert_eq!(region(&body, 1.3), Region::Stable);
+//! let kappa = at_rest(&body, 1.3, Contact::Rolling);
+//! assert!((nutation(kappa).powi(2) - kappa).abs() < 1e-12 * kappa);
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod at_rest;
 mod boundaries;

@@ -15,6 +15,17 @@
 //! ulp of 2^-53, kappa_c = |dlog rate/dlog theta|, for every body and every double theta in (0, pi/2], subnormal ones
 //! too. The bound also holds next to folds, where n of a sharp rim is at most 1/(1 - sqrt(-d)) = 3.4 times n + d cos
 //! theta. The module `rounded` gives the error for a rounded rim. Tests of `hard_cases` and `laws` check it.
+//!
+//! ```
+//! use spincyl::{Body, steady};
+//!
+//! let body = Body::solid(2.5)?;
+//! let state = steady::state(&body, 1.3)?;
+//! assert!(state.centre_radius(&body) < 1e-12);
+//! let all = steady::inclinations(&body, steady::rate(&body, 1.3));
+//! assert!(all.iter().any(|theta| (theta - 1.3).abs() < 1e-10));
+//! # Ok::<(), spincyl::Error>(())
+//! ```
 
 mod branch;
 #[cfg(test)]
@@ -148,8 +159,11 @@ fn terms_of(body: &Body, theta: f64) -> RateTerms<f64> {
 /// The steady state with the centre at rest at inclination `theta` in (0, pi/2], for a rounded rim up to
 /// [`theta_end`](Body::theta_end).
 ///
-/// Errors: `OutOfRange` outside that interval, `Forbidden` between theta0 and thetaInf, `Undetermined` within a few
-/// last bits of these limits. The relative error of w1 and w3 is that of [`rate`] plus 4 ulp.
+/// The relative error of w1 and w3 is that of [`rate`] plus 4 ulp.
+///
+/// # Errors
+/// `OutOfRange` outside that interval, and for a ball whose centre of mass is at its centre; `Forbidden` between
+/// theta0 and thetaInf; `Undetermined` within a few last bits of these limits.
 pub fn state(body: &Body, theta: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if body.is_ball() && body.ell() == 0.0 {
@@ -205,9 +219,12 @@ fn check(body: &Body, theta: f64) -> Result<f64, Error> {
 /// The steady state at inclination `theta` in (0, pi/2] with the precession phi' = `precession`, in sqrt(g/R) and not
 /// 0, whose centre moves along a circle of radius [`centre_radius`](State::centre_radius).
 ///
-/// With `precession = rate / sqrt(I3)` that radius is 0 up to rounding, and the state is that of [`state`]. Errors:
-/// `OutOfRange` for an inclination outside (0, pi/2], for |precession| outside [1e-100, 1e100], and where w3 would
-/// overflow. The error of w3 is 8 ulp of its largest term, `cos(theta)/precession` included.
+/// With `precession = rate / sqrt(I3)` that radius is 0 up to rounding, and the state is that of [`state`]. The error
+/// of w3 is 8 ulp of its largest term, `cos(theta)/precession` included.
+///
+/// # Errors
+/// `OutOfRange` for an inclination outside (0, pi/2], for a rounded rim beyond theta_end, for a |precession| outside
+/// [1e-100, 1e100], and where w3 would overflow.
 pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error> {
     let theta = check(body, theta)?;
     if !(1e-100..=1e100).contains(&precession.abs()) {
@@ -224,9 +241,11 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
 /// such a steady state. The radius is positive where the centre moves against e2, as for a coin that rolls round a wide
 /// circle and leans inward, and negative where the centre moves along e2.
 ///
-/// The circular state is that of [`circular`]. Errors: `OutOfRange` for an inclination outside (0, pi/2], and for
-/// |radius| above 1e100. Error: 8 ulp, times the share of the largest of the terms lever, k depth/radius and k radius
-/// in their sum.
+/// The circular state is that of [`circular`]. Error: 8 ulp, times the share of the largest of the terms lever, k
+/// depth/radius and k radius in their sum.
+///
+/// # Errors
+/// `OutOfRange` for an inclination as in [`circular`], and for a |radius| above 1e100.
 pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64, Error> {
     let theta = check(body, theta)?;
     within("radius", radius, (-1e100, 1e100), "|radius| <= 1e100")?;
@@ -240,9 +259,11 @@ pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64,
 /// Both precessions phi' of circular steady states with this spin w3 about the axis, the slower one first; NaN without
 /// such a state. For w3 = 0 the two are opposite.
 ///
-/// The circular state is that of [`circular`]. Errors: `OutOfRange` for an inclination outside (0, pi/2], and for |w3|
-/// above 1e100. Error: 8 ulp for the faster precession; for the slower one this is multiplied by the cancellation
-/// between k^2 w3^2 and 4 lever n.
+/// The circular state is that of [`circular`]. Error: 8 ulp for the faster precession; for the slower one this is
+/// multiplied by the cancellation between k^2 w3^2 and 4 lever n.
+///
+/// # Errors
+/// `OutOfRange` for an inclination as in [`circular`], and for a |w3| above 1e100.
 pub fn precessions_of_spin(body: &Body, theta: f64, w3: f64) -> Result<[f64; 2], Error> {
     let theta = check(body, theta)?;
     within("w3", w3, (-1e100, 1e100), "|w3| <= 1e100")?;
