@@ -13,6 +13,9 @@ use spincyl::motion::{Ask, Start};
 use spincyl::scene::{Scene, SceneError};
 
 /// The scene of a tube that is thrown.
+///
+/// # Errors
+/// None: its numbers are in range.
 pub fn thrown() -> Result<Scene, SceneError> {
     let tube = Tube::solid(15.875e-3, 95.25e-3, 20e-3).with_inner_diameter(12.7e-3);
     let pipe = Measured::tube(&tube)?;
