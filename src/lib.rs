@@ -125,7 +125,7 @@ pub mod custom {
     //! # Ok::<(), spincyl::Error>(())
     //! ```
 
-    pub use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+    pub use crate::laws::custom::{CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push};
     pub use crate::laws::custom_si::{InSi, TurningInSi};
     pub use crate::motions::custom::{roll_stone, roll_with};
 }

@@ -105,7 +105,7 @@ def options_for_core(
         if laws is not None:
             options["losses"] = laws._coefficients
         if own is not None:
-            options["couple"] = own
+            options[asked.losses._slot] = own
     if asked.restitution is not None:
         options["restitution"] = coefficient_of(asked.restitution)
         if (law := law_for_core(asked.restitution)) is not None:

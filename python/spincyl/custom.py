@@ -1,10 +1,10 @@
-"""Custom laws: a couple that takes energy, and a coefficient of friction that depends on the speed.
+"""Custom laws: a couple that takes energy, friction that depends on the speed, and what drives a body.
 
 Each law is a Python function, or a C function (``numba.cfunc``, ctypes, ``scipy.LowLevelCallable``), which is
 called without Python in about a hundredth of the time; a motion calls a law thousands of times.
 `sc.roll` and `sc.sweep.roll` check the law before a motion begins: its values must be finite and without
-jumps, and a couple must not add energy. A dry law contains the sign of a speed, which jumps. Smooth it:
-``tanh(x/e)`` in place of ``sign(x)``.
+jumps, and a couple must not add energy, unless it is a `Drive`, such as a motor or a wind. A dry law
+contains the sign of a speed, which jumps. Smooth it: ``tanh(x/e)`` in place of ``sign(x)``.
 
 >>> import numpy as np
 >>> import spincyl as sc
@@ -30,7 +30,7 @@ from spincyl._loss import Law, Loss
 from spincyl._scale import Scale
 from spincyl._state import State
 
-__all__ = ["Couple", "Friction"]
+__all__ = ["Couple", "Drive", "Friction", "Moment"]
 
 
 def __dir__() -> list[str]:
@@ -47,7 +47,50 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Couple(Loss):
+class _Own(Loss):
+    """What the laws of loss that are functions have in common: sums with laws of the library."""
+
+    function: Callable[..., Any]
+    _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
+
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """Raises TypeError, since a law that is a function has no coefficients to list."""
+        raise TypeError(f"losses = {self!r}: {WHERE_OWN_LAWS_WORK}, for bodies of revolution")
+
+    @property
+    def _built_in(self) -> Loss | None:
+        return self._others
+
+    def __add__(self, other: Loss) -> Loss:
+        if getattr(other, "_function", None) is not None:
+            raise TypeError(f"losses = {self!r} + {other!r}: expected a law of your own of one function")
+        return self._beside(other if self._others is None else self._others + other)
+
+    def __radd__(self, other: Any) -> Loss:
+        return self + other if isinstance(other, Loss) else super().__radd__(other)
+
+    def _beside(self, others: Loss | None) -> Self:
+        found = type(self)(self.function)
+        object.__setattr__(found, "_others", others)
+        return found
+
+    def __eq__(self, other: object) -> bool:
+        same = type(other) is type(self)
+        return same and (other.function, other._others) == (self.function, self._others)  # type: ignore[attr-defined]
+
+    def __hash__(self) -> int:
+        return hash(self.function)
+
+    def __repr__(self) -> str:
+        more = "" if self._others is None else f" + {self._others!r}"
+        return f"custom.{type(self).__name__}({_named(self.function)}){more}"
+
+    __str__ = __repr__  # without coefficients there is no unit to print
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Couple(_Own):
     """Loss law given by a function of inclination, angular velocity and normal force.
 
     Parameters
@@ -79,7 +122,6 @@ class Couple(Loss):
     function: CoupleFunction
     _units: ClassVar[tuple[float, float, float]] = (1.0, 1.0, 1.0)  # of the numbers of a C function
     _pointer: ClassVar[Pointer | None] = None
-    _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "_pointer", pointer(self.function, COUPLE))
@@ -89,28 +131,6 @@ class Couple(Loss):
     @property
     def _function(self) -> Any:
         return self.function if self._pointer is None else (self._pointer.address, self._units)
-
-    @property
-    def laws(self) -> tuple[Law, ...]:
-        """Raises TypeError, since a law that is a function has no coefficients to list."""
-        raise TypeError(f"losses = {self!r}: {WHERE_OWN_LAWS_WORK}, for bodies of revolution")
-
-    @property
-    def _built_in(self) -> Loss | None:
-        return self._others
-
-    def __add__(self, other: Loss) -> Loss:
-        if getattr(other, "_function", None) is not None:
-            raise TypeError(f"losses = {self!r} + {other!r}: expected a couple of your own of one function")
-        return self._beside(other if self._others is None else self._others + other)
-
-    def __radd__(self, other: Any) -> Loss:
-        return self + other if isinstance(other, Loss) else super().__radd__(other)
-
-    def _beside(self, others: Loss | None) -> "Couple":
-        found = type(self)(self.function)
-        object.__setattr__(found, "_others", others)
-        return found
 
     def _natural(self, scale: Scale | None) -> Loss:
         if scale is None:
@@ -143,17 +163,142 @@ class Couple(Loss):
         """Power that the law takes in a single state, ``-couple @ w``."""
         return -float(self.couple(body, state, normal) @ np.array([state.w1, state.w2, state.w3]))
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Couple) and (other.function, other._others) == (self.function, self._others)
 
-    def __hash__(self) -> int:
-        return hash(self.function)
+@dataclass(frozen=True)
+class Moment:
+    """Where a driven body is and how it moves at a time: the argument of the function of a `Drive`.
 
-    def __repr__(self) -> str:
-        more = "" if self._others is None else f" + {self._others!r}"
-        return f"custom.Couple({_named(self.function)}){more}"
+    Attributes
+    ----------
+    time : float
+        Time, in sqrt(R/g), or in s for a measured body.
+    theta : float
+        Inclination of the axis, in radians. A body with two rims is seen from the lower one.
+    w : ndarray
+        Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
+    slip : ndarray
+        Slip along the lean and across it, in sqrt(g R), or in m/s; zeros where the body rolls.
+    phi, psi : float
+        Direction of the lean and turn about the axis, in radians, as in `Motion.phi` and `Motion.psi`.
+    contact_point : ndarray
+        Place of the contact point on the table, in R, or in m.
+    velocity : ndarray
+        Velocity of the centre of mass along x and y of the table, in sqrt(g R), or in m/s.
+    """
 
-    __str__ = __repr__  # without coefficients there is no unit to print
+    time: float
+    theta: float
+    w: Floats
+    slip: Floats
+    phi: float
+    psi: float
+    contact_point: Floats
+    velocity: Floats
+
+    @property
+    def axes(self) -> Floats:
+        """Axes e1, e2, e3 as the columns of a 3 x 3 array, along x, y and the upward z.
+
+        ``axes @ m`` turns a couple along e1, e2, e3 into one along x, y, z, and ``axes.T @ m`` turns it
+        back. e1 and e2 follow the lean, not the turn `psi` of the body about its axis.
+        """
+        s, c, sin, cos = np.sin(self.theta), np.cos(self.theta), np.sin(self.phi), np.cos(self.phi)
+        return np.array([[c * cos, -sin, -s * cos], [c * sin, cos, -s * sin], [s, 0.0, c]])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Drive(_Own):
+    """Force and couple that drive a body, such as a motor, a wind or a finger. They may give energy.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(now)`` gets a `Moment` and returns two vectors: the horizontal force on the centre of
+        mass along x and y of the table, in M g, and the couple along e1, e2, e3 of `State`, in M g R. For a
+        measured body all units are SI. A force at another point is this force with its couple about the
+        centre.
+
+    Raises
+    ------
+    TypeError
+        If `function` is not a Python function, or for a stone, a drift or lazy arrays.
+    ValueError
+        In `sc.roll` and `sc.sweep.roll`, if a value is not finite; and for a smooth table, a slope, a table
+        that turns, a patch of contact, a restitution, a body on its face, and beside losses that hold a
+        body at rest: dry friction along the rim, drilling friction and rolling resistance.
+
+    Notes
+    -----
+    The drive is given as ``losses=``, alone or in a sum with laws of `sc.loss`: `Motion.work_lost` is what
+    these have taken less the work of the drive, so that the energy, the heat of friction and `work_lost`
+    have a constant sum. The motion ends where a face or a second rim lands, or where the body leaves the
+    table. A value that jumps, such as a motor that is switched on, costs short steps. A pulse that is
+    shorter than a hundredth of sqrt(R/g) while the body is at rest may be missed: begin a new motion there.
+
+    Examples
+    --------
+    A shaken table is a table at rest with a force: a ball rolls with 5/7 of its acceleration.
+
+    >>> import numpy as np
+    >>> import spincyl as sc
+    >>> shakes = sc.custom.Drive(lambda now: ((0.2 * np.sin(now.time), 0.0), (0.0, 0.0, 0.0)))
+    >>> ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
+    >>> at_rest = sc.State(np.pi / 2, 0.0, 0.0, 0.0)
+    >>> m = sc.roll(ball, at_rest, [0.0, 2.0], losses=shakes, contact=sc.Coulomb(0.5), want="pose")
+    >>> float(m.contact_point[1, 0].round(9)), float((0.2 * 5 / 7 * (2.0 - np.sin(2.0))).__round__(9))
+    (0.155814653, 0.155814653)
+    """
+
+    function: Callable[[Moment], tuple[Any, Any]]
+    _units: ClassVar[tuple[float, ...]] = (1.0, 1.0, 1.0, 1.0)  # of length, time, force and couple
+    _slot: ClassVar[str] = "drive"
+
+    def __post_init__(self) -> None:
+        _called("function", self.function, "a Moment")
+        if pointer(self.function, COUPLE) is not None:
+            raise TypeError("function: expected a Python function of a Moment, not a C function")
+
+    @property
+    def _function(self) -> Any:
+        length, time, force, couple = self._units
+        speed = length / time
+
+        def push(now: Floats) -> Floats:
+            moment = Moment(
+                time=time * float(now[0]),
+                theta=float(now[1]),
+                w=now[2:5] / time,
+                slip=speed * now[5:7],
+                phi=float(now[7]),
+                psi=float(now[8]),
+                contact_point=length * now[9:11],
+                velocity=speed * now[11:13],
+            )
+            found = self.function(moment)
+            try:
+                (x, y), (m1, m2, m3) = found
+                return np.array([x, y, m1, m2, m3], dtype=float) / ([force] * 2 + [couple] * 3)
+            except (TypeError, ValueError):
+                expected = "a force along x and y, and a couple along e1, e2, e3"
+                raise TypeError(f"drive: expected {expected}, not {found!r}") from None
+
+        return push
+
+    def _natural(self, scale: Scale | None) -> Loss:
+        if scale is None:
+            return self
+        joules, (length, time) = scale._joule("a drive"), scale._units[:2]
+        found = self._beside(self._others)
+        object.__setattr__(found, "_units", (length, time, joules / length, joules))
+        return found
+
+    def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """Raises TypeError, since a drive depends on more than a state."""
+        raise TypeError(f"losses = {self!r}: a drive depends on a Moment, not on a state; call its function")
+
+    def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
+        """Raises TypeError, as `couple` does."""
+        return self.couple(body, state, normal)
 
 
 class Friction(Coulomb):

@@ -1,9 +1,11 @@
-//! User-defined laws of loss and friction, and the check of each law before a motion begins.
+//! User-defined laws of loss and friction, forces and couples that drive a body, and the check of each law before a motion
+//! begins.
 
 use super::body::Body;
 use super::state::State;
 use crate::error::{Error, within};
 use core::f64::consts::PI;
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 /// A loss law: a couple on the body that takes energy.
 ///
@@ -44,6 +46,68 @@ impl<F: Fn(f64) -> f64> FrictionLaw for F {
     }
 }
 
+/// Where a body is, and how it moves, at a time: what a law that drives it may depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Moment {
+    /// The time, in sqrt(R/g).
+    pub time: f64,
+    /// The inclination and the angular velocity along e1, e2, e3. A body with two rims is told from the lower one.
+    pub state: State,
+    /// The slip along the lean and across it, in sqrt(g R); 0 where the body rolls.
+    pub slip: [f64; 2],
+    /// The heading phi of the lean over the table, in radians from x to y, and the turn psi about the axis.
+    pub phi: f64,
+    /// See `phi`.
+    pub psi: f64,
+    /// The place of the contact point on the table, in R.
+    pub contact_point: Point2<f64>,
+    /// The velocity of the centre of mass along x and y, in sqrt(g R).
+    pub velocity: Vector2<f64>,
+}
+
+impl Moment {
+    /// The axes e1, e2, e3 along x, y and the upward z, as the columns of a rotation: it turns a vector along e1, e2, e3
+    /// into one along x, y, z, and its transpose turns it back. e1 and e2 follow the lean, not the turn psi.
+    ///
+    /// ```text
+    /// e1 = cos(theta) h + sin(theta) z,   e2 = z x h,   e3 = -sin(theta) h + cos(theta) z,   h = (cos(phi), sin(phi), 0)
+    /// ```
+    pub fn axes(&self) -> Matrix3<f64> {
+        let ((s, c), (sin, cos)) = (self.state.theta.sin_cos(), self.phi.sin_cos());
+        Matrix3::new(c * cos, -sin, -s * cos, c * sin, cos, -s * sin, s, 0.0, c)
+    }
+}
+
+/// What drives a body: a horizontal force on its centre of mass, and a couple.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// The force along x and y of the table, in M g.
+    pub force: Vector2<f64>,
+    /// The couple along e1, e2, e3, in M g R.
+    pub couple: Vector3<f64>,
+}
+
+/// A force and a couple that act on a body beside gravity and the table: a motor, a wind, a hand. They may give energy and
+/// take it.
+///
+/// A closure `|body: &Body, now: &Moment| -> Push` is such a law.
+pub trait DriveLaw {
+    /// The force and the couple at a moment. They have to be finite, and without jumps.
+    fn push(&self, body: &Body, now: &Moment) -> Push;
+
+    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
+impl<F: Fn(&Body, &Moment) -> Push> DriveLaw for F {
+    fn push(&self, body: &Body, now: &Moment) -> Push {
+        self(body, now)
+    }
+}
+
 /// The law of sliding friction in an impact. `()` is one of the library, whose coefficient is constant, and costs no code.
 pub(crate) trait SpeedLaw: Copy {
     /// Whether the coefficient depends on the speed of the slip.
@@ -69,6 +133,8 @@ pub struct Custom<'a> {
     pub couple: Option<&'a dyn CoupleLaw>,
     /// The coefficient of sliding friction, in place of that of the contact.
     pub friction: Option<&'a dyn FrictionLaw>,
+    /// A force and a couple that may give energy.
+    pub drive: Option<&'a dyn DriveLaw>,
 }
 
 impl<'a> Custom<'a> {
@@ -84,9 +150,17 @@ impl<'a> Custom<'a> {
         Self { friction: Some(friction), ..self }
     }
 
+    /// Returns these laws with this drive.
+    #[must_use]
+    pub fn with_drive(self, drive: &'a dyn DriveLaw) -> Self {
+        Self { drive: Some(drive), ..self }
+    }
+
     /// Whether any of the laws has failed.
     pub fn has_failed(&self) -> bool {
-        self.couple.is_some_and(CoupleLaw::has_failed) || self.friction.is_some_and(FrictionLaw::has_failed)
+        self.couple.is_some_and(CoupleLaw::has_failed)
+            || self.friction.is_some_and(FrictionLaw::has_failed)
+            || self.drive.is_some_and(DriveLaw::has_failed)
     }
 
     /// Checks the laws at about a thousand states and speeds; `fixed` is the coefficient of static friction.
@@ -128,6 +202,13 @@ pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Err
         () if power < -POWER_ROUNDING * magnitude(m) * magnitude(w) => fault(power, EXPECTED_TO_LOSE),
         () => None,
     }
+}
+
+/// The error of a force or a couple that drives a body and is not finite; its value is the time.
+pub(crate) fn fault_of_drive(push: &Push, now: &Moment) -> Option<Error> {
+    let finite = push.force.iter().chain(&push.couple).all(|x| x.is_finite());
+    let expected = "a force and a couple that are finite at every time";
+    (!finite).then_some(Error::OutOfRange { name: "drive", value: now.time, expected })
 }
 
 /// The error of a coefficient of friction that is negative or not finite at a speed.

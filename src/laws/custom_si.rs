@@ -3,14 +3,15 @@
 //! ```text
 //! F(m/s) -> mu        a coefficient of friction at a speed
 //! m(theta, w, N)      a couple in N m along e1, e2, e3, from rad/s and newtons
+//! F, m(t, ...)        a force in N and a couple in N m that drive a body
 //! ```
 //! Error: a few roundings of the conversions.
 
 use super::body::Body;
-use super::custom::{CoupleLaw, FrictionLaw};
+use super::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
 use super::scale::Scale;
 use super::state::State;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 /// How a body turns and is pressed on the table, in SI: what a couple in SI depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,8 +25,33 @@ pub struct TurningInSi {
     pub normal: f64,
 }
 
-/// A law in SI, for a body of this scale. It is a [`FrictionLaw`] if `law` is a function of a speed in m/s, and a
-/// [`CoupleLaw`] if it is a function of a [`TurningInSi`], which returns a couple along e1, e2, e3 in N m.
+/// A [`Moment`] in SI: what a drive in SI depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MomentInSi {
+    /// The time in seconds.
+    pub time: f64,
+    /// The inclination in radians.
+    pub theta: f64,
+    /// The angular velocity along e1, e2, e3, in rad/s.
+    pub w: Vector3<f64>,
+    /// The slip along the lean and across it, in m/s.
+    pub slip: Vector2<f64>,
+    /// The heading of the lean and the turn about the axis, in radians.
+    pub phi: f64,
+    /// See `phi`.
+    pub psi: f64,
+    /// The place of the contact point in metres.
+    pub contact_point: Point2<f64>,
+    /// The velocity of the centre along x and y, in m/s.
+    pub velocity: Vector2<f64>,
+    /// The axes e1, e2, e3 as columns ([`Moment::axes`]).
+    pub axes: Matrix3<f64>,
+}
+
+/// A law in SI, for a body of this scale. It is a [`FrictionLaw`] if `law` is a function of a speed in m/s, a
+/// [`CoupleLaw`] if it is a function of a [`TurningInSi`], which returns a couple along e1, e2, e3 in N m, and a
+/// [`DriveLaw`] if it is a function of a [`MomentInSi`], which returns a force in N and a couple in N m as a [`Push`].
 ///
 /// ```
 /// use spincyl::contact::Friction;
@@ -69,5 +95,23 @@ impl<L: Fn(&TurningInSi) -> Vector3<f64>> CoupleLaw for InSi<L> {
         let w = y.angular_velocity().map(|w| self.scale.radians_per_second(w));
         let turning = TurningInSi { theta: y.theta, w, normal: self.scale.newtons(normal) };
         (self.law)(&turning).map(|m| self.scale.couple(m)).into()
+    }
+}
+
+impl<L: Fn(&MomentInSi) -> Push> DriveLaw for InSi<L> {
+    fn push(&self, _: &Body, now: &Moment) -> Push {
+        let (scale, speed) = (&self.scale, |u: f64| self.scale.metres_per_second(u));
+        let push = (self.law)(&MomentInSi {
+            time: scale.seconds(now.time),
+            theta: now.state.theta,
+            w: now.state.angular_velocity().map(|w| scale.radians_per_second(w)),
+            slip: Vector2::from(now.slip).map(speed),
+            phi: now.phi,
+            psi: now.psi,
+            contact_point: now.contact_point.map(|x| scale.metres(x)),
+            velocity: now.velocity.map(speed),
+            axes: now.axes(),
+        });
+        Push { force: push.force.map(|f| scale.force(f)), couple: push.couple.map(|m| scale.couple(m)) }
     }
 }

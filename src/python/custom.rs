@@ -4,8 +4,9 @@ use super::options::MotionAsked;
 use super::pointer::GivenLaw;
 use super::watch::CHECK_PERIOD;
 use crate::laws::body::Body;
-use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+use crate::laws::custom::{CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push};
 use crate::laws::state::State;
+use nalgebra::{Vector2, Vector3};
 use numpy::PyArray1;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -21,9 +22,11 @@ pub(super) fn with_laws<T>(
     let (raised, pointed) = (Raised::default(), asked.pointed());
     let [couple, friction] = [&asked.couple, &asked.friction]
         .map(|law| PythonLaw::of(py, law.as_ref().and_then(GivenLaw::function), &raised));
+    let drive = PythonLaw::of(py, asked.drive.as_ref(), &raised);
     let found = run(Custom {
         couple: couple.as_ref().map(|law| law as &dyn CoupleLaw).or(pointed.custom().couple),
         friction: friction.as_ref().map(|law| law as &dyn FrictionLaw).or(pointed.custom().friction),
+        drive: drive.as_ref().map(|law| law as &dyn DriveLaw),
     });
     raised.end()?;
     Ok(found)
@@ -106,6 +109,27 @@ impl FrictionLaw for PythonLaw<'_, '_> {
     fn coefficient(&self, speed: f64) -> f64 {
         let number = |mu: Bound<'_, PyAny>| mu.extract().map_err(|_| unlike("mu: expected a number", &mu));
         self.value(|| self.function.call1((speed,)).and_then(number), f64::NAN)
+    }
+}
+
+impl DriveLaw for PythonLaw<'_, '_> {
+    fn has_failed(&self) -> bool {
+        self.is_over()
+    }
+
+    /// The function gets the numbers of a moment in their order, and returns the force along x and y and the couple.
+    fn push(&self, _: &Body, now: &Moment) -> Push {
+        let State { theta, w1, w2, w3 } = now.state;
+        let ([along, across], at, v) = (now.slip, now.contact_point, now.velocity);
+        let numbers = [now.time, theta, w1, w2, w3, along, across, now.phi, now.psi, at.x, at.y, v.x, v.y];
+        let found = || {
+            let push = self.function.call1((PyArray1::from_slice(self.function.py(), &numbers),))?;
+            let all: Vec<f64> = push.try_iter()?.map(|x| x?.extract()).collect::<PyResult<_>>()?;
+            let expected = "drive: expected five numbers, the force along x and y and the couple";
+            <[f64; 5]>::try_from(all).map_err(|_| unlike(expected, &push))
+        };
+        let [x, y, m1, m2, m3] = self.value(found, [f64::NAN; 5]);
+        Push { force: Vector2::new(x, y), couple: Vector3::new(m1, m2, m3) }
     }
 }
 

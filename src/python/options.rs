@@ -83,6 +83,8 @@ options! {
         /// User-defined laws: a couple, and a coefficient of friction.
         couple: Option<GivenLaw> = None,
         friction: Option<GivenLaw> = None,
+        /// A Python function that drives the body.
+        drive: Option<Py<PyAny>> = None,
         /// Whether the states of many motions are returned at all times, not only at the end.
         spread: bool = false,
         /// Whether many motions with friction or losses are computed twice, to estimate their errors.
@@ -109,12 +111,13 @@ fn impact_law_of((name, tangential): &(String, f64)) -> PyResult<ImpactLaw> {
 impl MotionAsked {
     /// Whether any law is user-defined.
     pub fn is_custom(&self) -> bool {
-        self.couple.is_some() || self.friction.is_some()
+        self.couple.is_some() || self.friction.is_some() || self.drive.is_some()
     }
 
     /// Whether a user-defined law is a function of Python, for which the GIL is needed.
     pub fn calls_python(&self) -> bool {
-        [&self.couple, &self.friction].into_iter().flatten().any(|law| law.function().is_some())
+        let given = [&self.couple, &self.friction].into_iter().flatten();
+        self.drive.is_some() || given.into_iter().any(|law| law.function().is_some())
     }
 
     /// The user-defined laws that are C functions.

@@ -44,6 +44,7 @@ impl PointedLaws {
         Custom {
             couple: self.couple.as_ref().map(|law| law as &dyn CoupleLaw),
             friction: self.friction.as_ref().map(|law| law as &dyn FrictionLaw),
+            drive: None,
         }
     }
 }

@@ -11,6 +11,7 @@ mod cups;
 mod custom;
 mod custom_stones;
 mod drift;
+mod driven;
 mod endings;
 mod ensemble;
 mod equations;

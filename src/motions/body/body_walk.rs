@@ -157,10 +157,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         y
     }
 
-    /// The losses, the couple of the user beside them, and the pull of a slope; None if there is none of these.
+    /// The losses, the couple of the user beside them, and the pull of a slope and of a drive; None if there is none of these.
     pub(super) fn couples(&self) -> Option<Couples<f64, G>> {
+        self.of.slide.asks_drive(&self.at);
         let lost = Couples::with_own(&self.ask.losses, self.of.own);
-        if self.ask.is_level() {
+        if self.ask.is_level() && !self.of.own.drives() {
             return lost;
         }
         let all = lost.unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));

@@ -30,6 +30,17 @@ pub(crate) trait Own:
     fn couple_at(&self, _: &State, _normal: f64) -> [f64; 3] {
         [0.0; 3]
     }
+    /// Whether a law of the user drives the body.
+    fn drives(&self) -> bool {
+        false
+    }
+    /// Asks the drive for its force and couple at these numbers, with w, the slip and the velocity of the centre along e_h
+    /// and e2 there.
+    fn asks_drive<const N: usize>(&self, _: &[f64; N], _w: [f64; 3], _slip: [f64; 2], _velocity: [f64; 2]) {}
+    /// The force along e_h and e2 that the drive had where it was asked last.
+    fn pushes<const N: usize>(&self, _: &[f64; N]) -> [f64; 2] {
+        [0.0; 2]
+    }
     /// Notes whether the body is seen from its upper end from now on, while a law is told of it from its lower end.
     fn sees(&self, _over: bool) {}
     /// Whether a law has failed, and is not called again.

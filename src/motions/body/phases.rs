@@ -41,6 +41,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The force of the table on one rim in the state `y`, with the current slip.
     pub(crate) fn force_on_rim(&self, y: &State) -> Force {
         if self.slips_here() {
+            self.of.slide.asks_drive(&self.at);
             return self.of.slide.law.force(y, self.at.slip());
         }
         let (body, contact) = (&self.of.body, self.contact());
@@ -61,15 +62,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if self.of.tilt != 0.0 && self.of.turning == 0.0 {
             losses = losses.pulled(pull(self.of.tilt, at));
         }
+        if self.of.own.drives() {
+            self.of.slide.asks_drive(at);
+            losses = losses.pulled(self.of.own.pushes(at));
+        }
         let Acted { w, power, .. } =
             Lossy { rates: Contact::Rolling.rates(&self.of.body), losses }.in_state(y);
         (w, power)
     }
 
-    /// Whether a table that turns does work which [`Slide::energy`] does not know, since others than the table turn the
+    /// Whether a drive of the user does work, or a table that turns does work which [`Slide::energy`] does not know, since others than the table turn the
     /// body about the vertical.
     pub(super) fn is_driven(&self) -> bool {
-        self.of.turning != 0.0 && (self.of.tilt != 0.0 || Couples::in_air(&self.ask.losses).is_some())
+        self.of.own.drives()
+            || self.of.turning != 0.0 && (self.of.tilt != 0.0 || Couples::in_air(&self.ask.losses).is_some())
     }
 
     /// w_z over the table.
@@ -207,6 +213,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         if walk.is_level() {
             return Some(Halt::Side);
         }
+        walk.of.slide.asks_drive(&walk.at);
         walk.of.slide.at_start(&walk.of.state, walk.at.slip())
     }
 
@@ -309,6 +316,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         true
     }
     fn slips(walk: &mut BodyWalk<'_, N, G>) -> [f64; N] {
+        walk.of.slide.asks_drive(&walk.at);
         walk.of.slide.sets_ways(&walk.of.state, walk.at.slip(), [0.0; 2], None);
         Self::slips_on(walk)
     }
@@ -337,6 +345,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
 
     fn lets_slip(walk: &mut BodyWalk<'_, N, G>, way: [f64; 2]) {
         if walk.of.lying.is_none() {
+            walk.of.slide.asks_drive(&walk.at);
             walk.of.slide.sets_ways(&walk.of.state, [0.0; 2], way, None);
         }
     }

@@ -53,6 +53,7 @@ impl Followed {
         // Where a dry slip just begins, with u = 0, friction acts against the direction in which it begins.
         let towards = if slip == [0.0, 0.0] && slide.law.dry { self.path.way } else { slip };
         let force = ask.force.then(|| {
+            slide.asks_drive(y);
             let (force, doubt) =
                 doubted(&now, state_errors(&now, slide.tol), |y| slide.force(y, slip, towards));
             // Without a series friction turns with a slip whose direction is as uncertain as the slip is slow.

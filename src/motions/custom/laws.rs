@@ -3,6 +3,7 @@
 //! ```text
 //! mu     follows the speed of a slip
 //! m(N)   secants of the couple, until N no longer changes:   m = m0 + N mN there
+//! F, m   of a drive, which a flow asks once at each place, before it evaluates its equations
 //! ```
 //! A user-defined law has no derivative: slopes are differences.
 
@@ -10,15 +11,20 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::contact::lying::{Flat, Lying};
 use crate::laws::contact::slip::FollowsSpeed;
-use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw, SpeedLaw, fault_of_couple, fault_of_friction};
+use crate::laws::custom::{
+    CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push, SpeedLaw, fault_of_couple, fault_of_drive,
+    fault_of_friction,
+};
 use crate::laws::loss::{Couple, Kinematics, OwnCouple};
 use crate::laws::state::State;
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::dry::friction::OwnFriction;
-use crate::numbers::Dual;
+use crate::motions::walk::numbers::{COS, PHI, PSI, SIN, TIME, X, Y};
+use crate::numbers::{Dual, Real};
 use core::cell::Cell;
 use core::f64::consts::{FRAC_PI_2, PI};
+use nalgebra::{Point2, Vector2, Vector3};
 
 /// Largest number of secants for the normal force.
 const SECANTS: usize = 40;
@@ -37,6 +43,18 @@ pub(crate) struct OwnLaws<'a> {
     pub fault: &'a Cell<Option<Error>>,
     /// The sine, the cosine and w at which the couple was last solved for, and the couple.
     pub last: &'a Cell<([f64; 5], Option<Couple<f64>>)>,
+    /// The time at the start, and the drive where it was asked last.
+    pub since: f64,
+    pub driven: &'a Cell<Option<Driven>>,
+}
+
+/// A drive at a moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Driven {
+    now: Moment,
+    push: Push,
+    /// The couple along e1, e2, e3 as the flow sees them.
+    couple: [f64; 3],
 }
 
 /// The state at the sine and cosine of theta and w, and the sign of e1 and e2 in it: a ball may lean to the other side.
@@ -59,6 +77,47 @@ impl<'a> OwnLaws<'a> {
             return (*y, 1.0);
         }
         (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
+    }
+
+    /// The couple of the drive where it was asked last; 0 without one.
+    fn couple_of_drive(&self) -> [f64; 3] {
+        self.driven.get().map_or([0.0; 3], |driven| driven.couple)
+    }
+
+    /// The drive at these numbers.
+    fn driven_at<const N: usize>(
+        &self,
+        law: &dyn DriveLaw,
+        y: &[f64; N],
+        ([w1, w2, w3], [u_h, u_2], [v_h, v_2]): ([f64; 3], [f64; 2], [f64; 2]),
+    ) -> Driven {
+        let (side, state) = upright_state([y[SIN], y[COS], w1, w2, w3]);
+        let (state, over) = self.seen_from_lower_rim(&state);
+        // The lean is told the other way round, past a pole and from the other rim.
+        let turned = |turns: f64| if turns < 0.0 { PI } else { 0.0 };
+        let (phi, psi) = (y[PHI] + turned(side) - turned(over), y[PSI] - turned(side));
+        let (sin, cos) = y[PHI].sin_cos();
+        let now = Moment {
+            time: self.since + y[TIME],
+            state,
+            slip: [u_h, u_2].map(|u| side * over * u),
+            phi,
+            psi: over * psi,
+            contact_point: Point2::new(y[X], y[Y]),
+            velocity: Vector2::new(v_h * cos - v_2 * sin, v_h * sin + v_2 * cos),
+        };
+        if law.has_failed() {
+            let push = Push { force: Vector2::repeat(f64::NAN), couple: Vector3::repeat(f64::NAN) };
+            return Driven { now, push, couple: [f64::NAN; 3] };
+        }
+        let push = law.push(self.body, &now);
+        if y.iter().all(|x| x.is_finite())
+            && let Some(fault) = fault_of_drive(&push, &now)
+        {
+            self.fault.set(Some(fault));
+        }
+        let [m1, m2, m3]: [f64; 3] = push.couple.into();
+        Driven { now, push, couple: [side * m1, side * over * m2, over * m3] }
     }
 
     /// The couple of a law at the sine and cosine of theta and w.
@@ -132,9 +191,16 @@ impl FollowsSpeed<Dual<f64>> for OwnLaws<'_> {
     }
 }
 
+/// The sum of a couple of a law and one that does not depend on the normal force.
+fn beside<T: Real>(found: Option<Couple<T>>, [m1, m2, m3]: [T; 3]) -> Couple<T> {
+    let zero = m1.splat(0.0);
+    let Couple { free: [a, b, c], pressed } = found.unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
+    Couple { free: [a + m1, b + m2, c + m3], pressed }
+}
+
 impl OwnCouple<f64> for OwnLaws<'_> {
     fn is_there(&self) -> bool {
-        self.custom.couple.is_some()
+        self.custom.couple.is_some() || self.drives()
     }
 
     #[inline(never)]
@@ -144,34 +210,44 @@ impl OwnCouple<f64> for OwnLaws<'_> {
         normal: impl Fn(&Couple<f64>) -> f64,
     ) -> Option<Couple<f64>> {
         let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
-        self.custom.couple.map(|law| self.couple_by_secants(law, [s, c, w1, w2, w3], normal))
+        let driven = self.couple_of_drive();
+        let under = |found: &Couple<f64>| normal(&beside(Some(*found), driven));
+        let found = self.custom.couple.map(|law| self.couple_by_secants(law, [s, c, w1, w2, w3], under));
+        if self.drives() { Some(beside(found, driven)) } else { found }
     }
 
     fn power_taken(&self, seen: &Kinematics<f64>, normal: f64) -> Option<f64> {
-        let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
+        let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
         let at = [s, c, w1, w2, w3];
-        let m = match self.last.get() {
+        let power = |m: [f64; 3]| m[0] * w1 + m[1] * w2 + m[2] * w3;
+        let own = self.custom.couple.map(|law| match self.last.get() {
             (there, Some(found)) if there == at => found.under(normal),
             _ => self.value(law, at, normal),
-        };
-        Some(-(m[0] * w1 + m[1] * w2 + m[2] * w3))
+        });
+        OwnCouple::<f64>::is_there(self).then(|| -own.map_or(0.0, power) - power(self.couple_of_drive()))
     }
 }
 
 impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
     fn is_there(&self) -> bool {
-        self.custom.couple.is_some()
+        OwnCouple::<f64>::is_there(self)
     }
 
-    /// The slope of the part that does not depend on the normal force is that of the couple where this force is constant.
+    /// The slope of the part that does not depend on the normal force is that of the couple where this force is constant. A
+    /// drive has no slope: margins of a body that is driven have differences.
     #[inline(never)]
     fn solved_couple(
         &self,
         seen: &Kinematics<Dual<f64>>,
         normal: impl Fn(&Couple<Dual<f64>>) -> Dual<f64>,
     ) -> Option<Couple<Dual<f64>>> {
-        let (law, (s, c), [w1, w2, w3]) = (self.custom.couple?, seen.angle, seen.w);
+        let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
         let (y, still) = ([s, c, w1, w2, w3], Dual::constant);
+        let driven = self.couple_of_drive().map(still);
+        let Some(law) = self.custom.couple else {
+            return self.drives().then(|| beside(None, driven));
+        };
+        let normal = |found: &Couple<Dual<f64>>| normal(&beside(Some(*found), driven));
         let dual =
             |found: &Couple<f64>| Couple { free: found.free.map(still), pressed: found.pressed.map(still) };
         let at = |found: &Couple<f64>| normal(&dual(found)).value;
@@ -186,7 +262,7 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
             let [before, after] = [aside(-by), aside(by)];
             (0..3).for_each(|i| all.free[i].slope = (after[i] - before[i]) / (2.0 * by));
         }
-        Some(all)
+        Some(beside(Some(all), driven))
     }
 }
 
@@ -195,6 +271,18 @@ impl Own for OwnLaws<'_> {
 
     fn couple_at(&self, y: &State, normal: f64) -> [f64; 3] {
         self.custom.couple.map_or([0.0; 3], |law| self.couple_or_nan(law, y, normal))
+    }
+
+    fn drives(&self) -> bool {
+        self.custom.drive.is_some()
+    }
+    fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3], slip: [f64; 2], velocity: [f64; 2]) {
+        self.driven.set(self.custom.drive.map(|law| self.driven_at(law, y, (w, slip, velocity))));
+    }
+    fn pushes<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
+        let Some(Driven { push: Push { force, .. }, .. }) = self.driven.get() else { return [0.0; 2] };
+        let (sin, cos) = y[PHI].sin_cos();
+        [force.x * cos + force.y * sin, force.y * cos - force.x * sin]
     }
 
     fn sees(&self, over: bool) {
@@ -221,7 +309,8 @@ impl Own for OwnLaws<'_> {
                 let (seen, normal) = (self.seen_from_lower_rim(&upright_state(y).1).0, normal.max(0.0));
                 fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
             };
-            let fault = self.custom.couple.zip(at).and_then(turns);
+            let drives = self.driven.get().and_then(|driven| fault_of_drive(&driven.push, &driven.now));
+            let fault = drives.or_else(|| self.custom.couple.zip(at).and_then(turns));
             self.fault.set(fault.or_else(|| self.custom.friction.and_then(slow)));
         }
         self.is_faulty()
@@ -256,7 +345,8 @@ mod tests {
             (Body::ball(0.1, 0.4, 0.42).unwrap(), Cell::new(None), Cell::new(([0.0; 5], None)));
         let custom = Custom::default().with_couple(&couple);
         let over = Cell::new(false);
-        of(&OwnLaws { body: &body, over: &over, custom, fault: &fault, last: &last })
+        let (since, driven) = (0.0, &Cell::new(None));
+        of(&OwnLaws { body: &body, over: &over, custom, fault: &fault, last: &last, since, driven })
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! ```text
 //! mu(|u|)        in place of mu where the contact point slips; static friction holds it up to mu_s N, and a slip begins with mu(0)
 //! m(theta, w, N) beside the couple of the losses
+//! F, m(moment)   a force on the centre, and a couple, that drive the body
 //! ```
 //! The motion is that of [`body`](super::body): its walk asks the laws at each evaluation. A slip from rest has no series:
 //! steps follow it from its first moment, and they are implicit where its direction follows the motion much faster than the
@@ -19,6 +20,7 @@ use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
 use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+use crate::laws::loss::Law;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::body::{self, BodyWalk, without_friction};
 use crate::motions::dry::friction::OwnFriction;
@@ -124,9 +126,11 @@ pub(crate) fn stone_followed(
     if custom.friction.is_some() {
         check_options(ask, &custom)?;
     }
-    if custom.couple.is_some() {
-        let expected = "none for a stone, which has no axis";
-        return Err(Error::OutOfRange { name: "couple", value: f64::NAN, expected });
+    for (name, is_there) in [("couple", custom.couple.is_some()), ("drive", custom.drive.is_some())] {
+        if is_there {
+            let expected = "none for a stone, which has no axis";
+            return Err(Error::OutOfRange { name, value: f64::NAN, expected });
+        }
     }
     let (mut ask, fault) = (on_own_table(ask, &custom), Cell::new(None));
     if ask.method == Method::Exact && custom.friction.is_some() {
@@ -170,13 +174,23 @@ pub(crate) fn followed(
         let custom = Custom {
             couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
             friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
+            drive: custom.drive,
         };
         let fault = Cell::new(None);
         let mut go_on = || !custom.has_failed() && go_on();
-        let last = Cell::new(([f64::NAN; 5], None));
+        let (last, driven, since) = (Cell::new(([f64::NAN; 5], None)), Cell::new(None), start.time);
         let mut run = |run_tol: f64, times: &[f64]| {
             let over = Cell::new(body.view().over);
-            let own = OwnLaws { body: told, over: &over, custom, fault: &fault, last: &last };
+            driven.set(None);
+            let own = OwnLaws {
+                body: told,
+                over: &over,
+                custom,
+                fault: &fault,
+                last: &last,
+                since,
+                driven: &driven,
+            };
             let walk = BodyWalk::<CUSTOM_NUMBERS, _>::of_laws(body, ask, (run_tol, tol), times, start, own)?;
             let made = Box::new(walk).run(&mut go_on)?;
             match fault.take().filter(|_| !custom.has_failed()) {
@@ -196,8 +210,39 @@ pub(crate) fn followed(
 /// Checks a motion under such laws. Returns the tolerance of its steps.
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     check_options(ask, custom)?;
+    if custom.drive.is_some() {
+        check_drive(body, start, ask)?;
+    }
     let tol = body::check_walk(body, start, ask)?;
     Ok(if ask.method == Method::Exact { CUSTOM_TOLERANCE } else { tol })
+}
+
+/// The laws of loss that a drive does not exclude: those that hold no motion at rest.
+fn is_held_by(law: Law) -> bool {
+    matches!(law, Law::DryContour | Law::Drilling | Law::RollingResistance)
+}
+
+/// Returns an error for a motion that cannot be driven.
+fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
+    let refuse = |name: &'static str, value: f64, expected: &'static str| {
+        Err(Error::OutOfRange { name, value, expected })
+    };
+    let held = ask.losses.iter().find(|(law, coefficient)| is_held_by(*law) && *coefficient != 0.0);
+    match () {
+        () if !ask.is_level() => refuse("slope", ask.slope, "0 on a table that does not turn, with a drive"),
+        () if ask.table == Table::Smooth => refuse("contact", f64::NAN, "friction, or rolling, with a drive"),
+        () if let Some((_, coefficient)) = held => {
+            refuse("losses", coefficient, "no law that holds a motion at rest, with a drive")
+        }
+        () if ask.table.friction().patch() > 0.0 => {
+            refuse("patch", ask.table.friction().patch(), "0 with a drive")
+        }
+        () if let Some(e) = ask.restitution => refuse("restitution", e, "None with a drive"),
+        () if body::on_face(body, &start.state) => {
+            refuse("theta", start.state.theta, "a body that stands on a rim, with a drive")
+        }
+        () => Ok(()),
+    }
 }
 
 /// Returns an error for options that such laws exclude.

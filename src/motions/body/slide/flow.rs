@@ -8,6 +8,7 @@ use crate::laws::loss::{Holds, Law, OwnCouple};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::{radau, rk8};
 use crate::motions::body::face::FLAT;
+use crate::motions::body::own::differences;
 use crate::motions::body::pole;
 use crate::motions::dry::creep::{Creeps, IMPLICIT_TURNS};
 use crate::motions::dry::held::margins_of_ways;
@@ -190,6 +191,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
+        self.asks_drive(y);
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
         let ([precession, spin], power) = if self.settled {
             self.settled_rates(y, all)
@@ -209,12 +211,24 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
                 let [pull_h, pull_2] = driven(self.turning, pull_along(self.tilt, heading), runs);
                 (all[UH], all[U2]) = (all[UH] + pace * pull_h, all[U2] + pace * pull_2);
             }
+            if L::IS && self.law.varies().drives() {
+                let [push_h, push_2] = self.law.varies().pushes(y);
+                (all[UH], all[U2]) = (all[UH] + pace * push_h, all[U2] + pace * push_2);
+                all[N - 1] -= pace * self.power_of_drive(y);
+            }
             let pose = pose_rates(heading, [precession, spin], runs);
             all[PHI..PHI + 4].copy_from_slice(&pose.map(|x| pace * x));
         }
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        if L::IS && self.law.varies().drives() {
+            return differences(place, self.calm(&place.y), |y| {
+                self.asks_drive(y);
+                let y = core::array::from_fn(|i| y[i]);
+                self.margins_of::<_, N>(&self.law, y, None, |angle, w, u| self.acts(angle, w, u))
+            });
+        }
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         self.margins_of::<_, N>(&self.sloped, y, None, |angle, w, u| match self.sloped.patch() {
             Some(patch) => self.sloped_on(angle, w, u, patch).0,
@@ -223,6 +237,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
+        self.asks_drive(y);
         let y = core::array::from_fn(|i| y[i]);
         self.margins_of::<_, N>(&self.law, y, Some(i), |angle, w, u| self.acts(angle, w, u))[i]
     }
@@ -231,6 +246,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     /// rests or settles.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if L::IS {
+            self.asks_drive(&place.y);
             // Without losses of the library a couple that takes energy is no fault.
             let (y, own) = (&place.y, self.law.varies());
             let supplies = place.rate[N - 1] < 0.0 || own.has_couple() && self.has_laws;
@@ -252,7 +268,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
                 return Some((Halt::Pole, there));
             }
         }
-        if loses(N) && self.law.patch().is_none() && self.settles(place) {
+        if loses(N) && self.law.patch().is_none() && !self.law.varies().drives() && self.settles(place) {
             return Some((Halt::Settles, place.y));
         }
         if self.law.patch().is_some() {

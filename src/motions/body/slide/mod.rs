@@ -120,9 +120,25 @@ impl<L: Own> Slide<L> {
         drilling_of(angle, w1, w3) - self.turning
     }
 
-    /// The pull on the centre along e_h and e2, of a slope and of a table that turns.
+    /// Asks a drive of the user for its force and couple at these numbers.
+    #[inline(always)]
+    pub fn asks_drive<const N: usize>(&self, y: &[f64; N]) {
+        if L::IS && self.law.varies().drives() {
+            let (angle, w, u) = (y.angle(), y.w(), y.slip());
+            self.law.varies().asks_drive(y, w, u, self.law.centre(angle, w, u));
+        }
+    }
+
+    /// The power of the force of a drive that has been asked at these numbers.
+    pub fn power_of_drive<const N: usize>(&self, y: &[f64; N]) -> f64 {
+        let [push_h, push_2] = self.law.varies().pushes(y);
+        let [v_h, v_2] = self.law.centre(y.angle(), y.w(), y.slip());
+        push_h * v_h + push_2 * v_2
+    }
+
+    /// The pull on the centre along e_h and e2, of a slope and of a table that turns, and of a drive that has been asked.
     pub fn pull<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
-        let tilted = pull(self.tilt, y);
+        let tilted = sum(pull(self.tilt, y), self.law.varies().pushes(y));
         if self.turning == 0.0 {
             return tilted;
         }

@@ -10,6 +10,7 @@ use crate::motions::walk::numbers::{
 impl<L: Own> Slide<L> {
     /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
     pub(crate) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
+        self.asks_drive(y);
         let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
         let at = self.law.towards((s, c), w, [0.0; 2], way);
         self.law.writes(y, &mut all, (&at, 1.0));
@@ -22,7 +23,7 @@ impl<L: Own> Slide<L> {
             all[PHI..PHI + 4].copy_from_slice(&pose_rates(heading, turning, over));
         }
         if loses(N) {
-            all[N - 1] = self.law.power((s, c), w, at.force[0]);
+            all[N - 1] = self.law.power((s, c), w, at.force[0]) - self.power_of_drive(y);
         }
         all
     }
@@ -30,6 +31,7 @@ impl<L: Own> Slide<L> {
     /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
     /// rate `growth`. Used where no series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
+        self.asks_drive(start);
         let (angle, w) = (start.angle(), start.w());
         let u = start.slip();
         let rests = u == [0.0; 2] && self.law.dry && !self.creeps(start);
@@ -54,7 +56,7 @@ impl<L: Own> Slide<L> {
             rates[PHI..PHI + 4].copy_from_slice(&pose_rates(heading, turning, over));
         }
         if loses(N) {
-            rates[N - 1] = self.law.power(angle, w, at.force[0]);
+            rates[N - 1] = self.law.power(angle, w, at.force[0]) - self.power_of_drive(start);
         }
         (0..N).for_each(|i| y[i] += MOMENT * rates[i]);
         if let Some([across, rocks]) = self.begins_to_roll() {

@@ -65,6 +65,7 @@ impl<L: Own> Slide<L> {
         // numbers `y`.
         let beside = |by: f64, share: f64| [share * (u - by * v), share * (v + by * u)];
         let bends = |y: &[f64; N], by: f64, share: f64| {
+            self.asks_drive(y);
             let [u, v] = beside(by, share);
             let [along, aside] = sum(self.acts(y.angle(), y.w(), [u, v]).u, self.pull(y));
             (u * aside - v * along) / (share * square)

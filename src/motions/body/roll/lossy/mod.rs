@@ -29,7 +29,8 @@ use crate::motions::body::own::Own;
 use crate::motions::dry::creep::RestingPatch;
 use crate::motions::dry::held::holds;
 use crate::motions::walk::numbers::{
-    COS, Halt, P, PHI, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses, pull_along,
+    BodyNumbers, COS, Halt, P, PHI, SIN, U2, UH, W2, W3, carried, contact_velocity, driven, poses,
+    pull_along, sum,
 };
 use crate::numbers::{Dual, Real, sign_or_zero};
 use free::pace_of;
@@ -124,16 +125,37 @@ impl<G: Own> LossyFlow<G> {
         self
     }
 
-    /// Whether the table is tilted or turns.
+    /// Whether the table is tilted or turns, or the body is driven.
     #[inline(always)]
     fn is_pulled(&self) -> bool {
-        self.tilt != 0.0 || self.om != 0.0
+        self.tilt != 0.0 || self.om != 0.0 || self.is_driven()
+    }
+
+    /// Whether a law of the user drives the body.
+    #[inline(always)]
+    fn is_driven(&self) -> bool {
+        G::IS && self.law.losses.given.drives()
+    }
+
+    /// Asks the drive for its force and couple at these numbers, with this w.
+    #[inline(always)]
+    fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3]) {
+        if self.is_driven() {
+            self.law.losses.given.asks_drive(y, w, [0.0; 2], self.centre(y.angle(), w));
+        }
+    }
+
+    /// The velocity of the centre along e_h and e2 of a body that rolls.
+    fn centre(&self, angle: (f64, f64), [w1, w2, w3]: [f64; 3]) -> [f64; 2] {
+        let rim = &self.law.rates.reduced().shape.rim;
+        [rim.height(angle) * w2, rim.radius(angle) * w3 - rim.depth(angle) * w1]
     }
 
     /// Sets the pull of the table to that at these numbers, which all flows share, for what depends on a state alone.
     pub fn stands_at<const N: usize>(&mut self, at: &[f64; N]) {
         if self.is_pulled() {
             let [s, c] = [at[SIN], at[COS]];
+            self.asks_drive(at, at.w());
             let pull = self.pull_at(at, (s, c), at[W2], at[W3] - c * at[P] / s);
             self.law.losses = self.law.losses.pulled(pull).over(self.om, self.om != 0.0);
             self.turn(self.ways());
@@ -152,7 +174,7 @@ impl<G: Own> LossyFlow<G> {
             return [0.0; 2];
         }
         let heading = y[PHI].sin_cos();
-        let tilted = pull_along(self.tilt, heading);
+        let tilted = sum(pull_along(self.tilt, heading), self.law.losses.given.pushes(y));
         if self.om == 0.0 {
             return tilted;
         }
@@ -173,7 +195,7 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     fn pull_along<const N: usize>(&self, y: &[f64; N], heading: (f64, f64)) -> [f64; 2] {
         if self.om == 0.0 {
-            return pull_along(self.tilt, heading);
+            return sum(pull_along(self.tilt, heading), self.law.losses.given.pushes(y));
         }
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
         let spin = if self.moves { w[2] - y[COS] * precession } else { 0.0 };
@@ -189,7 +211,7 @@ impl<G: Own> LossyFlow<G> {
 
     /// Whether a pull turns a body that only rocks out of its plane, or will do so.
     fn is_pulled_aside(&self) -> bool {
-        self.om != 0.0 || self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
+        self.om != 0.0 || self.is_driven() || self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
     }
 
     pub fn holds_drilling(&self) -> bool {

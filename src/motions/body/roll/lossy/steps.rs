@@ -10,7 +10,7 @@ use crate::laws::state::{drilling_of, rolling_of};
 use crate::methods::flow::{FASTEST, Flow, FlowPlace};
 use crate::methods::rk8;
 use crate::motions::body::face::{FLAT, lands_at};
-use crate::motions::body::own::Own;
+use crate::motions::body::own::{Own, differences};
 use crate::motions::body::pole;
 use crate::motions::dry::creep::hardly_drills;
 use crate::motions::dry::held::{left_to_rest, margins_of_ways};
@@ -178,11 +178,26 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
+    /// The margins of these numbers.
+    fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; MARGINS] {
+        self.stands(y);
+        self.margins_of(&self.law, self.tilted(y), core::array::from_fn(|k| y[k]), self.grips(y))
+    }
+
+    /// Asks the drive at these numbers of the flow.
+    #[inline(always)]
+    fn stands<const N: usize>(&self, y: &[f64; N]) {
+        if self.is_driven() {
+            self.asks_drive(y, self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]).1);
+        }
+    }
+
     /// Writes the rates of the numbers. Returns w and the contact force.
     #[inline(always)]
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         let heading = if poses(N) { y[PHI].sin_cos() } else { (0.0, 1.0) };
+        self.stands(y);
         let tilted = (poses(N) && self.is_pulled()).then(|| self.pull_along(y, heading));
         let (precession, w, acted) = if self.settled {
             let (precession, w, acted, _) = self.settled((s, c), y[P], w2, tilted);
@@ -200,6 +215,11 @@ impl<G: Own> LossyFlow<G> {
         all[..9].copy_from_slice(&[-(c * w2), s * w2, turn, d2, free, 0.0, 0.0, 1.0, 0.0]);
         if loses(N) {
             all[N - 1] = acted.power;
+            if self.is_driven() {
+                let ([push_h, push_2], [v_h, v_2]) =
+                    (self.law.losses.given.pushes(y), self.centre((s, c), w));
+                all[N - 1] -= push_h * v_h + push_2 * v_2;
+            }
         }
         if poses(N) {
             let spin = if self.moves || self.settled { w[2] - c * precession } else { 0.0 };
@@ -245,14 +265,16 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MARGINS] {
+        if self.is_driven() {
+            return differences(place, self.calm(&place.y), |y| self.all_margins(y));
+        }
         let y = core::array::from_fn(|i| Dual { value: place.y[i], slope: place.rate[i] });
         let tilted = (poses(N) && self.is_pulled()).then(|| self.sloped_pull(place));
         self.margins_of(&self.sloped, tilted, y, self.grips(&place.y))
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        let y5 = core::array::from_fn(|k| y[k]);
-        self.margins_of(&self.law, self.tilted(y), y5, self.grips(y))[i]
+        self.all_margins(y)[i]
     }
 
     fn end(&self, i: usize) -> Halt {
@@ -307,7 +329,9 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
             // Without losses of the library a couple that takes energy is no fault.
             let supplies = place.rate[N - 1] < 0.0 || self.law.losses.present() != [false; COUNT];
             let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
-            let normal = || self.here(y).response(y.angle(), precession, w, self.held(0.0)).force[0];
+            self.stands(y);
+            let normal =
+                || self.here(&self.shown(y)).response(y.angle(), precession, w, self.held(0.0)).force[0];
             let at = supplies.then(|| ([y[SIN], y[COS], w[0], w[1], w[2]], normal()));
             if self.law.losses.given.finds_fault(&[], at) {
                 return Some((Halt::Endless, *y));
@@ -322,7 +346,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
         // `fall` is the speed at which either face falls, and `faster` is the rate of that speed.
         let (fall, faster) = (c * w2, c * place.rate[W2] / place.rate[TIME]);
-        if !self.moves || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
+        if !self.moves || self.is_driven() || self.ball || fall <= 0.0 || faster <= 0.0 || s > CLOSE {
             return None;
         }
         let angle = (s, c);
@@ -364,7 +388,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         let (precession, w) = self.turning([s, c, p, w2, w3]);
         let slow = s * (w3 - c * precession).abs() <= SLOWER * c * w2 + self.noise(w);
         let soft = self.law.losses.slope(s, 1.0, 1.0) > 0.0;
-        (self.moves && slow && soft).then_some(Halt::Settles)
+        (self.moves && slow && soft && !self.is_driven()).then_some(Halt::Settles)
     }
 
     /// A drilling that is held stays zero. The errors of the steps would let it begin on a patch of contact.

@@ -1,0 +1,309 @@
+//! Bodies that a force and a couple of the user drive: closed forms, a slope as a constant force, air as a couple, balances.
+
+use crate::common::wander;
+use nalgebra::{Vector2, Vector3};
+use spincyl::body::Circle;
+use spincyl::contact::slip::{self, Friction};
+use spincyl::contact::{Contact, Table};
+use spincyl::custom::{self, Custom, Moment, Push};
+use spincyl::loss::{Law, Losses};
+use spincyl::motion::{Ask, Ending, Motion, Start, path::Kind, roll_with};
+use spincyl::{Body, Error, State};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const NO_COUPLE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
+
+fn driven(
+    body: &Body,
+    start: Start,
+    times: &[f64],
+    ask: &Ask,
+    drive: &dyn custom::DriveLaw,
+) -> Result<Motion, Error> {
+    let laws = Custom::default().with_drive(drive);
+    custom::roll_with(body, start, times, ask, laws, || true).map(|found| found.expect("not interrupted"))
+}
+
+/// A body, a start that may slip, and a table with friction, at random.
+fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
+    let body = match (5.0 * r()) as u8 {
+        0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),
+        1 => Body::solid(0.02 + 0.5 * r()),
+        2 => Body::tube(0.5 + 2.0 * r(), 0.8 * r()),
+        3 => Body::ball(0.1, 0.4, 0.42).and_then(|ball| ball.with_theta_end(1.2 + r())),
+        _ => Body::rounded_tube(0.4 + r(), 0.0, 0.05 + 0.3 * r()),
+    };
+    let mut speed = || 3.0 * r() - 1.5;
+    let (w1, w2, w3, slip) = (speed(), 0.3 * speed(), 2.0 * speed(), [speed(), speed()]);
+    let state = State { theta: 0.4 + r(), w1, w2, w3 };
+    let (table, slips) = match (4.0 * r()) as u8 {
+        0 => (Friction::coulomb(0.1 + 0.4 * r()).into(), true),
+        1 => (Friction::coulomb(0.1 + 0.4 * r()).into(), false),
+        2 => (Friction::Viscous { c: 0.1 + r() }.into(), true),
+        _ => (Table::Rolling { mu: 0.2 + r() }, false),
+    };
+    let start = Start::from(state).with_slip(if slips { slip } else { [0.0; 2] });
+    (body.unwrap(), start.with_heading(6.0 * r() - 3.0).with_place([r(), r()]), table)
+}
+
+fn states_apart(a: &State, b: &State) -> f64 {
+    let by = [a.theta - b.theta, a.w1 - b.w1, a.w2 - b.w2, a.w3 - b.w3];
+    by.iter().fold(0.0, |most: f64, x| if x.abs() <= most { most } else { x.abs() })
+}
+
+/// The largest difference of states, slips and ends, beside the sum of the two claims.
+fn apart(a: &Motion, b: &Motion) -> [f64; 2] {
+    assert_eq!(a.ending(), b.ending());
+    let ends = a.event.zip(b.event).map_or(0.0, |(a, b)| (a.time - b.time).abs());
+    let off = a.states.iter().zip(&b.states).map(|(a, b)| states_apart(a, b)).fold(ends, f64::max);
+    [off, a.error + b.error]
+}
+
+#[test]
+fn a_ball_that_a_force_shakes_rolls_with_five_sevenths_of_its_acceleration() {
+    let (ball, f, om) = (Body::ball(0.0, 0.4, 0.4).unwrap(), 0.2, 1.3);
+    let shake = |_: &Body, now: &Moment| Push {
+        force: Vector2::new(f * (om * now.time).sin(), 0.5 * f * (om * now.time).cos()),
+        couple: NO_COUPLE,
+    };
+    let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
+    for since in [0.0, 2.5] {
+        let times: Vec<f64> = (0..=40).map(|i| since + 0.5 * f64::from(i)).collect();
+        let ask = Ask::on(Friction::coulomb(0.5)).with_pose(true);
+        let m = driven(&ball, start.with_time(since), &times, &ask, &shake).unwrap();
+        assert_eq!((m.ending(), m.states.len()), (Ending::Done, 41));
+        for (t, pose) in times.iter().zip(m.poses.unwrap()) {
+            let along =
+                |value: &dyn Fn(f64) -> f64, slope: f64| value(*t) - value(since) - slope * (t - since);
+            let a = f * 5.0 / 7.0;
+            let x = along(&|t| -a * (om * t).sin() / (om * om), -a * (om * since).cos() / om);
+            let y = along(&|t| -0.5 * a * (om * t).cos() / (om * om), 0.5 * a * (om * since).sin() / om);
+            let off = (pose.contact_point.x - x).hypot(pose.contact_point.y - y);
+            assert!(off < 3e-9, "{t} {off:e} {:?} {x} {y}", pose.contact_point);
+        }
+    }
+}
+
+#[test]
+fn a_motor_turns_a_hoop_faster_until_friction_no_longer_holds_its_rim() {
+    // (1 + 1) w' = m = k t, and the rim holds m/2 <= mu.
+    let (hoop, k, mu) = (Body::tube(0.0, 1.0).unwrap(), 0.05, 0.3);
+    let motor = |_: &Body, now: &Moment| Push {
+        force: Vector2::zeros(),
+        couple: Vector3::new(0.0, 0.0, k * now.time),
+    };
+    let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 1.0 });
+    let times = [0.0, 5.0, 10.0, 20.0];
+    let ask = Ask::on(Friction::coulomb(mu)).with_force(true);
+    let m = driven(&hoop, start, &times, &ask, &motor).unwrap();
+    for (t, y) in times.iter().zip(&m.states).take(3) {
+        assert!((y.w3 - (1.0 + 0.25 * k * t * t)).abs() < 1e-9);
+    }
+    let path = m.path.as_ref().unwrap();
+    let lets_go = 2.0 * mu / k;
+    assert_eq!(path.phases[1].kind, Kind::Slipping);
+    assert!((path.phases[1].time - lets_go).abs() < 1e-8, "{:?}", path.phases);
+    // From then on the hoop runs with mu, and the motor turns it with k t - mu.
+    let w = 1.0 + 0.25 * k * lets_go.powi(2) + 0.5 * k * (400.0 - lets_go.powi(2)) - mu * (20.0 - lets_go);
+    assert!((m.states[3].w3 - w).abs() < 1e-7, "{} {w}", m.states[3].w3);
+    assert!((m.forces.unwrap()[2].along.abs() - 0.25).abs() < 1e-9);
+}
+
+#[test]
+fn a_constant_force_moves_a_body_as_a_slope_does() {
+    let mut r = wander(9_271);
+    let (mut ended, mut slipped) = (0, 0);
+    for i in 0..240 {
+        let (body, start, table) = any(&mut r);
+        let slope = 0.6 * r() - 0.3;
+        // In units with g cos(slope) as gravity the slope is level, and pulls with its tangent.
+        let pace = slope.cos().sqrt();
+        let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
+        let pull = |_: &Body, _: &Moment| Push { force: Vector2::new(slope.tan(), 0.0), couple: NO_COUPLE };
+        let ask = Ask::on(table).with_pose(true);
+        let m = driven(&body, start, &times, &ask, &pull);
+        let State { theta, w1, w2, w3 } = start.state;
+        let fast = State { theta, w1: pace * w1, w2: pace * w2, w3: pace * w3 };
+        let table = match table {
+            Table::Rubs(Friction::Viscous { c }) => Friction::Viscous { c: c / pace }.into(),
+            table => table,
+        };
+        let on_slope = Start::from(fast)
+            .with_slip(start.slip.map(|u| pace * u))
+            .with_heading(start.heading)
+            .with_place(start.place);
+        let later: Vec<f64> = times.iter().map(|t| t / pace).collect();
+        let ask = Ask::on(table).with_pose(true).with_slope(slope);
+        let of = roll_with(&body, on_slope, &later, &ask, || true);
+        let (m, of) = match (m, of) {
+            (Ok(m), Ok(Some(of))) => (m, of),
+            (Err(a), Err(b)) => {
+                assert_eq!(std::mem::discriminant(&a), std::mem::discriminant(&b));
+                continue;
+            }
+            (m, of) => panic!("{i} {body:?} {start:?} {table:?} {slope}: {m:?} {of:?}"),
+        };
+        assert_eq!(m.ending(), of.ending(), "{i} {body:?} {start:?} {table:?} {slope}");
+        let claim = m.error + of.error + 1e-12;
+        for (a, b) in m.states.iter().zip(&of.states) {
+            let b = State { theta: b.theta, w1: b.w1 / pace, w2: b.w2 / pace, w3: b.w3 / pace };
+            let size = 1.0 + a.w1.abs().max(a.w2.abs()).max(a.w3.abs());
+            let off = states_apart(a, &b);
+            assert!(off < 3.0 * claim * size, "{i} {off:e} {claim:e} {body:?} {start:?} {table:?} {slope}");
+        }
+        let poses = m.poses.iter().flatten().zip(of.poses.iter().flatten());
+        for (a, b) in poses {
+            let off = (a.contact_point - b.contact_point).norm();
+            assert!(off < 1e-6 + 10.0 * (m.pose_error + of.pose_error), "{i} {off:e}");
+        }
+        ended += usize::from(m.ending() != Ending::Done);
+        slipped += usize::from(m.path.is_some_and(|path| path.phases.len() > 1));
+    }
+    assert!(ended > 20 && slipped > 20, "{ended} {slipped}");
+}
+
+#[test]
+fn a_drive_that_resists_as_the_air_does_moves_a_body_as_the_air_does() {
+    let mut r = wander(77_102);
+    for _ in 0..120 {
+        let (body, start, table) = any(&mut r);
+        let b = 0.1 * r();
+        let times: Vec<f64> = (0..=20).map(|i| 0.2 * f64::from(i)).collect();
+        let drag = |_: &Body, now: &Moment| Push {
+            force: Vector2::zeros(),
+            couple: -b * now.state.angular_velocity(),
+        };
+        let ask = Ask::on(table);
+        let beside = ask.with_losses(Losses::of(Law::AirLinear, b));
+        let (Ok(m), Ok(Some(of))) =
+            (driven(&body, start, &times, &ask, &drag), roll_with(&body, start, &times, &beside, || true))
+        else {
+            continue;
+        };
+        let [off, claim] = apart(&m, &of);
+        assert!(off < 5.0 * claim + 1e-11, "{off:e} {claim:e} {body:?} {start:?} {table:?}");
+        let lost = |m: &Motion| m.path.as_ref().map_or(f64::NAN, |path| path.lost);
+        assert!((lost(&m) - lost(&of)).abs() < 1e-7, "{} {}", lost(&m), lost(&of));
+    }
+}
+
+/// A force that turns and grows, and a couple that turns with time about a direction of the table.
+fn stirs(_: &Body, now: &Moment) -> Push {
+    let (sin, cos) = (0.7 * now.time).sin_cos();
+    let force = Vector2::new(0.2 * cos, 0.1 * sin) - 0.05 * now.velocity
+        + 0.02 * Vector2::new(now.slip[0], now.slip[1] * now.phi.cos())
+        - 0.01 * now.contact_point.coords;
+    let couple = Vector3::new(0.1 * sin, 0.05, 0.06 * cos) + 0.01 * Vector3::new(now.psi.sin(), 0.0, 0.0);
+    Push { force, couple: now.axes().transpose() * couple }
+}
+
+#[test]
+fn energy_with_heat_and_what_is_lost_is_conserved_where_a_drive_gives_and_takes() {
+    let mut r = wander(4_402);
+    let (mut worked, mut kept) = (0.0f64, 0);
+    for _ in 0..120 {
+        let (body, start, table) = any(&mut r);
+        let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
+        let ask = Ask::on(table).with_losses(Losses::of(Law::AirQuadratic, 0.01));
+        let Ok(m) = driven(&body, start, &times, &ask, &stirs) else { continue };
+        let Some(path) = m.path.as_ref().filter(|_| m.ending() == Ending::Done) else { continue };
+        let of = |i: usize| slip::energy(&body, &m.states[i], path.slip[i]);
+        let (first, last) = (of(0), of(20) + path.heat + path.lost);
+        let off = (last - first).abs();
+        assert!(off < 1e-8 * (1.0 + first.abs()), "{off:e} {body:?} {start:?} {table:?}");
+        worked = worked.min(path.lost);
+        kept += 1;
+    }
+    assert!(worked < -0.03 && kept > 20, "{worked} {kept}");
+}
+
+#[test]
+fn a_table_that_is_told_from_another_direction_has_the_same_motion() {
+    let mut r = wander(660_018);
+    for _ in 0..60 {
+        let (body, start, table) = any(&mut r);
+        let by = 5.0 * r();
+        let times: Vec<f64> = (0..=16).map(|i| 0.25 * f64::from(i)).collect();
+        let ask = Ask::on(table).with_pose(true);
+        let start = start.with_place([0.0; 2]);
+        let turned = |body: &Body, now: &Moment| {
+            let back = nalgebra::Rotation2::new(-by);
+            let mut then = *now;
+            then.phi -= by;
+            then.velocity = back * now.velocity;
+            then.contact_point = back * now.contact_point;
+            let push = stirs(body, &then);
+            Push { force: back.inverse() * push.force, couple: push.couple }
+        };
+        let there = start.with_heading(start.heading + by);
+        let both = (driven(&body, start, &times, &ask, &stirs), driven(&body, there, &times, &ask, &turned));
+        let (Ok(m), Ok(of)) = both else { continue };
+        let [off, claim] = apart(&m, &of);
+        assert!(off < 3.0 * claim + 1e-11, "{off:e} {claim:e}");
+    }
+}
+
+#[test]
+fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end() {
+    let mut r = wander(12_004);
+    let mut compared = 0;
+    for _ in 0..60 {
+        let (depth, height) = (0.1 + 0.3 * r(), 0.6 + 0.4 * r());
+        let circle = |radius, depth| Circle { radius, depth, fillet: 0.0 };
+        let (low, high) = (circle(1.0, depth), circle(0.8, depth - height));
+        let told = |circle: Circle| Circle { depth: -circle.depth, ..circle };
+        let body = Body::profile(&[low, high], 0.3, 0.4).unwrap();
+        let other = Body::profile(&[told(high), told(low)], 0.3, 0.4).unwrap();
+        let mut speed = || r() - 0.5;
+        let (w1, w2, w3, slip) = (speed(), 0.2 * speed(), 3.0 * speed(), [speed(), speed()]);
+        let theta = body.theta_end() + 0.3 + 0.5 * r();
+        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_heading(r());
+        let turned = Start::from(State { theta: PI - theta, w1, w2: -w2, w3: -w3 })
+            .with_slip(slip.map(|u| -u))
+            .with_heading(start.heading + PI);
+        let pushes = |_: &Body, now: &Moment| {
+            let (sin, cos) = (0.7 * now.time).sin_cos();
+            let force = Vector2::new(0.2 * cos, 0.1) - 0.1 * now.velocity - 0.05 * now.contact_point.coords;
+            Push { force, couple: now.axes().transpose() * Vector3::new(0.1 * sin, 0.05, 0.06 * cos) }
+        };
+        let times: Vec<f64> = (0..=16).map(|i| 0.25 * f64::from(i)).collect();
+        let ask = Ask::on(Friction::coulomb(0.3));
+        let both = [(&body, start), (&other, turned)];
+        let [Ok(m), Ok(of)] = both.map(|(body, start)| driven(body, start, &times, &ask, &pushes)) else {
+            continue;
+        };
+        assert_eq!((m.ending(), m.states.len()), (of.ending(), of.states.len()));
+        for (a, b) in m.states.iter().zip(&of.states) {
+            let b = State { theta: PI - b.theta, w1: b.w1, w2: -b.w2, w3: -b.w3 };
+            let off = states_apart(a, &b);
+            assert!(off < 3.0 * (m.error + of.error) + 1e-10, "{off:e} {a:?} {b:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 300, "{compared}");
+}
+
+#[test]
+fn what_a_drive_does_not_know_is_an_error_that_names_it() {
+    let body = Body::solid(0.5).unwrap();
+    let start = Start::from(State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
+    let still = |_: &Body, _: &Moment| Push { force: Vector2::zeros(), couple: NO_COUPLE };
+    let coulomb = Ask::on(Friction::coulomb(0.3));
+    let named = |ask: &Ask, start: Start| match driven(&body, start, &[0.0, 1.0], ask, &still) {
+        Err(Error::OutOfRange { name, .. }) => name,
+        found => panic!("{found:?}"),
+    };
+    assert_eq!(named(&coulomb.with_slope(0.1), start), "slope");
+    assert_eq!(named(&coulomb.with_turning(0.1), start), "turning");
+    assert_eq!(named(&coulomb.with_restitution(0.5), start), "restitution");
+    assert_eq!(named(&coulomb.with_losses(Losses::of(Law::RollingResistance, 0.1)), start), "losses");
+    assert_eq!(named(&Ask::on(Table::of(Contact::Smooth, 0.0)), start), "contact");
+    let lies = Start::from(State { theta: 0.0, w1: 0.0, w2: 0.0, w3: 1.0 });
+    assert_eq!(named(&coulomb, lies), "theta");
+    let fails = |_: &Body, now: &Moment| Push {
+        force: Vector2::new(if now.time > 0.5 { f64::NAN } else { 0.0 }, 0.0),
+        couple: NO_COUPLE,
+    };
+    let found = driven(&body, start, &[0.0, 1.0], &coulomb, &fails);
+    assert!(matches!(found, Err(Error::OutOfRange { name: "drive", .. })), "{found:?}");
+}
