@@ -102,11 +102,12 @@ pub mod drift {
 }
 
 pub mod custom {
-    //! User-defined laws of loss and friction, and the motions of bodies under them.
+    //! User-defined laws of loss and friction, forces and couples that drive a body, and the motions of bodies under them.
     //!
     //! ```text
     //! m(theta, w, N)     a couple along e1, e2, e3, in M g R, that takes the power -m.w >= 0
     //! F = mu(|u|) N      friction against a slip u; a contact point at rest holds up to mu_s N
+    //! F, m (moment)      a horizontal force on the centre, and a couple, that may give energy
     //! ```
     //! Each law is checked at a thousand states before a motion begins. A couple has to be finite, must not supply
     //! energy, and must not jump when the motion that it resists is at rest. A law with a jump, such as dry friction,
@@ -126,7 +127,7 @@ pub mod custom {
     //! ```
 
     pub use crate::laws::custom::{CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push};
-    pub use crate::laws::custom_si::{InSi, TurningInSi};
+    pub use crate::laws::custom_si::{InSi, MomentInSi, TurningInSi};
     pub use crate::motions::custom::{roll_stone, roll_with};
 }
 

@@ -41,7 +41,8 @@ const CUSTOM_NUMBERS: usize = 14;
 /// of 0; a body with two rims is seen from the lower one. Along the impact of one rim the coefficient of friction is
 /// that of the current speed; where both rims land at once it is that of the slip after the impact. A motion beyond
 /// events is an error, and so is friction of the user on a patch of contact. The default tolerance of a step is 1e-10.
-/// With `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. A
+/// A body with `custom.drive` rolls or slips on one rim, and the motion ends where another part lands or the body leaves
+/// the table; what it has lost is less by the work of the drive. With `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. A
 /// motion whose law is so stiff that it would need too many steps ends there with
 /// [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
 /// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
@@ -63,7 +64,8 @@ const CUSTOM_NUMBERS: usize = 14;
 /// # Errors
 /// Those of [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`]; `OutOfRange` for a motion beyond
 /// events, on a table that turns, with friction of the user on a patch of contact, beside a tangential restitution, or
-/// on another contact than Coulomb's friction; at any time `Couple` or `Coefficient` if a law is not finite or
+/// on another contact than Coulomb's friction, and for a drive on a smooth or a tilted table, on a patch of contact, with a
+/// restitution, on a face, or beside a loss that holds a body at rest; at any time `Couple` or `Coefficient` if a law is not finite or
 /// supplies energy.
 pub fn roll_with(
     body: &Body,
