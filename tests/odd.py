@@ -379,6 +379,7 @@ def laws():
     dry = sc.loss.DryContour(1e-3)
     found |= {
         "custom.Couple": (sc.custom.Couple, {"function": lambda theta, w, normal: -0.01 * w}),
+        "custom.Drive": (sc.custom.Drive, {"function": lambda now: ((0.0, 0.1), (0.0, 0.0, 0.0))}),
         "custom.Friction": (sc.custom.Friction, {"function": lambda speed: 0.3, "static": 0.4}),
         "loss.Law": (sc.loss.Law, {"coefficient": 1e-3}),
         "loss.Sum": (sc.loss.Sum, {"laws": [dry]}),

@@ -23,7 +23,7 @@ MADE = {
         "Apex", "Scene", "StepWarning", "Swing", "View",
         "custom", "data", "loss", "parts", "plot", "sweep",
     },
-    "custom.": set(),
+    "custom.": {"Moment"},
     "data.": {"Bounces", "MotionFit", "Comparison", "FilmComparison", "Filmed", "FittedLoss", "FittedStop", "Line", "LossFit", "StopFit", "Wobble"},
     "loss.": {"Loss"},
     "parts.": {"Part"},

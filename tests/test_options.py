@@ -51,7 +51,7 @@ OPTIONS = {
         "restitution", "restitution", "restitution", "restitution impact_law", "restitution impact_law",
         "none: `spincyl flick` has it, whose motions need it", "restitution: restitution",
     ),
-    "losses": Row("losses", "losses", "losses", "losses couple", "losses", "--loss", "losses: law loss"),
+    "losses": Row("losses", "losses", "losses", "losses couple drive", "losses", "--loss", "losses: law loss"),
     "table": Row(
         "table", "table", "table", "slope turning heading place", "slope turning",
         "none: the command has level tables", "table: slope phi0",

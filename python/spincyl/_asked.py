@@ -104,8 +104,10 @@ def options_for_core(
         laws, own = asked.losses._built_in, asked.losses._function
         if laws is not None:
             options["losses"] = laws._coefficients
-        if own is not None:
-            options[asked.losses._slot] = own
+        if own is not None and asked.losses._drives:
+            options["drive"] = own
+        elif own is not None:
+            options["couple"] = own
     if asked.restitution is not None:
         options["restitution"] = coefficient_of(asked.restitution)
         if (law := law_for_core(asked.restitution)) is not None:

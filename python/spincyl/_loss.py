@@ -55,7 +55,7 @@ class Loss(Hinting):
     __array_ufunc__ = None  # so that NumPy does not add the law to each element of an array
     #: The function of a law that a user wrote.
     _function: ClassVar[Any] = None
-    _slot: ClassVar[str] = "couple"  # the option of the core that takes `_function`
+    _drives: ClassVar[bool] = False  # whether `_function` is that of a `custom.Drive`
 
     @property
     def laws(self) -> "tuple[Law, ...]":

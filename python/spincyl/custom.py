@@ -177,13 +177,17 @@ class Moment:
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray
-        Slip along the lean and across it, in sqrt(g R), or in m/s; zeros where the body rolls.
+        Slip along e_h and e2 of `State`, in sqrt(g R), or in m/s; zeros where the body rolls.
     phi, psi : float
-        Direction of the lean and turn about the axis, in radians, as in `Motion.phi` and `Motion.psi`.
+        Heading of e_h over the table and turn about the axis, in radians, as `Motion.phi` and `Motion.psi`.
     contact_point : ndarray
         Place of the contact point on the table, in R, or in m.
     velocity : ndarray
         Velocity of the centre of mass along x and y of the table, in sqrt(g R), or in m/s.
+    axes : ndarray
+        Axes e1, e2, e3 as the columns of a 3 x 3 array, along x, y and the upward z: ``axes @ m`` turns a
+        couple along e1, e2, e3 into one along x, y, z, and ``axes.T @ m`` turns it back. e1 and e2 follow
+        the inclination, not the turn `psi` of the body about its axis.
     """
 
     time: float
@@ -194,16 +198,7 @@ class Moment:
     psi: float
     contact_point: Floats
     velocity: Floats
-
-    @property
-    def axes(self) -> Floats:
-        """Axes e1, e2, e3 as the columns of a 3 x 3 array, along x, y and the upward z.
-
-        ``axes @ m`` turns a couple along e1, e2, e3 into one along x, y, z, and ``axes.T @ m`` turns it
-        back. e1 and e2 follow the lean, not the turn `psi` of the body about its axis.
-        """
-        s, c, sin, cos = np.sin(self.theta), np.cos(self.theta), np.sin(self.phi), np.cos(self.phi)
-        return np.array([[c * cos, -sin, -s * cos], [c * sin, cos, -s * sin], [s, 0.0, c]])
+    axes: Floats
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -251,7 +246,7 @@ class Drive(_Own):
 
     function: Callable[[Moment], tuple[Any, Any]]
     _units: ClassVar[tuple[float, ...]] = (1.0, 1.0, 1.0, 1.0)  # of length, time, force and couple
-    _slot: ClassVar[str] = "drive"
+    _drives: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         _called("function", self.function, "a Moment")
@@ -273,6 +268,7 @@ class Drive(_Own):
                 psi=float(now[8]),
                 contact_point=length * now[9:11],
                 velocity=speed * now[11:13],
+                axes=now[13:].reshape(3, 3),
             )
             found = self.function(moment)
             try:

@@ -117,13 +117,16 @@ impl DriveLaw for PythonLaw<'_, '_> {
         self.is_over()
     }
 
-    /// The function gets the numbers of a moment in their order, and returns the force along x and y and the couple.
+    /// The function gets the numbers of a moment in their order, and the rows of its axes. It returns the force along x and y
+    /// and the couple.
     fn push(&self, _: &Body, now: &Moment) -> Push {
         let State { theta, w1, w2, w3 } = now.state;
         let ([along, across], at, v) = (now.slip, now.contact_point, now.velocity);
         let numbers = [now.time, theta, w1, w2, w3, along, across, now.phi, now.psi, at.x, at.y, v.x, v.y];
+        let rows = now.axes().transpose();
+        let numbers: Vec<f64> = numbers.iter().chain(rows.iter()).copied().collect();
         let found = || {
-            let push = self.function.call1((PyArray1::from_slice(self.function.py(), &numbers),))?;
+            let push = self.function.call1((PyArray1::from_vec(self.function.py(), numbers),))?;
             let all: Vec<f64> = push.try_iter()?.map(|x| x?.extract()).collect::<PyResult<_>>()?;
             let expected = "drive: expected five numbers, the force along x and y and the couple";
             <[f64; 5]>::try_from(all).map_err(|_| unlike(expected, &push))

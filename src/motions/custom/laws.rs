@@ -89,7 +89,9 @@ impl<'a> OwnLaws<'a> {
         &self,
         law: &dyn DriveLaw,
         y: &[f64; N],
-        ([w1, w2, w3], [u_h, u_2], [v_h, v_2]): ([f64; 3], [f64; 2], [f64; 2]),
+        [w1, w2, w3]: [f64; 3],
+        [u_h, u_2]: [f64; 2],
+        [v_h, v_2]: [f64; 2],
     ) -> Driven {
         let (side, state) = upright_state([y[SIN], y[COS], w1, w2, w3]);
         let (state, over) = self.seen_from_lower_rim(&state);
@@ -277,7 +279,7 @@ impl Own for OwnLaws<'_> {
         self.custom.drive.is_some()
     }
     fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3], slip: [f64; 2], velocity: [f64; 2]) {
-        self.driven.set(self.custom.drive.map(|law| self.driven_at(law, y, (w, slip, velocity))));
+        self.driven.set(self.custom.drive.map(|law| self.driven_at(law, y, w, slip, velocity)));
     }
     fn pushes<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let Some(Driven { push: Push { force, .. }, .. }) = self.driven.get() else { return [0.0; 2] };
