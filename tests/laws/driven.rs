@@ -5,10 +5,11 @@ use nalgebra::{Vector2, Vector3};
 use spincyl::body::Circle;
 use spincyl::contact::slip::{self, Friction};
 use spincyl::contact::{Contact, Table};
-use spincyl::custom::{self, Custom, Moment, Push};
+use spincyl::custom::{self, Custom, InSi, Moment, MomentInSi, Push};
 use spincyl::loss::{Law, Losses};
+use spincyl::measured::{Measured, Tube};
 use spincyl::motion::{Ask, Ending, Motion, Start, path::Kind, roll_with};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, State, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const NO_COUPLE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
@@ -306,4 +307,35 @@ fn what_a_drive_does_not_know_is_an_error_that_names_it() {
     };
     let found = driven(&body, start, &[0.0, 1.0], &coulomb, &fails);
     assert!(matches!(found, Err(Error::OutOfRange { name: "drive", .. })), "{found:?}");
+}
+
+#[test]
+fn a_drive_in_newtons_and_seconds_is_the_same_in_natural_units() {
+    let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3)).unwrap();
+    let scale = coin.scale();
+    let in_si = InSi::new(scale, |now: &MomentInSi| Push {
+        force: Vector2::new(0.01 * (20.0 * now.time).sin(), 0.0) - 0.01 * now.velocity,
+        couple: now.axes.transpose() * Vector3::new(0.0, 2e-5, 0.0) - 1e-8 * now.w,
+    });
+    let natural = |_: &Body, now: &Moment| {
+        let velocity = now.velocity.map(|u| scale.metres_per_second(u));
+        let force = Vector2::new(0.01 * (20.0 * scale.seconds(now.time)).sin(), 0.0) - 0.01 * velocity;
+        let w = now.state.angular_velocity().map(|w| scale.radians_per_second(w));
+        let couple = now.axes().transpose() * Vector3::new(0.0, 2e-5, 0.0) - 1e-8 * w;
+        Push { force: force.map(|f| scale.force(f)), couple: couple.map(|m| scale.couple(m)) }
+    };
+    let (start, ask) = (steady::state(coin.body(), 1.0).unwrap(), Ask::on(Friction::coulomb(0.4)));
+    let seconds = [0.0, 0.02, 0.05];
+    let laws = Custom::default().with_drive(&in_si);
+    let m = coin.roll_under(start, &seconds, &ask, laws, || true).unwrap().unwrap();
+    let times = seconds.map(|t| scale.time(t));
+    let of = driven(coin.body(), start.into(), &times, &ask, &natural).unwrap();
+    for (a, b) in m.readings().zip(&of.states) {
+        let w = scale.radians_per_second(b.angular_velocity().norm());
+        assert!(
+            (a.theta - b.theta).abs() < 1e-11 && (a.angular_velocity.norm() - w).abs() < 1e-10 * w,
+            "{a:?} {b:?}"
+        );
+    }
+    assert_eq!(of.states.len(), 3);
 }
