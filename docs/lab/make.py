@@ -30,7 +30,7 @@ for i, row in enumerate(zip(seconds, *ends[0].T, *ends[1].T, strict=True)):
     lines.append("\t".join(cells))
 (ROOM / "tube_from_above.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
-# the same as a project of a film with 1280 x 720 pixels: downward from the upper left corner, axes 5 degrees askew
+# the same as a project of a film with 1280 x 720 pixels, downward from the corner, and axes 5 degrees askew
 HOME = "org.opensourcephysics."
 
 
