@@ -10,10 +10,12 @@ python benches/report.py [--seconds 60] [--figure PATH]
 import argparse
 import csv
 import math
+import re
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -315,8 +317,34 @@ def table(rows: list[Row]) -> str:
     return "\n".join(lines)
 
 
+def read(text: str) -> list[Row]:
+    """Return the rows that `table` has written, with the digits that it has."""
+    lines = text.splitlines()
+    head = next(k for k, line in enumerate(lines) if line.startswith("| scene | t |"))
+    cells = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines[head + 2 :]]
+    known = {(scene.name, scene.t): scene for scene in scenes()}
+    rows = []
+    for name, last, true, claimed, call, more, *_ in takewhile(lambda found: len(found) > 1, cells):
+        begun = lines.index(f"{name}, t = {last}") + 2
+        curves = {}
+        for line in takewhile(lambda line: line.startswith("- "), lines[begun:]):
+            method, points = line[2:].split(": ", 1)
+            found = (re.fullmatch(r"(\S+): (.*), (\S+)", point) for point in points.split("; "))
+            curves[method] = [Point(float(x[1]), _seconds(x[2]), float(x[3])) for x in found if x]
+        scene = known[name, float(last)]
+        worth = None if true == "-" else float(true)
+        rows.append(Row(scene, curves, _seconds(more), _seconds(call), float(claimed), worth))
+    return rows
+
+
+def _seconds(time: str) -> float:
+    """Inverse of `_time`."""
+    number, unit = time.split()
+    return float(number) * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[unit]
+
+
 def figure(rows: list[Row], path: Path) -> bool:
-    """Draw error against time per trajectory, one panel for each scene. Return False without matplotlib."""
+    """Draw time against error for the nutating cylinder, a panel for each duration; False without matplotlib."""
     try:
         import matplotlib
     except ImportError:
@@ -326,37 +354,47 @@ def figure(rows: list[Row], path: Path) -> bool:
 
     from spincyl.studio.plot._style import BLACK, BLUE, GREEN, ORANGE, saved
 
-    style = {
-        "RK4, fixed step": (BLUE, "o-"),
-        "steps within tol": (GREEN, "s-"),
-        "SciPy DOP853": (ORANGE, "^-"),
+    # colour, name, and its offset in points from the last point
+    style: dict[str, tuple[str, str, tuple[int, int]]] = {
+        "RK4, fixed step": (BLUE, "RK4", (10, -16)),
+        "steps within tol": (GREEN, "steps within\na tolerance", (12, -16)),
+        "SciPy DOP853": (ORANGE, "SciPy DOP853", (10, 2)),
     }
-    across = 4
-    down = -(-len(rows) // across)
+    drawn = [row for row in rows if row.scene.name == "nutating cylinder"] or rows[:1]
     figure, axes = plt.subplots(
-        down, across, figsize=(4.6 * across, 4.2 * down), layout="constrained", squeeze=False
+        1, len(drawn), figsize=(12.8, 7.2), layout="constrained", squeeze=False, sharex=True, sharey=True
     )
-    for ax, row in zip(axes.flat, rows, strict=False):
+    for ax, row in zip(axes.flat, drawn, strict=True):
         for name, points in row.curves.items():
-            colour, line = style[name]
-            ax.loglog(
-                [p.seconds for p in points], [p.error for p in points], line, color=colour, ms=4, label=name
-            )
+            colour, words, beside = style[name]
+            best = _useful(points)
+            ax.loglog([p.error for p in best], [p.seconds for p in best], "o-", color=colour, lw=2.5, ms=6)
+            how = {"textcoords": "offset points", "size": 18, "color": colour}
+            ax.annotate(words, (best[-1].error, best[-1].seconds), beside, **how)
         worth = row.claimed if row.true is None else max(row.true, 1e-17)
-        ax.loglog(row.call_seconds, worth, "*", color=BLACK, ms=15, label="exact, one call")
-        ax.loglog(row.exact_seconds, worth, "*", color="#888888", ms=12, label="exact, a state of 1000")
-        ax.set_title(f"{row.scene.name}, $t = {row.scene.t:g}$")
-        ax.set_ylim(1e-17, 10)
-        ax.grid(alpha=0.3)
-    for ax in axes.flat[len(rows) :]:
-        ax.axis("off")
-    handles, labels = axes.flat[0].get_legend_handles_labels()
-    axes.flat[-1].legend(handles, labels, loc="center", fontsize=13)
-    figure.supxlabel("time per trajectory (s)")
-    figure.supylabel("error of the final state")
-    saved(figure, path, dpi=110)
+        ax.loglog(worth, row.call_seconds, "*", color=BLACK, ms=24)
+        below: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "size": 18}
+        ax.annotate("exact solution", (worth, row.call_seconds), (0, -36), **below)
+        ax.set_title(f"motion up to $t = {row.scene.t:,.0f}$", size=19, pad=12)
+        ax.tick_params(labelsize=16)
+        ax.spines[["top", "right"]].set_visible(False)
+    axes[0, 0].set(xlim=(10, 1e-20), ylim=(3e-6, 3), xticks=10.0 ** np.arange(0, -16, -5))
+    axes[0, 0].set_ylabel("time of a motion (s)", size=18)
+    figure.supxlabel("error of the final state (right: more exact)", size=18)
+    told = [f"{1e6 * row.call_seconds:.0f} µs up to $t = {row.scene.t:,.0f}$" for row in drawn]
+    figure.suptitle(f"The exact solution takes {' and '.join(told)}", size=23)
+    saved(figure, path, dpi=150)
     plt.close(figure)
     return True
+
+
+def _useful(points: list[Point]) -> list[Point]:
+    """The points from fast to slow without those that a faster one of the same method beats in error."""
+    found: list[Point] = []
+    for point in sorted(points, key=lambda p: p.seconds):
+        if not found or point.error < 0.95 * found[-1].error:
+            found.append(point)
+    return found
 
 
 def main() -> None:

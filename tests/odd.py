@@ -500,7 +500,7 @@ def pictures(folder):
         "plot.film": (sc.plot.film, {"found": sc.data.from_above(*filmed()[::-1]), "axes": None}),
         "data.Filmed.over": (
             sc.data.from_above(*filmed()[::-1]).over,
-            {"motion": tube_motion(), "frames": None, "t": 0.05, "first": 0, "fps": 240.0, "camera": (640.0, 360.0, 9000.0, 5.0), "ax": None},
+            {"motion": tube_motion(), "frames": None, "t": 0.05, "first": 0, "fps": 240.0, "camera": (918.0, 336.0, 6000.0, 5.0), "ax": None},
         ),
         "data.Filmed.plot": (sc.data.from_above(*filmed()[::-1]).plot, {"axes": None}),
         "plot.comparison": (sc.plot.comparison, {"found": comparison(), "ax": None}),

@@ -44,12 +44,20 @@ def test_the_computed_ends_are_beside_the_marks_in_pixels_as_tracker_stores_them
     for name, at in zip("OX", here, strict=True):
         x, y = raw[name]["x"][13], raw[name]["y"][13]
         c, s = np.cos(np.radians(5)), np.sin(np.radians(5))
-        assert at == pytest.approx((640 + 9000 * (c * x - s * y), 360 - 9000 * (s * x + c * y)), abs=1e-6)
-    # the marks have errors of 1.8 pixels; the crosses may be in the other order
+        assert at == pytest.approx((918 + 6000 * (c * x - s * y), 336 - 6000 * (s * x + c * y)), abs=1e-6)
+    # the marks have errors of 1.2 pixels; the crosses may be in the other order
     apart = np.abs(crosses[:, None] - here[None]).max(axis=2).min(axis=1)
-    assert (apart < 6).all() and len(marks) == 2 * (30 - 2)
+    assert (apart < 4).all() and len(marks) == 2 * (30 - 2)
     low, high = ax.get_ylim()
     assert low > high, "y is downward"
+
+
+def test_the_marks_of_the_example_and_the_computed_tube_lie_inside_its_picture_of_1280_by_720_pixels():
+    for t in np.arange(34) / 240:
+        for at in (at for lines in drawn(film().over(motion(), t=t)).values() for at in lines):
+            seen = at[np.isfinite(at).all(axis=1)]
+            assert (seen > 0).all() and (seen < (1280, 720)).all()
+        plt.close("all")
 
 
 def test_the_outline_is_as_wide_and_as_long_as_the_tube():
@@ -57,11 +65,11 @@ def test_the_outline_is_as_wide_and_as_long_as_the_tube():
     sides = [line for line in lines if len(line) == 2]
     rims = [line for line in lines if len(line) == 73]
     assert len(sides) == len(rims) == 2
-    length = 9000 * 3.75 * 0.0254 * np.sin(np.radians(83.4))
+    length = 6000 * 3.75 * 0.0254 * np.sin(np.radians(83.4))
     for side in sides:
         assert np.hypot(*(side[1] - side[0])) == pytest.approx(length, rel=1e-9)
     across = np.hypot(*(sides[0][0] - sides[1][0]))
-    assert across == pytest.approx(9000 * 0.625 * 0.0254, rel=1e-9)
+    assert across == pytest.approx(6000 * 0.625 * 0.0254, rel=1e-9)
     for rim in rims:
         distance = np.hypot(*(rim - rim[:-1].mean(axis=0)).T)
         assert 2 * distance.max() == pytest.approx(across, rel=1e-3)
@@ -79,13 +87,13 @@ def test_a_wrong_motion_is_seen_beside_the_marks():
 
 def test_a_table_without_a_camera_needs_one_and_then_gives_the_same_picture():
     table = film("tube_from_above")
-    assert table.camera is None and film().camera == (640.0, 360.0, 9000.0, 5.0)
+    assert table.camera is None and film().camera == (918.0, 336.0, 6000.0, 5.0)
     with pytest.raises(ValueError, match="camera: expected"):
         table.over(motion())
-    one = drawn(table.over(motion(), camera=(640, 360, 9000, 5)))["o"][1]
+    one = drawn(table.over(motion(), camera=(918, 336, 6000, 5)))["o"][1]
     assert one == pytest.approx(drawn(film().over(motion()))["o"][1], abs=0.01)
     with pytest.raises(ValueError, match="camera = .*expected"):
-        table.over(motion(), camera=(640, 360, -9000, 5))
+        table.over(motion(), camera=(918, 336, -6000, 5))
 
 
 def test_axes_that_move_or_are_unequal_have_no_camera(tmp_path):
@@ -94,16 +102,16 @@ def test_axes_that_move_or_are_unequal_have_no_camera(tmp_path):
     with zipfile.ZipFile(sc.data.example("tube_project")) as packed:
         text = packed.read("tube.trk").decode()
     (tmp_path / "tube.trk").write_text(text, "utf-8")
-    assert sc.data.read_tracker(tmp_path / "tube.trk")["O"].camera == (640.0, 360.0, 9000.0, 5.0)
-    scale = '<property name="yscale" type="double">9000.0</property>'
+    assert sc.data.read_tracker(tmp_path / "tube.trk")["O"].camera == (918.0, 336.0, 6000.0, 5.0)
+    scale = '<property name="yscale" type="double">6000.0</property>'
     assert scale in text
-    (tmp_path / "tube.trk").write_text(text.replace(scale, scale.replace("9000", "9001")), "utf-8")
+    (tmp_path / "tube.trk").write_text(text.replace(scale, scale.replace("6000", "6001")), "utf-8")
     assert sc.data.read_tracker(tmp_path / "tube.trk")["O"].camera is None
     (tmp_path / "tube.trk").write_text(text.replace('"string">m<', '"string">cm<'), "utf-8")
     tube = sc.measured(outer_diameter="0.00625in", inner_diameter="0.005in", length="0.0375in")
     with pytest.warns(UserWarning, match="seen at 82.98 degrees"):  # a small tube turns faster
         small = sc.data.from_above(tmp_path / "tube.trk", tube)
-    assert small.camera.scale == pytest.approx(9e5)
+    assert small.camera.scale == pytest.approx(6e5)
 
 
 def test_pictures_are_drawn_from_their_upper_left_corner(tmp_path):
@@ -159,5 +167,5 @@ def test_a_tube_that_turns_clockwise_is_drawn_where_its_marks_are():
     turned = {name: {"t": x["t"], "x": x["x"], "y": -x["y"]} for name, x in tracks.items()}
     other = sc.data.from_above(turned, TUBE)
     for t in (0.02, 0.1):
-        shown = drawn(other.over(motion(), t=t, camera=(640, 360, 9000, 5)))
+        shown = drawn(other.over(motion(), t=t, camera=(918, 336, 6000, 5)))
         assert np.abs(shown["x"][0][:, None] - shown["o"][1][None]).max(axis=2).min(axis=1).max() < 6

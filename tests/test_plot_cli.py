@@ -6,10 +6,12 @@ from itertools import combinations
 
 import matplotlib as mpl
 import numpy as np
+import PIL.Image
 import pytest
 
 import spincyl as sc
 from spincyl.cli import main
+from spincyl.studio.plot import _style
 
 mpl.use("agg")
 import matplotlib.pyplot as plt
@@ -98,6 +100,43 @@ def test_the_curves_of_a_map_of_rounded_tubes_are_theirs():
 def grey(colour):
     """Luma of a colour, as a printer without colours shows it."""
     return float(np.dot(colour[:3], (0.299, 0.587, 0.114)))
+
+
+def lightness(colour):
+    """L* of a colour: CIE 1976, from the luminance of sRGB (IEC 61966-2-1)."""
+    signal = np.array(mpl.colors.to_rgb(colour))
+    linear = np.where(signal <= 0.04045, signal / 12.92, ((signal + 0.055) / 1.055) ** 2.4)
+    luminance = linear @ (0.2126, 0.7152, 0.0722)
+    if luminance <= (6 / 29) ** 3:
+        return (29 / 3) ** 3 * luminance
+    return 116 * luminance ** (1 / 3) - 16
+
+
+def test_the_regions_of_a_map_differ_in_lightness_by_six_and_from_the_ink_of_its_lines_by_thirty():
+    assert lightness("white") == pytest.approx(100) and lightness("black") == 0
+    assert lightness("#777777") == pytest.approx(50.03, abs=0.01)  # the middle grey of tables of sRGB
+    regions = sorted(map(lightness, _style.HATCHES))
+    assert len(regions) == 5 and np.diff(regions).min() > 6
+    # Words and lines of the figures, and the hatching, are darker than the darkest region.
+    assert lightness(_style.BLACK) < regions[0] - 30 and lightness(_style.HATCH) < regions[0] - 15
+    # what a printer without colours prints has the same steps
+    data = np.arange(5.0)[np.newaxis]
+    drawn = plt.figure(figsize=(5, 1), dpi=50)
+    ax = drawn.add_axes((0, 0, 1, 1))
+    ax.axis("off")
+    ax.imshow(data, aspect="auto", cmap=mpl.colors.ListedColormap(list(_style.HATCHES)))
+    drawn.canvas.draw()
+    printed = PIL.Image.fromarray(np.asarray(drawn.canvas.buffer_rgba())).convert("L")
+    greys = [lightness((x / 255,) * 3) for x in sorted(np.asarray(printed)[25, 25::50].tolist())]
+    assert len(greys) == 5 and np.diff(greys).min() > 6
+
+
+def test_a_map_of_energy_gets_lighter_with_the_energy_and_what_is_forbidden_is_hatched():
+    ax = sc.plot.energy()
+    bands = next(drawn for drawn in ax.collections if drawn.get_array() is not None)
+    shown = [lightness(colour[:3]) for colour in bands.get_facecolor()]
+    assert len(shown) > 10 and (np.diff(shown) > 1).all()
+    assert ax.patch.get_hatch() == _style.HATCHES[_style.FORBIDDEN]
 
 
 def test_every_region_has_a_look_also_without_colours_and_the_legend_names_those_that_are_there():

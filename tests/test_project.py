@@ -48,7 +48,7 @@ def test_a_project_says_what_the_table_says_that_was_exported_from_it():
     for name, track in project.items():
         assert list(track) == ["t", "x", "y"] and track.units == {"t": "s", "x": "m", "y": "m"}
         for column in track:
-            # a thousandth of a pixel, of which a metre has 9000; the table has seven digits
+            # a thousandth of a pixel, of which a metre has 6000; the table has seven digits
             np.testing.assert_allclose(track[column], table[name][column], atol=1.5e-7)
     assert np.isnan(project["X"]["x"]).sum() == 2 and np.isnan(project["O"]["x"]).sum() == 0
 
@@ -87,14 +87,14 @@ def test_axes_stay_where_they_were_moved_to(tmp_path):
         TEXT,
         re.S,
     )[0]
-    later = one.replace("[0]", "[10]").replace(">640.0<", ">740.0<").replace(">9000.0<", ">4500.0<")
+    later = one.replace("[0]", "[10]").replace(">918.0<", ">1018.0<").replace(">6000.0<", ">3000.0<")
     text = TEXT.replace(one, one + later).replace(
         'name="fixedorigin" type="boolean">true', 'name="fixedorigin" type="boolean">false'
     )
     moved, plain = read(tmp_path, text), read(tmp_path, TEXT)
     for name in "OX":
         np.testing.assert_array_equal(moved[name]["x"][:10], plain[name]["x"][:10])
-        back = (moved[name]["x"] + 1j * moved[name]["y"]) / 2 + 100 / 9000 * np.exp(-1j * np.radians(5))
+        back = (moved[name]["x"] + 1j * moved[name]["y"]) / 2 + 100 / 6000 * np.exp(-1j * np.radians(5))
         np.testing.assert_allclose(back[10:].real, plain[name]["x"][10:], atol=1e-12)
 
 

@@ -218,7 +218,6 @@ def measure(quick):
         f"{x:.2%} {sc.sweep.Answer(i).name}" for i, x in enumerate(parts) if x
     )
     return {
-        "panels": {"random starts (99 %), us a motion": shown},
         "text": text + ".\n",
         "best": by_percentile(shown),
     }

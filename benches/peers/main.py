@@ -98,10 +98,7 @@ def write(found):
     put(docs, "ratios", table(HEAD, best))
     quoted = [row for row in best if any(row[0].startswith(job) and row[1] == off for job, off in QUOTED)]
     put(ROOT / "README.md", "ratios", table(HEAD, quoted))
-    panels = {}
-    for told in found.values():
-        panels |= told["panels"]
-    draw(panels, ROOT / "docs" / "figures" / "peers.png")
+    draw(docs.read_text("utf-8"))
 
 
 def main():

@@ -102,12 +102,6 @@ def measure(quick, also=()):
         if x["job"] in ("grid", "scattered"):
             job = {"grid": "grid", "scattered": "points"}[x["job"]]
             rows.append((job, f"numba {x['version']}, {x['svml']}", x["threads"], x["ns"]))
-    shown = {}
-    for job, who, n, ns in rows:
-        if job == "grid" and who in off and n <= 2:
-            shown.setdefault(f"{who.split(' ')[0]}, {n} thread" + "s" * (n > 1), []).append(
-                (n, ns, off[who][0])
-            )
     text = table(
         ("map", "program", "threads", "time per point (ns)"), sorted(rows, key=lambda r: (r[0], r[1]))
     )
@@ -126,7 +120,7 @@ def measure(quick, also=()):
                 mine = times[job, "spincyl", n]
                 what = f"map, {job}, {n} thread" + "s" * (n > 1)
                 best.append((what, None, f"{mine:.3g} ns", f"{ns:.3g} ns", who, ns / mine))
-    return {"panels": {"map, ns a point": shown}, "text": text, "best": best}
+    return {"text": text, "best": best}
 
 
 if __name__ == "__main__":

@@ -88,7 +88,7 @@ def told(name, tol, found, off):
 
 def measure(quick):
     count = 4096 if quick else 65_536
-    panels, rows, shares, best = {}, [], [], []
+    points, rows, shares, best = {}, [], [], []
     for kick, name in [*KICKS.items(), (None, "one body, kick 0.05")]:
         ell, start = ensemble(kick or 0.05, count, one_body=kick is None)
         truth = heyoka_jobs.reference(ell[::EVERY], start[::EVERY])
@@ -100,12 +100,12 @@ def measure(quick):
             states = states_of(found[who, setting])[some]
             us = least[who, setting] / n * 1e6
             worst, most = errors(states, truth[: len(states)])
-            panels.setdefault(name, {}).setdefault(who, []).append((setting, us, worst))
+            points.setdefault(name, {}).setdefault(who, []).append((setting, us, worst))
             rows.append((name, who, setting, us, worst, most))
             if who == "spincyl":
                 off = np.abs(states - truth).max(axis=1)
                 shares.append(told(name, setting, found[who, setting], off))
-        best += compared(name, panels[name], (1e-6, 1e-10, 1e-12), "us")
+        best += compared(name, points[name], (1e-6, 1e-10, 1e-12), "us")
     text = table(
         (
             "set of motions",
@@ -132,7 +132,7 @@ def measure(quick):
         ),
         shares,
     )
-    return {"panels": {f"{k}, us a motion": v for k, v in panels.items()}, "text": text, "best": best}
+    return {"text": text, "best": best}
 
 
 if __name__ == "__main__":

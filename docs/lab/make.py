@@ -30,7 +30,7 @@ for i, row in enumerate(zip(seconds, *ends[0].T, *ends[1].T, strict=True)):
     lines.append("\t".join(cells))
 (ROOM / "tube_from_above.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
-# the same as a project: pixels downward from the upper left corner, axes that lie 5 degrees askew
+# the same as a project of a film with 1280 x 720 pixels, downward from the corner, and axes 5 degrees askew
 HOME = "org.opensourcephysics."
 
 
@@ -62,12 +62,12 @@ def one(thing: str) -> str:
     return f'type="object">\n{thing}'
 
 
-places = [(x + 1j * y) * np.exp(1j * np.radians(5.0)) * 9000.0 for x, y in (end.T for end in ends)]
+places = [(x + 1j * y) * np.exp(1j * np.radians(5.0)) * 6000.0 for x, y in (end.T for end in ends)]
 tracks = [held("cabrillo.tracker.CoordAxes", name=text("axes"))]
 for name, end in zip("OX", places, strict=True):
     marks = {
         f"[{i}]": held(
-            "cabrillo.tracker.PointMass$FrameData", x=round(640 + z.real, 3), y=round(360 - z.imag, 3)
+            "cabrillo.tracker.PointMass$FrameData", x=round(918 + z.real, 3), y=round(336 - z.imag, 3)
         )
         for i, z in enumerate(end.tolist())
         if name == "O" or i not in (11, 12)
@@ -76,11 +76,11 @@ for name, end in zip("OX", places, strict=True):
     tracks.append(held("cabrillo.tracker.PointMass", mass=1.0, name=text(name), framedata=data))
 axes = held(
     "media.core.ImageCoordSystem$FrameData",
-    xorigin=640.0,
-    yorigin=360.0,
+    xorigin=918.0,
+    yorigin=336.0,
     angle=5.0,
-    xscale=9000.0,
-    yscale=9000.0,
+    xscale=6000.0,
+    yscale=6000.0,
 )
 project = held(
     "cabrillo.tracker.TrackerPanel",

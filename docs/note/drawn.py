@@ -136,7 +136,7 @@ def draw_flicks():
         shown = np.where(ends == sc.sweep.Status.DONE, PIPE_SCALE.seconds(when), np.nan)
         turns = PIPE_SCALE.turns(rate)
         colours = ax.pcolormesh(turns, number, shown, cmap="viridis", vmin=0, vmax=3.5, rasterized=True)
-        for status, colour in ((sc.sweep.Status.SIDE, "0.82"), (sc.sweep.Status.LIFT_OFF, "#F6C9A8")):
+        for status, colour in ((sc.sweep.Status.SIDE, "0.6"), (sc.sweep.Status.LIFT_OFF, "#F2B083")):
             only = mpl.colors.ListedColormap([colour])
             ax.pcolormesh(turns, number, np.where(ends == status, 1.0, np.nan), cmap=only, rasterized=True)
         ax.text(20, 2.65, "hops", ha="center")

@@ -132,6 +132,9 @@ def _written(folder: Path, suffix: str, slides: bool, progress: Progress | None)
         for row, m in zip(np.atleast_2d(axes), moves, strict=True):
             motion(m, row)
         save(name, figure)
+    figure, ax = plt.subplots(figsize=(12.8, 7.2), layout="constrained")
+    _tippe_top(ax)
+    save("tippe_top", figure)
     return written
 
 
@@ -151,8 +154,8 @@ def _motions() -> "dict[str, list[Motion]]":
 
 
 def _slipping() -> "dict[str, list[Motion]]":
-    """Motions with friction: a pressed tube, a flicked coin, a hoop, Euler's disk, a tippe top."""
-    pipe, hoop, top = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97), Body.ball(-0.2, 16 / 27, 14 / 27)
+    """Motions with friction: a pressed tube, a flicked coin, a hoop, Euler's disk."""
+    pipe, hoop = Body.tube(6.0, 0.8), Body.tube(0.0, 0.97)
     flicked = pressed(pipe, 8.67, np.radians(60), finger=0.3)
     # nearly upright, with the velocity and backspin of the page about slip
     thrown = hoop.with_centre_velocity(State(1.5, 0.0, 0.0, -3.0), 0.0, 1.43)
@@ -161,14 +164,59 @@ def _slipping() -> "dict[str, list[Motion]]":
     euler = Body.from_metres(outer_diameter=0.0751, length=0.0128, fillet=0.002)
     held = State(1.2, 2 * np.sin(1.2), 0.0, 2 * np.cos(1.2))  # rotates about the vertical as a whole
     turned = euler.with_centre_velocity(held, 0.0, 0.0)
-    spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 7.04), 0.0, 0.0)
     return {
         "flick": [roll(pipe, flicked, 60.0, contact=Coulomb(0.3))],
         "flicked_coin": [roll(coin, upright, 20.0, contact=Coulomb(0.2))],
         "disk_slips": [roll(euler, turned, 25.0, contact=Coulomb(0.2))],
         "hoop_comes_back": [roll(hoop, thrown, 16.0, contact=Coulomb(0.4))],
-        "tippe_top": [roll(top, spun, 100.0, contact=table) for table in (Viscous(0.3), Coulomb(0.3))],
     }
+
+
+def _tippe_top(ax: Any) -> None:
+    """Draw the inclination of a tippe top on a wet table and on a dry one, and the top as it leans."""
+    top = Body.ball(-0.2, 16 / 27, 14 / 27)
+    spun = top.with_centre_velocity(State(0.1, 0.0, 0.0, 7.04), 0.0, 0.0)
+    t = np.linspace(0.0, 100.0, 2001)
+    wet, dry = (roll(top, spun, t, contact=table).theta for table in (Viscous(0.3), Coulomb(0.3)))
+    for theta, colour in ((wet, BLUE), (dry, ORANGE)):
+        ax.plot(t, np.degrees(theta), color=colour, lw=2.4)
+    for at, beside in (
+        (10.0, (0, 52)),
+        (33.0, (-56, 30)),
+        (45.0, (-60, 22)),
+        (58.0, (-60, 36)),
+        (97.0, (0, -64)),
+    ):
+        _leaning(ax, at, float(np.interp(at, t, wet)), beside)
+    _leaning(ax, 97.0, float(np.interp(97.0, t, dry)), (0, 52))
+    ax.text(2, 53, "dot: its centre of mass", size=16)
+    ax.text(60, 88, "wet table: it slips,\nand turns over", color=BLUE, size=20)
+    ax.text(52, 12, "dry table: it soon rolls,\nand stays down", color=ORANGE, size=20)
+    ax.set(xlim=(0, 103), ylim=(-4, 184), yticks=range(0, 181, 45))
+    ax.set_title("A tippe top turns over only while it slips", size=24, pad=14)
+    ax.set_xlabel(r"time  $t$ ($\sqrt{R/g}$)", size=20)
+    ax.set_ylabel(r"inclination  $\theta$ (degrees)", size=20)
+    ax.tick_params(labelsize=18)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def _leaning(ax: Any, t: float, theta: float, beside: tuple[float, float]) -> None:
+    """Draw the top of `_tippe_top` beside a point of a curve: a ball with a stem and its centre of mass."""
+    from matplotlib.offsetbox import AnnotationBbox, DrawingArea
+    from matplotlib.patches import Circle, Polygon
+
+    radius, size = 26.0, 96.0
+    across, along = np.array([np.cos(theta), -np.sin(theta)]), np.array([np.sin(theta), np.cos(theta)])
+    middle = np.full(2, size / 2)
+    corners = [(-0.13, 0.8), (0.13, 0.8), (0.13, 1.5), (-0.13, 1.5)]
+    picture = DrawingArea(size, size)
+    picture.add_artist(Polygon([middle + radius * (x * across + z * along) for x, z in corners], fc=BLACK))
+    picture.add_artist(Circle((size / 2, size / 2), radius, fc="#F0EEE8", ec=BLACK, lw=1.8))
+    right, up = middle - 0.2 * radius * along
+    picture.add_artist(Circle((right, up), 3.6, fc=BLACK))
+    at = t, np.degrees(theta)
+    ax.plot(*at, "o", mfc="white", mec=BLACK, mew=2, ms=9)
+    ax.add_artist(AnnotationBbox(picture, at, beside, boxcoords="offset points", frameon=False))
 
 
 def _exposed() -> "list[tuple[str, Motion, Letter]]":

@@ -310,7 +310,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     level = body.energy(body.steady(theta[:, np.newaxis]))
     excess = level - np.sqrt(1 + ell**2)
     steps = np.array([0.03, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10, 20, 30])
-    ax.set_facecolor(FORBIDDEN)
+    ax.patch.set(facecolor=FORBIDDEN, **hatching(FORBIDDEN))
     shown = np.ma.masked_invalid(np.where(excess > 0, excess, np.nan))
     filled = ax.contourf(ell, np.degrees(theta), shown, steps, cmap="viridis", norm=LogNorm(), extend="both")
     ax.contour(ell, np.degrees(theta), shown, steps, colors="white", linewidths=0.6)
@@ -424,10 +424,10 @@ def _shade(ax: "Axes", body: Body, contact: Contact) -> None:
             if stable
             else (UNSTABLE, "unstable")
         )
-        ax.axhspan(np.degrees(low), np.degrees(high), color=colour, lw=0, zorder=0)
+        ax.axhspan(np.degrees(low), np.degrees(high), fc=colour, zorder=0, **hatching(colour))
         if high - low > np.radians(4.5):
             where = (0.93 * ax.get_xlim()[1], np.degrees(middle))
-            ax.text(*where, name, ha="right", va="center", color="#444444")
+            ax.text(*where, name, ha="right", va="center", bbox={"fc": colour, "lw": 0, "pad": 1.5})
 
 
 def _mark(ax: "Axes", points: list[Landmark], rate_max: float) -> None:

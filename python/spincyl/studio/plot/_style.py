@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 
 BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#222222"
 RED = "#B2182B"  # times of slipping
-FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#BDBDBD", "#F6C9A8", "#F0E442", "#BFDDF2"
-SMOOTH = "#DDB3CD"  # stable on a smooth table only
-#: Hatching of regions whose colours are alike in black and white, as on the live page.
+# Regions of maps differ in lightness L* (CIE 1976) by 6 or more, so that they differ in black and white, too.
+FORBIDDEN, UNSTABLE, ROLLING, STABLE = "#949494", "#F2B083", "#EFDD55", "#E3F1FB"
+SMOOTH = "#CC96BB"  # stable on a smooth table only
+#: Hatching of regions, as on the live page.
 HATCHES = {FORBIDDEN: "..", UNSTABLE: "xx", ROLLING: "//", SMOOTH: r"\\", STABLE: ""}
-HATCH = "#777777"  # colour of the hatching
+HATCH = "#666666"  # colour of the hatching
 HERTZ = "turns per second"
 # sizes in figures that this package makes; the user's own axes keep their sizes
 SIZES = {
