@@ -225,7 +225,7 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     refused = [letter for letter in of.values() if letter not in ("", "*")]
     excluded = sum(letter in by_physics for letter in refused)
     total = (
-        f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+        f"Of {len(of):,} combinations {len(of) - len(refused):,} are computed and {len(refused):,} refused"
     )
     if excluded == len(refused):
         total += ", because physics does not\ndefine them."
@@ -239,11 +239,12 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
 
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:
     """Losses by tables for a body and a restitution, where one motion and many agree."""
-    lines = ["| losses; contact: | " + " | ".join(TABLES) + " |", "| --- |" + " --- |" * len(TABLES)]
+    head = "| losses (row) and contact (column) | " + " | ".join(TABLES) + " |"
+    lines = [head, "| --- |" + " --- |" * len(TABLES)]
     for law in LOSSES:
         both = [{of[body, table, law, e, way] for way in WAYS} for table in TABLES]
-        row = [" or ".join(sorted({"": "yes", "*": "yes*"}.get(x, x) for x in some)) for some in both]
-        lines.append(f"| {law} | " + " | ".join(row) + " |")
+        row = [" or ".join(sorted({"": "yes", "*": "on the table"}.get(x, x) for x in some)) for some in both]
+        lines.append(f"| {'no losses' if law == 'none' else law} | " + " | ".join(row) + " |")
     return "\n".join([*lines, ""])
 
 
@@ -257,7 +258,7 @@ def tables(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
         alike = collections.defaultdict(list)
         for e in dict.fromkeys(e for _, e in keys):
             alike[tuple(body for body, other in keys if other == e)].append(e)
-        heads = [f"{', '.join(names)}; restitution {' or '.join(es)}" for names, es in alike.items()]
+        heads = [f"{', '.join(names)} with restitution {' or '.join(es)}" for names, es in alike.items()]
         text.append(f"## {'; '.join(heads)}\n\n{table}")
     return "\n".join(text)
 

@@ -34,8 +34,8 @@ class Ending(IntEnum):
     PAINLEVE
         The law of friction allows no contact force, or more than one.
     STOPS
-        The body has come to rest on its face, or in a motion with losses, and dry friction holds it;
-        `Motion.held` is the share of the limit at which it does.
+        The body has come to rest, on its face or in a motion with losses, and dry friction holds it there.
+        `Motion.held` is the share of the largest dry friction that this takes.
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
@@ -64,9 +64,9 @@ class RestsOn(IntEnum):
     NONE
         The body is not at rest, or the motion was not computed to its rest.
     FACE
-        Its first face, at the rim from which the initial state is seen, or at the lower end of a body of
-        several circles; `Motion.axis_up` is then 1. It is the same face if the motion ended with
-        `Ending.FACE`, and the body goes on to spin or to bounce on it.
+        Its first face, at the rim to which the initial state refers, or at the lower end of a body of
+        several circles; `Motion.axis_up` is then 1. The code is the same if the motion ended with
+        `Ending.FACE`, after which the body still spins or bounces on that face.
     OTHER_FACE
         The face at its other end; `Motion.axis_up` is then -1.
     SIDE
@@ -141,7 +141,7 @@ class Event(NamedTuple):
     state : State or EllipsoidState
         State at that time, in natural units.
     rim : str
-        Rim from which the state is seen: "first" is that of the initial state, "other" the other one. For a
+        Rim to which the state refers: "first" is that of the initial state, "other" the other one. For a
         body of several circles see `Phase.rim`.
     """
 
@@ -152,7 +152,7 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Share of its limit with which dry friction holds a body at rest.
+    """How much of the largest dry friction a body at rest needs, as a share of it.
 
     Attributes
     ----------

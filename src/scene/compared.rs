@@ -72,7 +72,7 @@ pub enum Doubt {
 pub struct Comparison {
     /// The deviations.
     pub rows: Vec<Deviation>,
-    /// A bound for the error of the known positions in metres: a smaller deviation is none.
+    /// A bound for the error of the known positions in metres. A smaller deviation is no error of the engine.
     pub position_error: f64,
     /// The same for the known orientations, in radians.
     pub angle_error: f64,

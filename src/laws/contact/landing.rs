@@ -66,9 +66,9 @@ pub enum Outcome {
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state as seen from the rim that carries the body; from the old rim if the body lies on both.
+    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the rim of before.
     pub state: State,
-    /// The slip of the rim from which `state` is seen, along e_h and along e2.
+    /// The slip of the rim to which `state` refers, along e_h and along e2, in sqrt(g R).
     pub slip: [f64; 2],
     /// Energy lost to the impact, in M g R.
     pub lost: f64,

@@ -280,7 +280,7 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         Lossy { rates, losses: self.losses.map(Dual::constant) }
     }
 
-    /// The response in a state in which dry friction holds nothing.
+    /// The accelerations and forces in a state in which dry friction holds no part of the motion at rest.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)

@@ -30,8 +30,8 @@ pub struct MotionStarts<'a> {
     pub losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
     pub aloft: Option<[&'a [f64]; 2]>,
-    /// The circles of bodies that have several, from the lower end up, of which i1 and i3 alone are told by `bodies`: n
-    /// rows or a single one, or none if no body has several.
+    /// The circles of bodies that have several, from the lower end up; of such a body `bodies` has only i1 and i3. There are
+    /// n rows or a single one, or none if no body has several circles.
     pub circles: &'a [CirclesOfRow],
 }
 
@@ -311,13 +311,13 @@ pub struct MotionOutput<'a> {
     pub states: Option<[&'a mut [f64]; 4]>,
     /// The slips along the lean and across it, in the same layout as `states`.
     pub slips: Option<[&'a mut [f64]; 2]>,
-    /// The rim from which these states are seen, 0 or 1, in the same layout; only for motions with a restitution.
+    /// The rim to which these states refer, 0 or 1, in the same layout; only for motions with a restitution.
     pub rims: Option<&'a mut [f64]>,
-    /// theta, w1, w2, w3 at the last time, or at the end.
+    /// theta, w1, w2, w3 at the last time, or at the end of a motion that ends before the last time.
     pub last: Option<[&'a mut [f64]; 4]>,
-    /// The slips at the last time, or at the end.
+    /// The slips at the last time, or at the end of a motion that ends before the last time.
     pub last_slip: Option<[&'a mut [f64]; 2]>,
-    /// The rims from which the last states are seen.
+    /// The rims to which the last states refer.
     pub last_rim: Option<&'a mut [f64]>,
     /// The summaries, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],

@@ -102,7 +102,7 @@ pub struct Event<S = State> {
     pub time: f64,
     /// The state at the event.
     pub state: S,
-    /// The rim from which the state is seen, as in [`Path::rims`].
+    /// The rim to which the state refers, as in [`Path::rims`].
     pub rim: u8,
 }
 
@@ -326,7 +326,7 @@ pub struct Phase<S = State> {
     pub slip: [f64; 2],
     /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
     pub aloft: [f64; 2],
-    /// The rim from which the state is seen, as in [`Path::rims`].
+    /// The rim to which the state refers, as in [`Path::rims`].
     pub rim: u8,
 }
 
@@ -338,14 +338,14 @@ pub struct Phase<S = State> {
 pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is not the one from which the initial state was seen; for a body of several circles,
-    /// whether it is not the lowest one.
+    /// Whether the rim that lands is not the one to which the initial state refers; for a body of several circles, whether
+    /// the circle that lands is not the lowest one.
     pub other: bool,
     /// The rim that lands, as in [`Path::rims`].
     pub rim: u8,
     /// The motion of the contact point in the impact.
     pub hit: Hit,
-    /// The state before and after the impact, as seen from the rim that lands.
+    /// The state before and after the impact; both refer to the rim that lands.
     pub states: [S; 2],
     /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
     pub velocities: [[f64; 3]; 2],
@@ -392,9 +392,10 @@ pub struct Path<S = State> {
     /// empty if the motion ends where the body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
-    /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
-    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0. For a
-    /// body of several circles always the number of the circle that carries, from the lower end up, from which all is told.
+    /// The rim to which state, slip, pose and force at each time refer: 0 is the rim to which the initial state refers, and
+    /// 1 the other one. Empty if the motion ends where the body leaves the table: the rim is then always 0. For a body of
+    /// several circles, the number of the circle on which it stands, from the lower end up; its states always refer to its
+    /// lower end.
     pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],

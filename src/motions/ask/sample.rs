@@ -43,8 +43,8 @@ pub struct Sample<S: Moving = State> {
     pub aloft: [f64; 2],
     /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
     pub other_rim: Option<[f64; 5]>,
-    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one. For a
-    /// body of several circles, which is always told from its lower end, the number of the circle that carries.
+    /// The rim to which state, slip, pose and force refer: 0 is that of the initial state, and 1 the other one. For a body
+    /// of several circles, the number of the circle on which it stands; its state always refers to its lower end.
     pub rim: u8,
     smooth: bool,
     /// Whether the body is told from its lower end, whichever circle carries.
