@@ -78,7 +78,9 @@ pub enum Error {
         theta: f64,
     },
     /// No contact force, or more than one, obeys Coulomb's law in this state.
-    #[error("mu = {mu:?}: no unique contact force (Painleve) at theta = {theta:?}; the force is unique below mu_P(theta) = {limit:?}")]
+    #[error(
+        "mu = {mu:?}: no unique contact force (Painleve) at theta = {theta:?}; the force is unique below mu_P(theta) = {limit:?}"
+    )]
     Painleve {
         /// The coefficient of friction.
         mu: f64,

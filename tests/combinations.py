@@ -237,6 +237,10 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     return "\n".join([total, "", *lines, ""])
 
 
+#: the sentence before each table
+_KEY = 'Each cell is a loss law with a contact: "yes" if it is computed, or the letter of the reason why it is refused.'
+
+
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:
     """Losses by tables for a body and a restitution, where one motion and many agree."""
     head = "| losses (row) and contact (column) | " + " | ".join(TABLES) + " |"
@@ -259,7 +263,7 @@ def tables(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
         for e in dict.fromkeys(e for _, e in keys):
             alike[tuple(body for body, other in keys if other == e)].append(e)
         heads = [f"{', '.join(names)} with restitution {' or '.join(es)}" for names, es in alike.items()]
-        text.append(f"## {'; '.join(heads)}\n\n{table}")
+        text.append(f"## {'; '.join(heads)}\n\n{_KEY}\n\n{table}")
     return "\n".join(text)
 
 

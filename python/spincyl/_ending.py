@@ -62,7 +62,7 @@ class RestsOn(IntEnum):
     Attributes
     ----------
     NONE
-        The body is not at rest, or the motion was not computed to its rest.
+        The body is not at rest, or the motion ended before the body came to rest.
     FACE
         Its first face, at the rim to which the initial state refers, or at the lower end of a body of
         several circles; `Motion.axis_up` is then 1. The code is the same if the motion ended with
@@ -152,16 +152,16 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How much of the largest dry friction a body at rest needs, as a share of it.
+    """How much of the largest possible dry friction holds a body at rest, as a share from 0 to 1.
 
     Attributes
     ----------
     share : float
-        What the body needs, as a share of what holds it, from 0 (nothing) to 1 (the limit). For a slip and
-        for tipping it is tan(slope) over that of `Body.slip_slope` and `Body.tip_slope`, and for rolling the
-        couple over the largest one of the dry losses.
+        The largest of three ratios, from 0 (nothing has to hold the body) to 1 (it is about to move): for a
+        slip tan(slope) over the tangent of `Body.slip_slope`, for tipping tan(slope) over the tangent of
+        `Body.tip_slope`, and for rolling the needed couple over the largest couple of the dry losses.
     lets_go : {"slips", "rolls", "tips"}
-        What the body does where the share exceeds 1: the way out of its rest that has the largest share.
+        What the body does if `share` exceeds 1: the motion that has the largest of the three ratios.
     """
 
     share: float

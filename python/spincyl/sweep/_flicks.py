@@ -33,7 +33,7 @@ class Outcome(IntEnum):
     SETTLES
         At the last time the tube stands on one rim and precesses.
     LIES_DOWN
-        The rim that rose has landed again, or it never rose.
+        The rim that rose has landed again, or no rim rose.
     LIFTS_OFF
         The normal force vanishes. With ``restitution=``: the tube is in the air at the last time.
     HOPS_AND_SETTLES

@@ -56,7 +56,7 @@ pub enum Outcome {
     Lies,
     /// The body rises at once on the rim on which it moved before.
     Rises,
-    /// The body continues on the other rim; state and slip are given as seen from there.
+    /// The body continues on the other rim, to which state and slip refer.
     Changes,
 }
 
@@ -295,7 +295,7 @@ fn seen_from_next(y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
     (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
 }
 
-/// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
+/// The state and the slip of a body on its side, referred to its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {

@@ -21,7 +21,7 @@ pub struct MotionStarts<'a> {
     pub states: [&'a [f64]; 4],
     /// The slope of the table and phi at the start; `None` on a level table.
     pub slopes: Option<[&'a [f64]; 2]>,
-    /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip, and that the
+    /// The slip along e_h and along e2, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
     pub slips: Option<[&'a [f64]; 2]>,
     /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
@@ -309,7 +309,7 @@ impl Summary {
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
     pub states: Option<[&'a mut [f64]; 4]>,
-    /// The slips along the lean and across it, in the same layout as `states`.
+    /// The slips along e_h and along e2, in the same layout as `states`.
     pub slips: Option<[&'a mut [f64]; 2]>,
     /// The rim to which these states refer, 0 or 1, in the same layout; only for motions with a restitution.
     pub rims: Option<&'a mut [f64]>,
