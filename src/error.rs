@@ -47,7 +47,7 @@ pub enum Error {
     },
     /// Double precision cannot tell whether the inclination is that of a steady state or forbidden.
     #[error(
-        "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
+        "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide whether it has a steady state"
     )]
     Undetermined {
         /// The given inclination, in radians.

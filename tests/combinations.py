@@ -76,13 +76,13 @@ class Reason(NamedTuple):
 
 REASONS = [
     Reason("A", r"a flat face above the table", True,
-           "These laws are those of air below a flat face, and a ball has none."),
+           "The loss law is that of air below a flat face, and a ball has no face."),
     Reason("B", r"acts along a rim, which a stone", True,
-           "These laws act along a rim, and a stone has none."),
+           "The loss law acts along a rim, and a stone has no rim."),
     Reason("C", r"together with drilling friction, which gives the same couple", True,
            "The friction of a patch already resists drilling; the law would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
-           "A couple of your own is a function of the inclination of an axis, and a stone has none."),
+           "A couple of your own is a function of the inclination of an axis, and a stone has no axis."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"

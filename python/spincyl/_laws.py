@@ -43,7 +43,7 @@ class Region(IntEnum):
     FORBIDDEN
         No steady state: theta is between theta_balance and theta_limit.
     UNDETERMINED
-        Too close to theta_balance or theta_limit for double precision to decide.
+        Theta is too close to theta_balance or theta_limit to decide in double precision if a state exists.
     UNSTABLE
         Unstable on a smooth table and in rolling.
     STABLE_ROLLING

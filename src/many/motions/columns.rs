@@ -38,7 +38,7 @@ pub struct MotionStarts<'a> {
 /// Radius, height above the centre of mass, and fillet of the circles of a body; a radius of NaN means no such circle.
 pub type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 
-/// The columns of bodies and their initial states, in pairs.
+/// The columns of bodies and initial states, collected from pairs of a body and its initial state.
 ///
 /// ```
 /// use spincyl::ensemble::MotionColumns;

@@ -205,8 +205,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if !body.lands_on_rims() {
-            let expected =
-                "none: a part of this body other than a rim may land, and the shape of that part is unknown";
+            let expected = "none: a part of this body other than a rim may land, and its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
         let (angle, landings) = (start.state.theta.sin_cos(), body.landings());
