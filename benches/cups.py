@@ -98,7 +98,7 @@ def table():
     """Rows of the table."""
     head = [
         "body",
-        "its shape in MuJoCo",
+        "shape in MuJoCo",
         "radius of the circle in MuJoCo",
         "exact radius",
         "time of a turn in MuJoCo",

@@ -125,13 +125,13 @@ def table():
     """Rows of the table."""
     yield [
         "scene",
-        "its shape in MuJoCo",
+        "shape in MuJoCo, or spincyl",
         "time step",
         "largest error of the centre",
         "largest error of the turn",
         "largest error of the inclination",
-        "comes to rest at, in MuJoCo",
-        "comes to rest at, exactly",
+        "time of rest in MuJoCo",
+        "exact time of rest",
         "processor time",
     ]
     yield ["---"] * 9

@@ -94,13 +94,13 @@ def simulated(data, rate, box):
 
 
 def table():
-    yield ["scene", "friction", *(f"{rate / 1000:g} kHz" for rate in RATES)]
+    yield ["scene", "limit of the friction", *(f"error at {rate / 1000:g} kHz" for rate in RATES)]
     yield ["---"] * (2 + len(RATES))
     for name, scene in scenes():
         for box in (False, True):
             off = [scene.compare(*simulated(scene.data, rate, box)) for rate in RATES]
             cells = [f"{1e3 * x.position.max():.2g} mm" for x in off]
-            yield [name, "a box" if box else "a cone", *cells]
+            yield [name, "a box (one for each axis)" if box else "a cone", *cells]
 
 
 if __name__ == "__main__":

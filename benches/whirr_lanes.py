@@ -71,7 +71,7 @@ def main():
     )
     print(
         "| loss law | time per whirr (us) | time over that of the fastest law |"
-        " number of whirrs by their ending | largest estimated error | largest true error |\n"
+        " ending of the whirrs (`Ending`) and their number | largest estimated error | largest true error |\n"
         + "| --- " * 6
         + "|"
     )

@@ -54,7 +54,7 @@ def scenes(seconds: float) -> dict[str, sc.Scene]:
             scale=sc.Scale(7.9375e-3, mass=0.02),
         ),
         "Euler's disk": made(disk, disk.steady(0.3).kicked(0.02)),
-        "the same, rounded": made(rounded, rounded.steady(0.3).kicked(0.02)),
+        "Euler's disk, rounded": made(rounded, rounded.steady(0.3).kicked(0.02)),
         "Hurricane balls": made(
             balls,
             balls.steady(np.radians(78)).kicked(0.02),

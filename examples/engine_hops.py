@@ -5,7 +5,7 @@
 
 In five scenes of half a second the body slips, flies, strikes the table and lies on its side. MuJoCo has a stiff contact,
 whose damping follows from the coefficient of restitution, and three lengths of the step. The table has the largest
-deviations of the centre of mass, before the first blow and in all, and of the inclination.
+deviations of the centre of mass, before the first impact and in all, and of the inclination.
 """
 
 import argparse
@@ -93,7 +93,7 @@ def rows(name: str, scene: sc.Scene) -> list[list[str]]:
     m.at(np.linspace(m.t[0], m.t[-1], 2001))
     took = time.process_time() - began
     error = f"estimated error {scene.data['error']['position'] * 1000:.0e} mm"
-    solver = f"spincyl, {len(blows)} blows, {error}"
+    solver = f"spincyl, {len(blows)} impacts, {error}"
     found.append([name, solver, "", "", "", f"{1e3 * took:.1f} ms"])
     return found
 

@@ -47,7 +47,7 @@ pub enum Error {
     },
     /// Double precision cannot tell whether the inclination is that of a steady state or forbidden.
     #[error(
-        "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide"
+        "theta = {theta:?} is too close to theta_balance = {theta_balance:?} or theta_limit = {theta_limit:?} to decide whether it has a steady state"
     )]
     Undetermined {
         /// The given inclination, in radians.
@@ -78,7 +78,9 @@ pub enum Error {
         theta: f64,
     },
     /// No contact force, or more than one, obeys Coulomb's law in this state.
-    #[error("mu = {mu:?}: no unique contact force (Painleve) at theta = {theta:?}; mu_P(theta) = {limit:?}")]
+    #[error(
+        "mu = {mu:?}: no unique contact force (Painleve) at theta = {theta:?}; the force is unique below mu_P(theta) = {limit:?}"
+    )]
     Painleve {
         /// The coefficient of friction.
         mu: f64,
@@ -130,9 +132,9 @@ pub enum Error {
         /// The inclination at that time, in radians.
         theta: f64,
     },
-    /// Whether a body with this spin turns over or rises cannot be told from its motion.
+    /// The error of the motion is too large to decide whether a body with this spin turns over or rises.
     #[error(
-        "spin = {spin:?}: whether the body turns over is unknown, for the error of its motion is {error:.1e}"
+        "spin = {spin:?}: whether the body turns over is unknown: the estimated error of its motion is {error:.1e}"
     )]
     Undecided {
         /// The spin, as in the result of the search.

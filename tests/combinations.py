@@ -76,13 +76,13 @@ class Reason(NamedTuple):
 
 REASONS = [
     Reason("A", r"a flat face above the table", True,
-           "These laws are those of air below a flat face, and a ball has none."),
+           "The loss law is that of air below a flat face, and a ball has no face."),
     Reason("B", r"acts along a rim, which a stone", True,
-           "These laws act along a rim, and a stone has none."),
+           "The loss law acts along a rim, and a stone has no rim."),
     Reason("C", r"together with drilling friction, which gives the same couple", True,
            "The friction of a patch already resists drilling; the law would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
-           "A couple of your own is a function of the inclination of an axis, and a stone has none."),
+           "A couple of your own is a function of the inclination of an axis, and a stone has no axis."),
 ]  # fmt: skip
 #: The refusal of a body in the air whose outline is not known.
 SHAPE = r"^theta_end = .* its shape is unknown"
@@ -225,7 +225,7 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     refused = [letter for letter in of.values() if letter not in ("", "*")]
     excluded = sum(letter in by_physics for letter in refused)
     total = (
-        f"Of {len(of):,} combinations {len(of) - len(refused):,} are followed and {len(refused):,} refused"
+        f"Of {len(of):,} combinations {len(of) - len(refused):,} are computed and {len(refused):,} refused"
     )
     if excluded == len(refused):
         total += ", because physics does not\ndefine them."
@@ -237,13 +237,18 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     return "\n".join([total, "", *lines, ""])
 
 
+#: the sentence before each table
+_KEY = 'Each cell is a loss law with a contact: "yes" if it is computed, or the letter of the reason why it is refused.'
+
+
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:
     """Losses by tables for a body and a restitution, where one motion and many agree."""
-    lines = ["| losses; contact: | " + " | ".join(TABLES) + " |", "| --- |" + " --- |" * len(TABLES)]
+    head = "| losses (row) and contact (column) | " + " | ".join(TABLES) + " |"
+    lines = [head, "| --- |" + " --- |" * len(TABLES)]
     for law in LOSSES:
         both = [{of[body, table, law, e, way] for way in WAYS} for table in TABLES]
-        row = [" or ".join(sorted({"": "yes", "*": "yes*"}.get(x, x) for x in some)) for some in both]
-        lines.append(f"| {law} | " + " | ".join(row) + " |")
+        row = [" or ".join(sorted({"": "yes", "*": "on the table"}.get(x, x) for x in some)) for some in both]
+        lines.append(f"| {'no losses' if law == 'none' else law} | " + " | ".join(row) + " |")
     return "\n".join([*lines, ""])
 
 
@@ -257,8 +262,8 @@ def tables(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
         alike = collections.defaultdict(list)
         for e in dict.fromkeys(e for _, e in keys):
             alike[tuple(body for body, other in keys if other == e)].append(e)
-        heads = [f"{', '.join(names)}; restitution {' or '.join(es)}" for names, es in alike.items()]
-        text.append(f"## {'; '.join(heads)}\n\n{table}")
+        heads = [f"{', '.join(names)} with restitution {' or '.join(es)}" for names, es in alike.items()]
+        text.append(f"## {'; '.join(heads)}\n\n{_KEY}\n\n{table}")
     return "\n".join(text)
 
 

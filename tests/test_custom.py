@@ -325,7 +325,7 @@ def test_a_result_does_not_contain_a_law_of_your_own():
     pytest.importorskip("dask")
     found = sc.sweep.roll(COIN, START, 1.0, losses=CUBIC)
     with pytest.raises(
-        ValueError, match="rows: a result does not contain a law of your own, losses = custom.Couple"
+        ValueError, match="rows: a saved result cannot contain a law of your own: losses = custom.Couple"
     ):
         sc.sweep.inputs(found)
     slides = sc.State(0.5, 0.0, 0.0, 3.0, slip=(0.1, 0.0))

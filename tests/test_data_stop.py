@@ -418,7 +418,7 @@ def test_times_of_several_angles_may_come_in_a_table_in_columns_or_one_by_one():
     assert of_rows.of("rolling", sc.loss.ViscousContour).centre == "rolling"
     with pytest.raises(KeyError, match="'rest' was not fitted with AirFilm"):
         of_rows.of("rest", sc.loss.AirFilm)
-    with pytest.raises(TypeError, match="^seconds: expected none beside a table"):
+    with pytest.raises(TypeError, match="^seconds: leave it out if from_ is a table"):
         sc.data.fit_stop(COIN, law, columns, rows)
     with pytest.raises(TypeError, match="^seconds: expected the measured times"):
         sc.data.fit_stop(COIN, law, angles)

@@ -42,7 +42,7 @@ def test_energy_that_newtons_law_gives_is_told_once_and_counted():
     # The slip of its edge stops, so that the table pushes harder in restitution than in compression.
     drum, contact = sc.Body.solid(1.0), sc.Coulomb(0.6)
     state = sc.State(1.4, 0.0, 0.0, 0.0, slip=(-0.8, 0.0), height=0.0, lift=-1.0)
-    with pytest.warns(sc.GainWarning, match=r"Newton\(1.0\): impacts have gained"):
+    with pytest.warns(sc.GainWarning, match=r"Newton\(1.0\): impacts have added"):
         m = sc.roll(drum, state, [0.0, 0.01], contact=contact, restitution=sc.Newton(1.0))
     hit = m.impacts[0]
     assert hit.gained == -hit.lost > 0.01

@@ -43,17 +43,17 @@ KEPT, NARROW = ROOT / "target" / "peers.json", ROOT / "target" / "peers-narrow.j
 HEAD = (
     "job",
     "largest error allowed",
-    "spincyl, time of one",
-    "spincyl without AVX-512, time of one",
-    "fastest other program, time of one",
-    "which program",
-    "spincyl: times as fast",
-    "without AVX-512: times as fast",
+    "time in spincyl",
+    "time in spincyl without AVX-512",
+    "time in the fastest other program",
+    "fastest other program",
+    "spincyl is so many times as fast",
+    "without AVX-512 so many times as fast",
 )
 # the rows in the README: the best case, the general one, and slips and losses, whoever is faster
 QUOTED = (
-    ("near-steady", 1e-6),
-    ("near-steady", 1e-12),
+    ("small nutation", 1e-6),
+    ("small nutation", 1e-12),
     ("very wide", 1e-12),
     ("random starts", 1e-6),
     ("random starts", 1e-10),

@@ -12,7 +12,11 @@ from scene import T, coefficients, ensemble, errors
 import spincyl as sc
 
 EVERY = 64
-KICKS = {0.05: "near-steady, kick 0.05", 0.4: "wide, kick 0.4", 0.8: "very wide, kick 0.8"}
+KICKS = {
+    0.05: "small nutation, kick 0.05",
+    0.4: "wide nutation, kick 0.4",
+    0.8: "very wide nutation, kick 0.8",
+}
 TOLERANCES = (1e-3, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13)
 
 
@@ -121,8 +125,8 @@ def measure(quick):
         (
             "set of motions",
             "tolerance",
-            "share in lanes",
-            "share alone",
+            "share computed eight at a time",
+            "share computed one at a time",
             "share by RK4",
             "99 % of true errors are below",
             "largest true error",

@@ -357,8 +357,8 @@ def main():
     )
     print(f"{np.abs(truth[at] - wider).max():.1e} (t, theta, w1, w2, w3, heat)")
     print(
-        "\n| program | tolerance | us a launch | steps per launch | time per step (ns) | me"
-        "dian error | 99 % of errors are below | max error up to 1e-3 | launches with an error above 1e-3 | launches with another ending |"
+        "\n| program | tolerance | time per launch (us) | steps per launch | time per step (ns) | me"
+        "dian error | 99 % of errors are below | largest error of those below 1e-3 | launches with an error above 1e-3 | launches with another ending |"
     )
     print("| --- " * 10 + "|")
 
@@ -414,8 +414,8 @@ def main():
 
     print("\nOne launch, w1 = 3, launch number 1.3, mu = 0.3:\n")
     print(
-        "| program | tolerance | us for the launch | steps | time per step (ns) | median "
-        "error | 99 % of errors are below | max error up to 1e-3 | launches with an error above 1e-3 | launches with another ending |"
+        "| program | tolerance | time of the launch (us) | steps | time per step (ns) | median "
+        "error | 99 % of errors are below | largest error of those below 1e-3 | launches with an error above 1e-3 | launches with another ending |"
     )
     print("| --- " * 10 + "|")
     state, slip, mu = launched(3.0, 1.3, 0.3)

@@ -181,8 +181,8 @@ def main():
             found[k] = job(state, eps) if name == "spincyl" else job(first, eps)
             seconds[k] = min(seconds[k], time.process_time() - start)
     print(
-        "\n| program | tolerance | us a whirr | steps per whirr | median error | 99 % "
-        "of errors are below | max error | largest ratio of true to estimated error | whirrs with another ending |"
+        "\n| program | tolerance | time per whirr (us) | steps per whirr | median error | 99 % "
+        "of errors are below | largest error | largest ratio of true to estimated error | whirrs with another ending |"
     )
     print("| --- " * 9 + "|")
     for (name, tol, _), spent, told in zip(jobs, seconds, found, strict=True):

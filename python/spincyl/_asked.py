@@ -243,6 +243,6 @@ def on_table(asked: Asked, table: "Table") -> Asked:
         if value is not None:
             raise ValueError(
                 f"{name} = {value!r} cannot be combined with a table that is tilted or turns:"
-                " its motions take steps within tol="
+                " its motions are integrated with steps within tol="
             )
     return asked._replace(table=table, want=asked.want | {"pose"})

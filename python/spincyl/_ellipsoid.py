@@ -300,8 +300,8 @@ class Ellipsoid(StoneStarts):
         units = units[~np.isnan(units)]
         if units.size != 1:
             raise ValueError(
-                f"radius: expected stones of one size, not {units.size}, since a family has one scale;"
-                " measure each stone by itself"
+                f"radius: expected stones of one size, not of {units.size} sizes, since a family has one"
+                " scale; measure each stone by itself"
             )
         return float(units[0])
 

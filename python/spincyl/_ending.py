@@ -34,8 +34,8 @@ class Ending(IntEnum):
     PAINLEVE
         The law of friction allows no contact force, or more than one.
     STOPS
-        The body has come to rest on its face, or in a motion with losses, and dry friction holds it;
-        `Motion.held` is the share of the limit at which it does.
+        The body has come to rest, on its face or in a motion with losses, and dry friction holds it there.
+        `Motion.held` is the share of the largest dry friction that this takes.
     LANDING
         The law of friction allows no outcome of a landing on both rims, or more than one.
     BOUNDED
@@ -62,11 +62,11 @@ class RestsOn(IntEnum):
     Attributes
     ----------
     NONE
-        The body is not at rest, or the motion was not computed to its rest.
+        The body is not at rest, or the motion ended before the body came to rest.
     FACE
-        Its first face, at the rim from which the initial state is seen, or at the lower end of a body of
-        several circles; `Motion.axis_up` is then 1. It is the same face if the motion ended with
-        `Ending.FACE`, and the body goes on to spin or to bounce on it.
+        Its first face, at the rim to which the initial state refers, or at the lower end of a body of
+        several circles; `Motion.axis_up` is then 1. The code is the same if the motion ended with
+        `Ending.FACE`, after which the body still spins or bounces on that face.
     OTHER_FACE
         The face at its other end; `Motion.axis_up` is then -1.
     SIDE
@@ -141,7 +141,7 @@ class Event(NamedTuple):
     state : State or EllipsoidState
         State at that time, in natural units.
     rim : str
-        Rim from which the state is seen: "first" is that of the initial state, "other" the other one. For a
+        Rim to which the state refers: "first" is that of the initial state, "other" the other one. For a
         body of several circles see `Phase.rim`.
     """
 
@@ -152,16 +152,16 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Share of its limit with which dry friction holds a body at rest.
+    """How much of the largest possible dry friction holds a body at rest, as a share from 0 to 1.
 
     Attributes
     ----------
     share : float
-        What the body needs, as a share of what holds it, from 0 (nothing) to 1 (the limit). For a slip and
-        for tipping it is tan(slope) over that of `Body.slip_slope` and `Body.tip_slope`, and for rolling the
-        couple over the largest one of the dry losses.
+        The largest of three ratios, from 0 (nothing has to hold the body) to 1 (it is about to move): for a
+        slip tan(slope) over the tangent of `Body.slip_slope`, for tipping tan(slope) over the tangent of
+        `Body.tip_slope`, and for rolling the needed couple over the largest couple of the dry losses.
     lets_go : {"slips", "rolls", "tips"}
-        What the body does where the share exceeds 1: the way out of its rest that has the largest share.
+        What the body does if `share` exceeds 1: the motion that has the largest of the three ratios.
     """
 
     share: float

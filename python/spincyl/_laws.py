@@ -43,7 +43,7 @@ class Region(IntEnum):
     FORBIDDEN
         No steady state: theta is between theta_balance and theta_limit.
     UNDETERMINED
-        Too close to theta_balance or theta_limit for double precision to decide.
+        Theta is too close to theta_balance or theta_limit to decide in double precision if a state exists.
     UNSTABLE
         Unstable on a smooth table and in rolling.
     STABLE_ROLLING
@@ -75,7 +75,7 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = "stable() is for a body on one point of its rim, where this state is not steady: False"
+            why = "stable() is False: on one point of its rim, which it is for, the body is not steady here"
             warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 

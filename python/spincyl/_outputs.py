@@ -206,7 +206,7 @@ class Outputs(Hinting):
 
     @cached_property
     def held(self) -> Held | None:
-        """Share of its limit with which dry friction holds a body at rest; None unless the motion `STOPS`.
+        """Share of the largest dry friction that holds the body at rest; None unless the motion `STOPS`.
 
         The share is 0 on a level table, unless dry losses hold the body on its edge off its balance. It is
         None for a stone, for a law of your own, and on a table that turns.

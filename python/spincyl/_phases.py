@@ -53,9 +53,9 @@ class Phase(NamedTuple):
         State at that time, with its slip, in natural units; in the air also with its `height` and `lift`.
         A motion that starts from it continues this one.
     rim : str
-        Rim from which the state is seen: "first" is that of the initial state, "other" the other one. For a
-        body of several circles the circle that carries it: "first" is the lowest one of `Body.circles`,
-        "other" the next one, then "third" and so on.
+        Rim to which the state refers: "first" is that of the initial state, "other" the other one. For a
+        body of several circles, the circle on which the body stands: "first" is the lowest one of
+        `Body.circles`, "other" the next one, then "third" and so on.
     """
 
     time: float
@@ -83,8 +83,9 @@ class Impact(NamedTuple):
     kind : str
         What the contact point does during the impact. "slips": it slips to the end. "sticks": it stops.
         "slips on": it stops, then slips again. "smooth": there is no friction. "both rims": the other rim
-        lands without a bounce, and both rims touch the table. "creeps": on a patch of contact, what would
-        stick at a point follows the drilling. "turns back": the slip of a ball, by tangential restitution.
+        lands without a bounce, and both rims touch the table. "creeps": where a contact point would stick,
+        a patch of contact that drills slips slowly. "turns back": tangential restitution reverses the slip
+        of a ball.
     impulse : tuple of float
         Impulse of the table on the body along e_h, along e2 and upward, in M sqrt(g R) or N s; if both rims
         touch the table, the sum of their impulses. For a stone along x, y and z of the laboratory, as

@@ -293,8 +293,8 @@ def roll(
         warn(f"the motion is {m._doubt} (known_until); {why}", ErrorWarning)
     gained = sum(hit.gained for hit in m.impacts) if isinstance(restitution, Newton | Poisson) else 0.0
     if gained > _GAINED:
-        why = "which this law allows (Impact.gained tells how much in each)"
-        warn(f"{restitution!r}: impacts have gained {gained:.2g} of energy in all, {why}", GainWarning)
+        told = f"impacts have added {gained:.2g} {'M g R' if m.scale is None else 'J'} of energy to the body"
+        warn(f"{restitution!r}: {told}, as this law allows; see Impact.gained", GainWarning)
     if m.status == Ending.BOUNDED:
         warn(f"{given_up(m)} (Ending.BOUNDED)", RuntimeWarning)
     if m.rk4 is not None and m.rk4.coarse:

@@ -68,7 +68,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
 
     Events are ignored. In the real motion the other rim may land before the period is over (if theta_max
     exceeds pi/2), or the body may lift off; `roll` finds such events. A body of several circles swings on the
-    one that carries it, also beyond its `borders`.
+    circle on which it stands, also beyond the `borders` of that circle.
 
     Parameters
     ----------

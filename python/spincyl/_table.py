@@ -24,12 +24,12 @@ class Table(HintingFamily):
         In a sweep it may be an array.
     turning : float
         Rate at which the table turns about its normal through x = y = 0, counterclockwise as seen from
-        above, in sqrt(g/R); for `roll` only. Slips and the drilling are over the table; all else is told as
-        seen from the room. A face or two rims on this table end the motion.
+        above, in sqrt(g/R); for `roll` only. The slip and the drilling are relative to the table; all other
+        numbers are relative to the room. The motion ends when a face or two rims touch this table.
     phi0 : float
         Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
-        it may be an array. A stone, and its slip, are turned about z by this angle from where they are
-        without it (`EllipsoidState`).
+        it may be an array. A stone and its slip are rotated about z by this angle, from the directions that
+        `EllipsoidState` describes.
     place : pair of float
         Initial contact point (x, y), in R.
 

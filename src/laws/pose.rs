@@ -57,7 +57,7 @@ impl Angle {
         Self { turns: self.turns + turns, rest: (self.rest - turns * TAU) - turns * TAU_LO }
     }
 
-    /// The whole angle in radians, rounded.
+    /// The angle with its whole turns, in radians, rounded to a double.
     pub fn radians(&self) -> f64 {
         self.turns.mul_add(TAU, self.rest + self.turns * TAU_LO)
     }

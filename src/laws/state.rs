@@ -100,8 +100,8 @@ impl State {
         self.w3 - self.w1 * (self.theta.cos() / self.theta.sin())
     }
 
-    /// The cosine of the angle from the vertical to the axis that points from rim 0 into the body, where the state is seen
-    /// from this rim: cos theta for rim 0, and -cos theta for rim 1, the other one.
+    /// The cosine of the angle from the vertical to the axis that points from rim 0 into the body, if the state refers to
+    /// `rim`: cos theta for rim 0, and -cos theta for rim 1, the other one.
     pub fn axis_up(&self, rim: u8) -> f64 {
         if rim == 0 { self.theta.cos() } else { -self.theta.cos() }
     }

@@ -104,7 +104,7 @@ pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) 
         )?;
         let alone = body.is_uniform_ball() || phi.cos().abs() < NO_COUPLE;
         if posture == Posture::Rolling && !alone {
-            let expected = "pi/2 or -pi/2 for a body on one circle, which falls over with another direction";
+            let expected = "pi/2 or -pi/2: with another direction a body on one circle falls over";
             return Err(Error::OutOfRange { name: "phi", value: phi, expected });
         }
         let (k, radius) = (body.i3(), body.shape().rim.radius((1.0, ell)));
@@ -153,8 +153,8 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     Ok([a, rim.height(flat)])
 }
 
-/// What a body at rest on a table needs, as a share of what holds it there, from slipping, rolling and tipping: the last two
-/// numbers are the slope and phi.
+/// What a body at rest on a table needs to be held, as a share of what friction, dry losses and its width can hold:
+/// three shares, against slipping, rolling and tipping. The last two arguments are the slope and phi.
 ///
 /// # Errors
 /// Those of [`slip_slope`], unless `mu` is infinite, and of [`tip_slope`].

@@ -31,9 +31,9 @@ pub struct StoneRow {
     /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and two
     /// numbers that are not used; None for those of `ask`.
     pub coefficients: Option<[f64; 3]>,
-    /// Its own losses, if any; None for those of `ask`.
+    /// The losses of this motion, if it has its own; None for those of `ask`.
     pub losses: Option<Losses>,
-    /// The slope of its table, and phi at the start; None for a level table.
+    /// The slope of the table, and phi at the start; None for a level table.
     pub slope: Option<[f64; 2]>,
     /// The height of the lowest point and its vertical velocity at the start; None on the table.
     pub aloft: Option<[f64; 2]>,

@@ -72,9 +72,9 @@ pub enum Doubt {
 pub struct Comparison {
     /// The deviations.
     pub rows: Vec<Deviation>,
-    /// A bound for the error of the known positions in metres: a smaller deviation is none.
+    /// A bound for the error of the known positions in metres. A smaller deviation is no error of the engine.
     pub position_error: f64,
-    /// The same for the known orientations, in radians.
+    /// A bound for the error of the known orientations, in radians.
     pub angle_error: f64,
     /// What may be wrong with the numbers.
     pub doubts: Vec<Doubt>,

@@ -28,7 +28,7 @@ pub struct Contents {
     pub start: SceneStart,
     /// The known answer.
     pub expected: Expected,
-    /// Bounds of its errors at any time.
+    /// Bounds of the errors of the known answer at any time.
     pub error: SceneErrors,
     /// What the answer is computed from, in natural units: with it the answer is known at any time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -347,29 +347,29 @@ pub struct SceneEnding {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneErrors {
-    /// Of the centre of mass.
+    /// Error of the position of the centre of mass, in metres.
     pub position: f64,
-    /// Of the angle between orientations.
+    /// Angle between the known and the true orientation, in radians.
     pub angle: f64,
-    /// Of the inclination.
+    /// Error of the inclination, in radians.
     pub theta: f64,
-    /// Of the angular velocity.
+    /// Error of the angular velocity, in rad/s.
     pub angular_velocity: f64,
-    /// Of the velocity of the centre of mass.
+    /// Error of the velocity of the centre of mass, in m/s.
     pub velocity: f64,
-    /// Of the energy.
+    /// Error of the energy, in joules.
     pub energy: f64,
-    /// Of the normal force; NaN if it is unknown.
+    /// Error of the normal force, in newtons; NaN if the force is unknown.
     #[serde(with = "null_number")]
     pub normal_force: f64,
-    /// Of the force of the table; NaN if it is unknown.
+    /// Error of the force of the table, in newtons; NaN if the force is unknown.
     #[serde(with = "null_number")]
     pub contact_force: f64,
-    /// Of the contact point.
+    /// Error of the position of the contact point, in metres.
     pub contact_point: f64,
-    /// Of the times of phases and impacts.
+    /// Error of the times of phases and impacts, in seconds.
     pub times_of_phases_and_impacts: f64,
-    /// Of the heat of slip and of the lost energies.
+    /// Error of the heat of slip and of the lost energies, in joules.
     pub heat_and_losses: f64,
     #[serde(rename = "is")]
     pub(super) explained: String,

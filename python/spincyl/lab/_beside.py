@@ -51,8 +51,8 @@ class FilmComparison(NamedTuple):
     residual : dict of ndarray, (n,)
         Measured minus computed values, in the same units.
     away : dict of ndarray, (n,)
-        Residuals in units of their standard errors. Those of theta are computed from its sine, the length of
-        the line, and so are known in frames in which the line is longer than the tube.
+        Residuals in units of their standard errors. The residuals of theta are computed from sin(theta), that
+        is, from the length of the line in the film, also in frames in which it is longer than the tube.
     chi2 : dict of float
         Mean of the squares of `away` for "theta", "precession" and "centre"; about 1 if film and motion
         agree. That of the centre is per degree of freedom, since its place is fitted.
@@ -117,7 +117,8 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
     errors = film.errors
     if film.t.size < _LEAST or not all((e[np.isfinite(e)] > 0).any() for e in errors.values()):
         raise ValueError(
-            f"theta: the marks of {film.t.size} frames do not give their errors; give from_above(mark_err=)"
+            f"theta: the errors of the marks cannot be estimated from {film.t.size} frames;"
+            " give from_above(mark_err=)"
         )
     if film.t[-1] < begin_of(motion, film):
         raise ValueError(f"theta: the film ends at {film.t[-1]:.4g} s, before the motion begins")

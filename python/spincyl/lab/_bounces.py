@@ -70,7 +70,7 @@ class Bounces(NamedTuple):
     t : ndarray, (n,)
         Times of the clicks that are bounces, in seconds.
     bounce : ndarray, (n,)
-        Number of each of these bounces, from 0; a number is skipped where a click was missed.
+        Number of the bounce at each time in `t`, from 0; a number is skipped where a click was missed.
     missed : ndarray
         Times of bounces that were not heard, between the first and the last click.
     extra : ndarray

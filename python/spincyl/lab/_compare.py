@@ -71,7 +71,8 @@ class Comparison(NamedTuple):
     unit : float
         Turns per second at the reduced rate 1; NaN unless `hertz` was given.
     away : ndarray, (n,)
-        Distance of each point from the steady states of the body as built, in its own errors, to first order.
+        Distance of each point from the steady states of the body as built, in units of the errors of the
+        point, to first order.
     hertz, hertz_err : ndarray, (n,)
         Measured turns per second and standard errors; NaN unless `hertz` was given.
     fitted : Body
@@ -349,8 +350,8 @@ def compare(
     if common > 0:
         if math.isinf(common) and both is None:
             raise ValueError(
-                "common = inf: these points cannot tell a factor of the rates from I1/I3; give the standard"
-                " error of the factor"
+                "common = inf: these points cannot separate a factor of the rates from I1/I3; give the"
+                " standard error of the factor"
             )
         free = both if both is not None and math.isinf(common) else curve.fit(("ratio", "factor"), common)
         if not known and not math.isinf(common) and free.chi2 > 0:

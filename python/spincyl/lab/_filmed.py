@@ -59,7 +59,7 @@ class Filmed(NamedTuple):
         Direction of the line from the second end of the tube to the first, as seen from above, in radians,
         unwrapped.
     line : ndarray, (n,)
-        Length of this line in the film, in metres.
+        Length of the line between both ends in each frame, in metres.
     hertz : float
         Turns per second, positive for both senses of rotation.
     hertz_err : float
@@ -73,7 +73,7 @@ class Filmed(NamedTuple):
     theta_err : float
         Standard error of `theta`.
     inclinations : ndarray, (k,)
-        Steady inclinations of the body at this rate, ascending.
+        Steady inclinations of the body at the measured rate, ascending.
     unseen : int
         Number of frames in which one of the ends was not tracked.
     aliases : ndarray, (m,)

@@ -156,7 +156,7 @@ def _robust_means(
 def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
     """Trials of a table that has a column of times for each inclination, whose name is the inclination."""
     if seconds is not None:
-        raise TypeError("seconds: expected none beside a table of times in from_")
+        raise TypeError("seconds: leave it out if from_ is a table, which has the times")
     texts: dict[str, Any] = getattr(table, "texts", {})
     if names is None and texts:
         names = next(iter(texts.values()))
@@ -192,7 +192,7 @@ def _angle_of_column(name: object, unit: str) -> float:
 def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
     """Trials of an inclination, or of one for each column or for each time."""
     if seconds is None:
-        raise TypeError("seconds: expected the measured times; only a table in from_ has its own")
+        raise TypeError("seconds: expected the measured times; leave it out only if from_ is a table")
     times = _seconds("seconds", seconds)
     theta = np.asarray(radians("from_", _each("from_", from_)), np.float64)
     errors = _angle_errors(from_err, theta.shape)

@@ -169,7 +169,8 @@ class Scene:
         found.__dict__["data"] = data
         told = data["expected"]
         if len(told["time"]) != motion.t.size:
-            raise ValueError(f"path = {str(path)!r}: its motion ends at another time: {motion.message}")
+            told = f"the motion, computed again, ends earlier or later than in the file: {motion.message}"
+            raise ValueError(f"path = {str(path)!r}: {told}")
         apart = found.compare(told["time"], told["position"], told["orientation"])
         most = data["error"]["position"] + apart.position_error, data["error"]["angle"] + apart.angle_error
         allowed = most[0] + _ROUNDING * units.radius, most[1] + _ROUNDING

@@ -105,7 +105,9 @@ def _finite_or_word(x: Any) -> float | str:
 def motion_of(data: dict[str, Any]) -> tuple[Motion, Scale]:
     """The motion of a scene at its times, with poses and forces, and its scale."""
     if "natural" not in data:
-        raise ValueError("path: expected a file with the key natural, from which the answer is computed")
+        raise ValueError(
+            "path: expected a file with the key 'natural', from which the motion is computed again"
+        )
     units, natural = data["scale"], data["natural"]
     scale = Scale(units["R"], mass=units["M"], gravity=units["g"])
     start, ask = natural["start"], natural["ask"]

@@ -44,9 +44,8 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
         raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
     for name in want:
         if name not in out:
-            raise ValueError(
-                f"out: expected an array named {name!r}, which want= contains; out has only {list(out)}"
-            )
+            there = f"out has only {list(out)}" if out else "out is empty"
+            raise ValueError(f"out: expected an array named {name!r}, which want= contains; {there}")
         if not hasattr(out[name], "__array__"):
             raise TypeError(f"out[{name!r}]: expected an array to fill, not {type(out[name]).__name__}")
     return {name: out[name] for name in want}

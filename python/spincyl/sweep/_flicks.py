@@ -31,15 +31,15 @@ class Outcome(IntEnum):
     NONE
         None of the outcomes below; the `status` of the motion gives the reason.
     SETTLES
-        At the last time the tube goes round on one rim.
+        At the last time the tube stands on one rim and precesses.
     LIES_DOWN
-        The rim that rose has landed again, or it never rose.
+        The rim that rose has landed again, or no rim rose.
     LIFTS_OFF
         The normal force vanishes. With ``restitution=``: the tube is in the air at the last time.
     HOPS_AND_SETTLES
-        The tube hops. At the last time it goes round on one rim.
+        The tube hops. At the last time the tube stands on one rim and precesses.
     HOPS_AND_LIES
-        The tube hops. At the last time it lies on its side.
+        The tube hops. At the last time the tube lies on its side.
     """
 
     NONE = 0

@@ -192,7 +192,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
         raise ValueError(f"rows: expected a result of sweep.roll, but {missing[0]!r} is missing")
     for name in ("contact", "losses"):
         if str(at.get(name, "")).startswith("custom."):
-            raise ValueError(f"rows: a result does not contain a law of your own, {name} = {at[name]}")
+            raise ValueError(f"rows: a saved result cannot contain a law of your own: {name} = {at[name]}")
     given: dict[str, Any] = {name: _input(rows[name]) for name in _UNITS if name in rows.coords}
     scale = Scale(*(at[name] for name in ("radius", "mass", "gravity"))) if "radius" in at else None
     known: Any = True if scale is None else scale

@@ -84,7 +84,8 @@ impl Body {
         let edges = points.iter().map(|[r, z]| Edge::of(*r, *z, 0.0)).collect();
         of_forms(&rises.map(piece).collect::<Vec<_>>(), edges).map_err(|error| match error {
             Error::OutOfRange { name: "parts" | "height", value, .. } => {
-                let expected = "an outline that rises from its lower end around a volume, near the height 0";
+                let expected =
+                    "an outline that rises from its lower end, encloses a volume, and is near the height 0";
                 Error::OutOfRange { name: "points", value, expected }
             }
             other => other,

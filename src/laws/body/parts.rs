@@ -96,9 +96,9 @@ pub enum Form {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct BodyPart {
-    /// Its form.
+    /// Form of the part.
     pub form: Form,
-    /// Its mass or density.
+    /// Mass or density of the part.
     pub amount: Amount,
 }
 
@@ -115,7 +115,7 @@ impl BodyPart {
 pub struct Assembled {
     /// The body, in natural units.
     pub body: Body,
-    /// Its mass, in the unit of the parts.
+    /// Mass of the body, in the unit of the parts.
     pub mass: f64,
     /// The unit of length R, the outer radius of the rim on which the body stands, in the unit of the parts; the largest
     /// outer radius if it stands on a tip.
@@ -395,7 +395,7 @@ pub(super) fn of_masses(
     }
     let (theta_end, _) = hull.after(rim, 0.0);
     if theta_end < LEAST_END {
-        let expected = "parts of which the next one lands at an inclination of at least 1e-6 radians";
+        let expected = "parts of which another one lands only at an inclination of 1e-6 radians or more";
         return Err(Error::OutOfRange { name: "parts", value: theta_end, expected });
     }
     let radius = match unit(&circles) {

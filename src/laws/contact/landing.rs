@@ -56,7 +56,7 @@ pub enum Outcome {
     Lies,
     /// The body rises at once on the rim on which it moved before.
     Rises,
-    /// The body continues on the other rim; state and slip are given as seen from there.
+    /// The body continues on the other rim, to which state and slip refer.
     Changes,
 }
 
@@ -66,9 +66,9 @@ pub enum Outcome {
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state as seen from the rim that carries the body; from the old rim if the body lies on both.
+    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the rim of before.
     pub state: State,
-    /// The slip of the rim from which `state` is seen, along e_h and along e2.
+    /// The slip of the rim to which `state` refers, along e_h and along e2, in sqrt(g R).
     pub slip: [f64; 2],
     /// Energy lost to the impact, in M g R.
     pub lost: f64,
@@ -295,7 +295,7 @@ fn seen_from_next(y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
     (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
 }
 
-/// The state and the slip of a body on its side as seen from its other rim, which then is the lower one.
+/// The state and the slip of a body on its side, referred to its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
 pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {

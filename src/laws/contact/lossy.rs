@@ -280,7 +280,7 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         Lossy { rates, losses: self.losses.map(Dual::constant) }
     }
 
-    /// The response in a state in which dry friction holds nothing.
+    /// The accelerations and forces in a state in which dry friction holds no part of the motion at rest.
     pub fn in_state(&self, y: &State) -> Acted<f64> {
         let angle = y.theta.sin_cos();
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
@@ -292,7 +292,7 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })
     }
 
-    /// The losses with a user-defined couple that is linear in the normal force about that of this state.
+    /// The losses with their user-defined couple, as a linear function of the normal force near its value in this state.
     pub fn linear(&self, y: &State) -> UnderCouple {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let seen = self.losses.seen(&self.rates.reduced().shape.rim, angle, w[0] / angle.0, w);

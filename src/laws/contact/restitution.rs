@@ -57,7 +57,7 @@ impl ImpactLaw {
         let dry = matches!(table, Table::Rubs(Friction::Coulomb { patch: 0.0, .. }));
         if matches!(self, Self::Walton { .. }) && !(ball && dry) {
             let expected =
-                "no tangential restitution but for a ball with i1 = i3 under Coulomb friction at a point";
+                "tangential restitution only for a ball with i1 = i3, with Coulomb friction and patch = 0";
             return Err(Error::OutOfRange { name: "tangential", value, expected });
         }
         Ok(())

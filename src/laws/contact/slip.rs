@@ -557,7 +557,7 @@ pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
-/// Horizontal velocity of the centre of a body that slips with u = (along the lean, across), in the same directions.
+/// Horizontal velocity of the centre of a body that slips with u = (along e_h, along e2), in the same directions.
 /// With u = 0 the contact point is at rest.
 pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
     Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
@@ -568,7 +568,7 @@ pub fn centre_rise(body: &Body, y: &State) -> f64 {
     body.shape().rim.lever(y.theta.sin_cos()) * y.w2
 }
 
-/// Kinetic and potential energy of a body that slips with u = (along the lean, across), in M g R.
+/// Kinetic and potential energy of a body that slips with u = (along e_h, along e2), in M g R.
 pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).energy(y, slip)
 }

@@ -36,7 +36,7 @@ pub struct DriftStarts<'a> {
 }
 
 impl<'a> DriftStarts<'a> {
-    /// Bodies whose centres move in this way, with these columns.
+    /// Drifts of the bodies, states and losses in these columns, with this motion of the centres.
     pub fn new(
         centre: Centre,
         bodies: [&'a [f64]; 6],

@@ -115,9 +115,9 @@ pub enum Question {
 /// Number of values that [`ask`] writes for each element.
 pub const WIDTH: usize = 5;
 
-/// Computes one quantity of many drifts: for each k that of the drift number `of[k]`, at the inclination or time `x[k]`.
-/// Writes [`WIDTH`] numbers for each k, with NaN where there is no value. Elements with the same drift should follow one another, so that
-/// the drift is computed only once.
+/// Computes one quantity of many drifts: for each index k the quantity of drift `of[k]`, at the inclination or time
+/// `x[k]`. Writes [`WIDTH`] numbers for each k, with NaN where there is no value. Elements with the same drift should follow
+/// one another, so that the drift is computed only once.
 ///
 /// # Errors
 /// `Memory` if the memory does not suffice.

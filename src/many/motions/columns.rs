@@ -21,7 +21,7 @@ pub struct MotionStarts<'a> {
     pub states: [&'a [f64]; 4],
     /// The slope of the table and phi at the start; `None` on a level table.
     pub slopes: Option<[&'a [f64]; 2]>,
-    /// The slip along the lean and across it, in sqrt(g R); `None` means that there is no slip, and that the
+    /// The slip along e_h and along e2, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
     pub slips: Option<[&'a [f64]; 2]>,
     /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
@@ -30,15 +30,15 @@ pub struct MotionStarts<'a> {
     pub losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
     pub aloft: Option<[&'a [f64]; 2]>,
-    /// The circles of bodies that have several, from the lower end up, of which i1 and i3 alone are told by `bodies`: n
-    /// rows or a single one, or none if no body has several.
+    /// The circles of bodies that have several, from the lower end up; of such a body `bodies` has only i1 and i3. There are
+    /// n rows or a single one, or none if no body has several circles.
     pub circles: &'a [CirclesOfRow],
 }
 
 /// Radius, height above the centre of mass, and fillet of the circles of a body; a radius of NaN means no such circle.
 pub type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 
-/// The columns of bodies and their initial states, in pairs.
+/// The columns of bodies and initial states, collected from pairs of a body and its initial state.
 ///
 /// ```
 /// use spincyl::ensemble::MotionColumns;
@@ -309,15 +309,15 @@ impl Summary {
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
     pub states: Option<[&'a mut [f64]; 4]>,
-    /// The slips along the lean and across it, in the same layout as `states`.
+    /// The slips along e_h and along e2, in the same layout as `states`.
     pub slips: Option<[&'a mut [f64]; 2]>,
-    /// The rim from which these states are seen, 0 or 1, in the same layout; only for motions with a restitution.
+    /// The rim to which these states refer, 0 or 1, in the same layout; only for motions with a restitution.
     pub rims: Option<&'a mut [f64]>,
-    /// theta, w1, w2, w3 at the last time, or at the end.
+    /// theta, w1, w2, w3 at the last time, or at the end of a motion that ends before the last time.
     pub last: Option<[&'a mut [f64]; 4]>,
-    /// The slips at the last time, or at the end.
+    /// The slips at the last time, or at the end of a motion that ends before the last time.
     pub last_slip: Option<[&'a mut [f64]; 2]>,
-    /// The rims from which the last states are seen.
+    /// The rims to which the last states refer.
     pub last_rim: Option<&'a mut [f64]>,
     /// The summaries, indexed by [`Summary`].
     pub summary: [Option<&'a mut [f64]>; SUMMARIES],

@@ -15,24 +15,24 @@
 use crate::laws::body::Body;
 use crate::motions::Motion;
 
-/// Bounds of the errors at any time of a motion.
+/// Upper bounds of the errors at any time of a motion, in natural units, or in SI for a measured body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Bounds {
-    /// Of every number of the states, of slips and of the times of phases and of the end.
+    /// Error of every number of the states, of slips, and of the times of phases and of the end.
     pub state: f64,
-    /// Of the centre of mass; NaN without poses, as those of orientation, velocities, force and energy.
+    /// Error of the position of the centre of mass, in R; NaN without poses, as are all errors below.
     pub position: f64,
-    /// Of the angle between orientations, in radians.
+    /// Angle between the computed and the true orientation, in radians.
     pub orientation: f64,
-    /// Of the velocity of the centre of mass.
+    /// Error of the velocity of the centre of mass, in sqrt(g R).
     pub velocity: f64,
-    /// Of the angular velocity along the axes of the laboratory.
+    /// Error of the angular velocity along the axes of the laboratory, in sqrt(g/R).
     pub angular_velocity: f64,
-    /// Of the force of the table along the axes of the laboratory; NaN without forces.
+    /// Error of the force of the table along the axes of the laboratory, in M g; NaN without forces, too.
     pub force: f64,
-    /// Of the energy.
+    /// Error of the energy, in M g R.
     pub energy: f64,
 }
 

@@ -198,7 +198,8 @@ impl Ask {
 pub struct Start<S = State> {
     /// The initial state.
     pub state: S,
-    /// The initial slip of the contact point along the lean and across it, in sqrt(g R); for a stone along x and y
+    /// The initial slip of the contact point along the horizontal vector e_h = cos(theta) e1 - sin(theta) e3 and along e2,
+    /// in sqrt(g R); for a stone along x and y
     /// ([`stone::roll`](super::stone::roll)).
     #[cfg_attr(feature = "serde", serde(default))]
     pub slip: [f64; 2],

@@ -29,8 +29,8 @@ coded! {
     pub enum RestsOn {
         /// The body is not at rest, or its motion was not computed to its rest.
         None = 0,
-        /// The face at the rim from which the initial state was seen, or at the lower end of a body of several circles: its
-        /// axis points up.
+        /// The face at the rim to which the initial state refers, or at the lower end of a body of several circles: the axis
+        /// of the body points up.
         Face = 1,
         /// The face at the other end: its axis points down.
         OtherFace = 2,

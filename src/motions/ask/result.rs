@@ -102,7 +102,7 @@ pub struct Event<S = State> {
     pub time: f64,
     /// The state at the event.
     pub state: S,
-    /// The rim from which the state is seen, as in [`Path::rims`].
+    /// The rim to which the state refers, as in [`Path::rims`].
     pub rim: u8,
 }
 
@@ -162,7 +162,7 @@ pub struct Motion<S: Moving = State> {
     /// that is interrupted only while its error is estimated has its own ending and this limit, and an infinite error.
     #[cfg_attr(feature = "serde", serde(default))]
     pub limit: Option<Limit>,
-    /// Slip, phases and lost energy, with a law of friction or for a body with losses.
+    /// Slip, phases and lost energy of a motion with a law of friction, with a restitution or with losses.
     pub path: Option<Box<Path<S>>>,
     /// Whether the table is smooth, so that the centre moves only up and down.
     pub(crate) smooth: bool,
@@ -322,11 +322,11 @@ pub struct Phase<S = State> {
     pub kind: Kind,
     /// The state at the beginning of the phase.
     pub state: S,
-    /// The slip at the beginning of the phase, along the lean and across it.
+    /// The slip at the beginning of the phase, along e_h and along e2.
     pub slip: [f64; 2],
     /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
     pub aloft: [f64; 2],
-    /// The rim from which the state is seen, as in [`Path::rims`].
+    /// The rim to which the state refers, as in [`Path::rims`].
     pub rim: u8,
 }
 
@@ -338,18 +338,18 @@ pub struct Phase<S = State> {
 pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is not the one from which the initial state was seen; for a body of several circles,
-    /// whether it is not the lowest one.
+    /// Whether the rim that lands is not the one to which the initial state refers; for a body of several circles, whether
+    /// the circle that lands is not the lowest one.
     pub other: bool,
     /// The rim that lands, as in [`Path::rims`].
     pub rim: u8,
     /// The motion of the contact point in the impact.
     pub hit: Hit,
-    /// The state before and after the impact, as seen from the rim that lands.
+    /// The state before and after the impact; both refer to the rim that lands.
     pub states: [S; 2],
-    /// The velocity of the lowest point of that rim before and after: along the lean, across it, and upwards.
+    /// The velocity of the lowest point of that rim before and after: along e_h, along e2, and upwards.
     pub velocities: [[f64; 3]; 2],
-    /// The impulses along the lean, across it, and upwards, in M sqrt(g R), summed over both rims if both receive an
+    /// The impulses along e_h, along e2, and upwards, in M sqrt(g R), summed over both rims if both receive an
     /// impulse.
     pub impulse: [f64; 3],
     /// The impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R); 0 for a point.
@@ -367,7 +367,7 @@ pub struct Strike<S = State> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Path<S = State> {
-    /// The slip at each time, along the lean and across it.
+    /// The slip at each time, along e_h and along e2.
     pub slip: Vec<[f64; 2]>,
     /// The heat of friction up to each time, in M g R, without the friction of impacts.
     pub dissipated: Vec<f64>,
@@ -388,13 +388,14 @@ pub struct Path<S = State> {
     pub aloft: Vec<[f64; 2]>,
     /// The impacts.
     pub impacts: Vec<Strike<S>>,
-    /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
+    /// Slip (along e_h, along e2) and force (N, along e2, along e_h) of the other rim at each time, NaN unless the body lies on both;
     /// empty if the motion ends where the body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<[f64; 5]>,
-    /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
-    /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0. For a
-    /// body of several circles always the number of the circle that carries, from the lower end up, from which all is told.
+    /// The rim to which state, slip, pose and force at each time refer: 0 is the rim to which the initial state refers, and
+    /// 1 the other one. Empty if the motion ends where the body leaves the table: the rim is then always 0. For a body of
+    /// several circles, the number of the circle on which it stands, from the lower end up; its states always refer to its
+    /// lower end.
     pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
     pub last_slip: [f64; 2],

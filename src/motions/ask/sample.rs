@@ -35,16 +35,16 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point, along the lean and across it, with a law of friction; for a stone along x and y.
+    /// The slip of the contact point, along e_h and along e2, with a law of friction; for a stone along x and y.
     pub slip: Option<[f64; 2]>,
     /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point and its vertical velocity.
     pub aloft: [f64; 2],
-    /// Slip and force (N, across the lean, along it) of the other rim of a body that lies on both.
+    /// Slip (along e_h, along e2) and force (N, along e2, along e_h) of the other rim of a body that lies on both.
     pub other_rim: Option<[f64; 5]>,
-    /// The rim from which state, slip, pose and force are seen: 0 is that of the initial state, and 1 the other one. For a
-    /// body of several circles, which is always told from its lower end, the number of the circle that carries.
+    /// The rim to which state, slip, pose and force refer: 0 is that of the initial state, and 1 the other one. For a body
+    /// of several circles, the number of the circle on which it stands; its state always refers to its lower end.
     pub rim: u8,
     smooth: bool,
     /// Whether the body is told from its lower end, whichever circle carries.

@@ -201,11 +201,11 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
         within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
         if ask.restitution.is_none() {
-            let expected = "None without a restitution, which a motion that starts in the air needs";
+            let expected = "None: a motion that starts in the air needs a restitution";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if !body.lands_on_rims() {
-            let expected = "none for a body of which another part than a rim may land: its shape is unknown";
+            let expected = "none: a part of this body other than a rim may land, and its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
         let (angle, landings) = (start.state.theta.sin_cos(), body.landings());

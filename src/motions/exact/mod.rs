@@ -177,7 +177,7 @@ pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
     check_speeds(y)?;
     within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: a kick that lets the body rise is a w2")?;
     let expected =
-        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point from which its state is told";
+        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point to which its state refers";
     within("w2", y.theta.cos() * y.w2, (f64::MIN, 0.0), expected).map(drop)
 }
 
@@ -189,7 +189,7 @@ pub(crate) fn check_in_air(body: &Body, y: &State) -> Result<(), Error> {
         let expected = "0 at theta = 0 or pi: give the horizontal part of the angular velocity as w2";
         within("w1", y.w1, (0.0, 0.0), expected)?;
         if body.is_ball() && y.w2 == 0.0 {
-            let expected = "a tilt of at least 1e-8, or a w2: a ball that lands on its pole stands there or begins to fall; start it at theta = 1e-6";
+            let expected = "an inclination of at least 1e-8, or w2 other than 0: a ball that lands on its pole stands there or begins to fall; start it at theta = 1e-6";
             return Err(Error::OutOfRange { name: "theta", value: y.theta, expected });
         }
     }

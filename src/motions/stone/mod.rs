@@ -55,7 +55,7 @@ pub(crate) fn check_stone(
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g a)")?;
         if ask.restitution.is_none() {
-            let expected = "None without a restitution, which a motion that starts in the air needs";
+            let expected = "None: a motion that starts in the air needs a restitution";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
     }
@@ -63,7 +63,7 @@ pub(crate) fn check_stone(
     let fine = check_flow(ask)?;
     if let Some(&value) = times.last().filter(|t| **t < time) {
         let expected =
-            "times from the start on: the past of a stone that rolls is its future with w turned round";
+            "times from the start on: the past of a rolling stone is its future with the opposite w";
         return Err(Error::OutOfRange { name: "t", value, expected });
     }
     check_times_after(time, times)?;

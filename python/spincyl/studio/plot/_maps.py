@@ -350,8 +350,8 @@ def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
         raise TypeError(f"data: expected a Dataset of sweep.portrait, not {type(data).__name__}")
     region = data.get("region")
     if region is None or region.dims != ("theta", "ell") or min(region.shape) < 2:
-        found = "none" if region is None else f"one over {dict(region.sizes)}"
-        raise ValueError(f'data: expected "region" over at least two theta and two ell, not {found}')
+        found = "there is none" if region is None else f"its axes are {dict(region.sizes)}"
+        raise ValueError(f'data: expected "region" over at least two theta and two ell; {found}')
     bore, fillet = (number(f"data[{name!r}]", data.get(name, 0.0)) for name in ("bore", "fillet"))
     return data["theta"].values, data["ell"].values, region.values, bore, fillet
 

@@ -129,7 +129,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         match next {
             Next::Ends(Ending::Painleve) => Err(Phases::no_unique_force(self)),
             Next::Ends(Ending::Face) => {
-                let expected = "a law of friction for a body that moves on its face, as in a motion without laws of the user: it cannot roll";
+                let expected =
+                    "a law of friction, without laws of the user: a body that moves on its face cannot roll";
                 Err(Error::OutOfRange { name: "theta", value: at.theta, expected })
             }
             next => Ok(next),
