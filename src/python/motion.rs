@@ -521,7 +521,7 @@ fn dictionary<'py, S: StateArrays>(
         let row = 9 + path.impacts.first().map_or(0, |at| 2 * (3 + at.states[0].numbers().as_ref().len()));
         let mut impacts = room(path.impacts.len() * row)?;
         for at in &path.impacts {
-            let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
+            let codes = [at.rim, at.hit as u8, bool::from(at.after).into()].map(f64::from);
             impacts.push(at.time);
             impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse).chain(&[at.couple]));
             for (state, velocity) in at.states.iter().zip(&at.velocities) {

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
+use spincyl::motion::path::{Hit, Kind, Lands};
 use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -110,7 +110,7 @@ fn a_body_on_both_rims_that_turns_lands_with_the_velocity_of_its_start() {
             let ask = Ask::on(coulomb(0.3)).with_restitution(e);
             let m = moved(&body, &dropped(state, slip, 0.0, lift), &ask, &[0.0, 0.01]);
             let hit = impacts(&m)[0];
-            let lands = if hit.other { there } else { lift };
+            let lands = if hit.lands == Lands::Other { there } else { lift };
             assert_eq!(hit.time, 0.0);
             assert!((hit.velocities[0][2] - lands).abs() < 1e-15, "{state:?} {lift} {hit:?}");
             assert_eq!([hit.states[0].w1, hit.states[0].w2.abs()], [state.w1, state.w2.abs()]);
@@ -222,7 +222,8 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
             }
             let Some(hit) = path.impacts.iter().find(|hit| hit.time == pair[1].time) else { continue };
             // The model follows one rim.
-            let other = path.impacts.iter().any(|before| before.other && before.time <= hit.time);
+            let other =
+                path.impacts.iter().any(|before| before.lands == Lands::Other && before.time <= hit.time);
             if other || hit.states[0].theta > FRAC_PI_2 - 0.01 {
                 continue;
             }
@@ -255,10 +256,10 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
         let off = (found.time - known.time).abs() * steep.min(1.0);
         // Of two rims that land together rounding says which one is first.
         let together = two_rims(&body) && (known.states[0].theta - FRAC_PI_2).abs() < 1e-8;
-        let same = together || found.other == known.other;
+        let same = together || found.lands == known.lands;
         assert!(off < 1e-8 && same, "{body:?} {start:?}: {off:e}");
         met += 1;
-        upper += usize::from(found.other);
+        upper += usize::from(found.lands == Lands::Other);
     }
     assert!(met > drawn(900) && upper > drawn(60), "{met} {upper}");
 }
@@ -394,7 +395,7 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
         let after = |hit: &spincyl::motion::path::Strike, other: bool| {
             // As seen from the rim of the start, or from the other one.
             let (y, [u, v, lift]) = (hit.states[1], hit.velocities[1]);
-            if hit.other == other {
+            if (hit.lands == Lands::Other) == other {
                 return [y.w1, y.w2, y.w3, u, v, lift];
             }
             let apart = 2.0 * body.ell();

@@ -8,7 +8,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::contact::{ImpactLaw, Table};
 use spincyl::custom::{Custom, roll_stone};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
+use spincyl::motion::path::{AfterImpact, Hit, Kind};
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Error, State};
@@ -270,7 +270,12 @@ fn a_ball_that_drills_and_bounces_on_a_patch_loses_its_spin_as_if_it_rested_ther
     }
     // On the table it drills on until it has stopped, at 2 I/((3 pi/16) mu eps) in all.
     let last = path.phases.last().unwrap();
-    assert!(path.impacts.last().unwrap().stays && last.kind != Kind::Flying && m.error < 1e-10, "{last:?}");
+    assert!(
+        path.impacts.last().unwrap().after == AfterImpact::Stays
+            && last.kind != Kind::Flying
+            && m.error < 1e-10,
+        "{last:?}"
+    );
 }
 
 #[test]

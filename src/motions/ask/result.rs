@@ -330,6 +330,60 @@ pub struct Phase<S = State> {
     pub rim: u8,
 }
 
+/// The rim that lands in an impact. In files it is whether this is another rim than the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "bool", into = "bool")
+)]
+#[non_exhaustive]
+pub enum Lands {
+    /// The rim from which the initial state was seen; of several circles the lowest one. A stone has no other.
+    First,
+    /// Another rim or circle.
+    Other,
+}
+
+impl From<bool> for Lands {
+    fn from(other: bool) -> Self {
+        if other { Self::Other } else { Self::First }
+    }
+}
+
+impl From<Lands> for bool {
+    fn from(lands: Lands) -> Self {
+        lands == Lands::Other
+    }
+}
+
+/// What a body does after an impact. In files it is whether the body stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "bool", into = "bool")
+)]
+#[non_exhaustive]
+pub enum AfterImpact {
+    /// The contact point leaves the table again, or another point takes its place.
+    Leaves,
+    /// The body stays on the table: the impact is the last of a sequence of bounces.
+    Stays,
+}
+
+impl From<bool> for AfterImpact {
+    fn from(stays: bool) -> Self {
+        if stays { Self::Stays } else { Self::Leaves }
+    }
+}
+
+impl From<AfterImpact> for bool {
+    fn from(after: AfterImpact) -> Self {
+        after == AfterImpact::Stays
+    }
+}
+
 /// An impact of a rim or of a stone on the table. The components of a stone are along x and y of the laboratory, and
 /// upwards; those of its velocities as in [`EllipsoidState`](crate::stone::roll).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -338,9 +392,9 @@ pub struct Phase<S = State> {
 pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is not the one from which the initial state was seen; for a body of several circles,
-    /// whether it is not the lowest one.
-    pub other: bool,
+    /// Whether the first rim lands or another one.
+    #[cfg_attr(feature = "serde", serde(rename = "other"))]
+    pub lands: Lands,
     /// The rim that lands, as in [`Path::rims`].
     pub rim: u8,
     /// The motion of the contact point in the impact.
@@ -357,8 +411,9 @@ pub struct Strike<S = State> {
     pub couple: f64,
     /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
     pub lost: f64,
-    /// Whether this is the last of a sequence of bounces, after which the body stays on the table.
-    pub stays: bool,
+    /// What the body does after the impact.
+    #[cfg_attr(feature = "serde", serde(rename = "stays"))]
+    pub after: AfterImpact,
 }
 
 /// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the

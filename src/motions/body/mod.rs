@@ -45,8 +45,8 @@ mod tail;
 mod uniform;
 pub(crate) mod write;
 
+pub use super::{AfterImpact, Hit, Kind, Lands, Path, Phase, Strike};
 use super::{Ask, Motion, Start};
-pub use super::{Hit, Kind, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
