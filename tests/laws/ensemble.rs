@@ -8,7 +8,7 @@ use crate::common::{
 };
 use proptest::prelude::*;
 use spincyl::contact::{Table, TableKind};
-use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, Summary, roll};
+use spincyl::ensemble::{Answer, BodyColumns, Job, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
@@ -322,10 +322,8 @@ fn what_makes_no_sense_is_refused_or_marked() {
         }
     }
     let refused = |job: &Job<'_>| {
-        let starts = MotionStarts::new(
-            [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
-            [&[1.3], &[1.0], &[0.0], &[1.0]],
-        );
+        let states: [&[f64]; 4] = [&[1.3], &[1.0], &[0.0], &[1.0]];
+        let starts = MotionStarts::new(BodyColumns::new(&[1.0], &[0.6], &[0.5]), states);
         let (mut error, mut method, mut status) = ([0.0], [0], [0]);
         let out = MotionOutput::new(&mut error, &mut method, &mut status);
         roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
