@@ -11,7 +11,7 @@
 
 use spincyl::contact::{Friction, Table, TableKind, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Event, Motion, Start, path::Path, roll_with};
+use spincyl::motion::{AboveTable, Ask, Event, Motion, Start, path::Path, roll_with};
 use spincyl::stone::{self, StoneState};
 use spincyl::{Body, Contact, Ellipsoid, Error, State, contact, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -162,7 +162,7 @@ impl Scene {
             let [ell, i1, i3, fillet, theta_end] = self.body[..] else { unreachable!() };
             let body = Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?;
             let [theta, w1, w2, w3] = self.start[..] else { unreachable!() };
-            let aloft = Some(self.aloft).filter(|[height, _]| !height.is_nan());
+            let aloft = Some(AboveTable::from(self.aloft)).filter(|aloft| !aloft.height.is_nan());
             let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(aloft);
             let found = roll_with(&body, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| vec![y.theta, y.w1, y.w2, y.w3]))

@@ -158,7 +158,7 @@ pub mod stone {
 
     pub use crate::laws::stone::{Ellipsoid, StonePose, StoneState};
     #[cfg(feature = "many")]
-    pub use crate::many::stones::{StoneRow, StoneSummary, Turns, many};
+    pub use crate::many::stones::{StoneJob, StoneRow, StoneSummary, Turns, many};
     pub use crate::motions::stone::{RollingStone, roll, rolling};
     pub use crate::states::rocking::Rocking;
 }

@@ -101,6 +101,37 @@ pub enum Turns {
     Counted,
 }
 
+/// What is the same for all stones of a call.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct StoneJob<'a> {
+    /// The options of every motion. What a row has of its own replaces them.
+    pub ask: Ask,
+    /// Times of the motions, of which the last one counts.
+    pub times: &'a [f64],
+    /// Whether reversals of the spin are counted.
+    pub turns: Turns,
+}
+
+impl<'a> StoneJob<'a> {
+    /// A job of rolling, in which reversals are not counted.
+    pub fn new(times: &'a [f64]) -> Self {
+        Self { ask: Ask::default(), times, turns: Turns::Uncounted }
+    }
+
+    /// Returns this job with these options.
+    #[must_use]
+    pub fn with_ask(self, ask: Ask) -> Self {
+        Self { ask, ..self }
+    }
+
+    /// Returns this job, with or without reversals.
+    #[must_use]
+    pub fn with_turns(self, turns: Turns) -> Self {
+        Self { turns, ..self }
+    }
+}
+
 /// The result of one motion of many.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
@@ -233,18 +264,18 @@ impl StoneSummary {
 ///
 /// A reversal is complete when the spin has passed zero and reached at least a tenth of the initial spin in the other
 /// direction; the time of the reversal is that of the last zero before, to about 1e-4 of a period of the rocking.
-/// If `turns` is [`Turns::Counted`], reversals are counted as long as the motion is known; the motion then also counts as
+/// With [`Turns::Counted`] reversals are counted as long as the motion is known; the motion then also counts as
 /// unknown when its estimated error exceeds that tenth. An initial spin of less than 1e-12 has no direction.
 ///
 /// ```
-/// use spincyl::contact::Contact;
-/// use spincyl::stone::{StoneRow, Turns, many};
-/// use spincyl::{Ellipsoid, motion::Ask};
+/// use spincyl::Ellipsoid;
+/// use spincyl::stone::{StoneJob, StoneRow, Turns, many};
 ///
 /// // A rattleback that is spun the wrong way turns back, and the other way it does not.
 /// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.15], None, 0.1, None)?;
 /// let row = |i: usize| StoneRow::new(&stone, stone.spinning([-0.4, 0.4][i], 1e-2, 1e-2));
-/// let found = many(2, &row, &[60.0], &Ask::on(Contact::Rolling), Turns::Counted, 1, &mut |_| true)?;
+/// let job = StoneJob::new(&[60.0]).with_turns(Turns::Counted);
+/// let found = many(2, &row, &job, 1, &mut |_| true)?;
 /// let count: Vec<_> = found.expect("not stopped").iter().map(|one| one.reversals()).collect();
 /// assert!(count[0] != count[1], "{count:?}");
 /// # Ok::<(), spincyl::Error>(())
@@ -255,15 +286,12 @@ impl StoneSummary {
 pub fn many(
     count: usize,
     row: &(dyn Fn(usize) -> StoneRow + Sync),
-    times: &[f64],
-    ask: &Ask,
-    turns: Turns,
+    job: &StoneJob<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
-    let turns = turns == Turns::Counted;
     let laws = CustomLaws::AnyThread(&Custom::default);
-    many_custom(count, row, times, (ask, turns), (&laws, threads), go_on)
+    many_custom(count, row, job.times, (&job.ask, job.turns == Turns::Counted), (&laws, threads), go_on)
 }
 
 /// Computes the motions of [`many`] under a law of friction of the user, whose wrong values are errors.
@@ -326,7 +354,7 @@ fn one(
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let [slope, heading] = row.slope.unwrap_or_default();
-    let start = Start { slip: row.slip, heading, aloft: row.aloft, ..Start::from(state) };
+    let start = Start { slip: row.slip, heading, aloft: row.aloft.map(Into::into), ..Start::from(state) };
     let mut ask = ask.with_slope(slope);
     // A walk on a slope has units of its own, in which it sees reversals, too.
     let pace = slope.cos().sqrt();

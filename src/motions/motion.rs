@@ -26,7 +26,8 @@
 
 use super::exact::Swing;
 pub use super::{
-    Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start, body as path,
+    AboveTable, Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start,
+    body as path,
 };
 use crate::error::Error;
 use crate::laws::body::Body;

@@ -9,7 +9,7 @@ use spincyl::body::parts::BodyPart;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Scale, State, steady};
 use std::fmt::Debug;
@@ -97,7 +97,9 @@ fn options_and_starts_come_back_and_may_be_short() {
     }
     let sticky = Friction::Coulomb { mu: 0.2, fixed: f64::INFINITY, patch: 0.01 };
     comes_back(Ask::on(sticky).with_method(Method::Tolerance(1e-9)).with_restitution(0.5));
-    comes_back(Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft([0.5, 0.0]));
+    comes_back(
+        Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft(AboveTable::new(0.5, 0.0)),
+    );
     let short: Ask =
         from_str(r#"{"losses": {"AirFilm": 1e-7, "DryContour": 0.01}, "table": "Smooth"}"#).unwrap();
     assert_eq!(
@@ -181,7 +183,8 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
     let tube = Tube::solid(24e-3, 2e-3, 8e-3);
     let coin = Measured::tube(&tube).unwrap();
     objects += every_name_counts(&tube) + every_name_counts(&coin);
-    objects += every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft([0.5, 0.0]));
+    objects +=
+        every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft(AboveTable::new(0.5, 0.0)));
     for form in [
         r#""Solid": {"radii": [1, 1], "bores": [0, 0], "ends": [0, 1], "fillet": 0}"#,
         r#""Ball": {"radius": 1, "hollow": 0, "centre": 0, "ends": [-1, 1]}"#,
@@ -192,7 +195,7 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
         objects += every_name_counts(&part);
     }
     let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true).with_restitution(0.5);
-    let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft([0.3, 0.0]);
+    let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft(AboveTable::new(0.3, 0.0));
     let motion = roll_with(coin.body(), falls, &[1.0, 40.0], &ask, || true).unwrap().unwrap();
     assert!(motion.path.as_ref().is_some_and(|path| !path.impacts.is_empty()));
     objects += every_name_counts(&motion.samples().next().unwrap()) + every_name_counts(&motion);
@@ -227,8 +230,8 @@ fn motions_come_back_whole() {
     let tube = Body::tube(1.5, 0.6).unwrap();
     let mut turned = 0;
     for _ in 0..drawn(9) {
-        let start =
-            Start::from(state(0.4 + r(), 2.0 * r() - 1.0, r(), 3.0 * r() - 1.5)).with_aloft([0.3, 0.0]);
+        let start = Start::from(state(0.4 + r(), 2.0 * r() - 1.0, r(), 3.0 * r() - 1.5))
+            .with_aloft(AboveTable::new(0.3, 0.0));
         let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.4).with_pose(true);
         let motion = roll_with(&tube, start, &times, &ask, || true).unwrap().unwrap();
         same(&motion);

@@ -6,7 +6,7 @@ use crate::common::{path_of, state};
 use spincyl::contact::{Friction, Table, TableKind};
 use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid};
 use spincyl::{Body, State, steady};
 
@@ -183,7 +183,8 @@ fn each_limit_has_its_reason_in_words() {
     reasons.dedup();
     assert_eq!(reasons.len(), Limit::ALL.len());
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
-    let bounces = Start::from(State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft([1e-6, 0.0]);
+    let bounces =
+        Start::from(State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft(AboveTable::new(1e-6, 0.0));
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(1.0);
     let m = roll_with(&ball, bounces, &[1e3], &ask, || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Impacts)));

@@ -3,7 +3,7 @@
 use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, Error, Scale, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,8 +19,8 @@ fn name(found: Result<Measured, Error>) -> String {
 fn a_dropped_coin_falls_by_half_g_t_squared() {
     let coin = Measured::tube(&coin()).unwrap();
     let (height, g) = (0.05, 9.80665);
-    let start =
-        Start::from(State::from_rates(1.2, 0.0, 2.0, 1.0)).with_aloft([coin.scale().length(height), 0.0]);
+    let start = Start::from(State::from_rates(1.2, 0.0, 2.0, 1.0))
+        .with_aloft(AboveTable::new(coin.scale().length(height), 0.0));
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
     let seconds = [0.0, 0.03, 0.07];
     let motion = coin.roll(start, &seconds, &ask, || true).unwrap().unwrap();

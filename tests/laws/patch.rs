@@ -5,7 +5,7 @@ use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
 use spincyl::{Body, State, steady};
@@ -469,15 +469,16 @@ fn energy_heat_and_what_impacts_take_are_constant_on_patches_too_and_a_face_ends
             || if odd { [0.0, 1e-300, 1e-16, 0.1, -1.0][(5.0 * r()) as usize] } else { 4.0 * (r() - 0.5) };
         let [w1, w2, w3, u, v, lift] = core::array::from_fn(|_| speed());
         let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
-        let start =
-            Start::from(state).with_slip([u, v]).with_aloft([if r() < 0.3 { 0.0 } else { r() }, lift]);
+        let start = Start::from(state)
+            .with_slip([u, v])
+            .with_aloft(AboveTable::new(if r() < 0.3 { 0.0 } else { r() }, lift));
         let mu = 0.05 + 0.9 * r();
         let ask = Ask::on(on(mu, 10f64.powf(-1.0 - 4.0 * r()))).with_restitution(0.9 * r());
         let times: Vec<f64> = (0..40).map(|k| 0.1 * f64::from(k)).collect();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             crate::flight::energy(&body, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]

@@ -7,7 +7,7 @@ use crate::laws::contact::Table;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
 use crate::many::columns::{BodyColumns, LossColumns, Split, StateColumns, at, fit, rows};
-use crate::motions::{Ending, Start};
+use crate::motions::{AboveTable, Ending, Start};
 use crate::numbers::codes::coded;
 
 /// Bodies, initial states, slips, contacts and losses as columns of numbers: each column has the length n, or is a
@@ -221,7 +221,7 @@ impl<'a> MotionStarts<'a> {
     }
 
     pub(super) fn start(&self, i: usize, body: &Body, table: &Table) -> Start {
-        let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
+        let aloft = self.aloft.map(|[height, lift]| AboveTable::new(at(height, i), at(lift, i)));
         let start = Start::from(self.state(i)).with_aloft(aloft).with_heading(self.slope(i)[1]);
         match self.slips {
             Some(slips) => start.with_slip(slips.map(|x| at(x, i))),

@@ -1,9 +1,10 @@
 //! The result of a motion: times and states, the event that ended it, its phases, and the path of the
 //! contact point.
 
-use super::{Method, Start};
+use super::{AboveTable, Method, Start};
 use crate::error::{Error, room};
 use crate::laws::body::View;
+use crate::laws::contact::Force;
 pub use crate::laws::contact::impact::Hit;
 use crate::laws::pose::Angle;
 use crate::laws::state::State;
@@ -325,7 +326,7 @@ pub struct Phase<S = State> {
     /// The slip at the beginning of the phase, along the lean and across it.
     pub slip: [f64; 2],
     /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
-    pub aloft: [f64; 2],
+    pub aloft: AboveTable,
     /// The rim from which the state is seen, as in [`Path::rims`].
     pub rim: u8,
 }
@@ -416,6 +417,45 @@ pub struct Strike<S = State> {
     pub after: AfterImpact,
 }
 
+/// The other rim of a body that lies on both. In files it is the array of the slip and of the force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "[f64; 5]", into = "[f64; 5]")
+)]
+#[non_exhaustive]
+pub struct OtherRim {
+    /// The slip of that rim, along the lean and across it.
+    pub slip: [f64; 2],
+    /// The force on that rim.
+    pub force: Force,
+}
+
+impl OtherRim {
+    /// No other rim.
+    pub(crate) const NONE: Self =
+        Self::of([f64::NAN; 2], Force { normal: f64::NAN, along: f64::NAN, across: f64::NAN });
+
+    /// A rim with this slip and this force.
+    pub(crate) const fn of(slip: [f64; 2], force: Force) -> Self {
+        Self { slip, force }
+    }
+}
+
+impl From<[f64; 5]> for OtherRim {
+    /// The slip along the lean and across it, and the normal, the along and the across component of the force.
+    fn from([u, v, normal, along, across]: [f64; 5]) -> Self {
+        Self::of([u, v], Force { normal, along, across })
+    }
+}
+
+impl From<OtherRim> for [f64; 5] {
+    fn from(OtherRim { slip: [u, v], force }: OtherRim) -> Self {
+        [u, v, force.normal, force.along, force.across]
+    }
+}
+
 /// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
 /// times and states of the phases and of the end; the error of the heat is that error times the largest speed.
 #[derive(Debug, Clone, PartialEq)]
@@ -440,13 +480,13 @@ pub struct Path<S = State> {
     pub slipping: f64,
     /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
     /// the body leaves the table.
-    pub aloft: Vec<[f64; 2]>,
+    pub aloft: Vec<AboveTable>,
     /// The impacts.
     pub impacts: Vec<Strike<S>>,
-    /// Slip and force (N, across the lean, along it) of the other rim at each time, NaN unless the body lies on both;
-    /// empty if the motion ends where the body comes to lie on its side.
+    /// Slip and force of the other rim at each time, NaN unless the body lies on both; empty if the motion ends where the
+    /// body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
-    pub other_rim: Vec<[f64; 5]>,
+    pub other_rim: Vec<OtherRim>,
     /// The rim from which state, slip, pose and force at each time are seen: 0 is the rim from which the initial state is
     /// seen, and 1 the other one. Empty if the motion ends where the body leaves the table: then it is always 0. For a
     /// body of several circles always the number of the circle that carries, from the lower end up, from which all is told.
