@@ -256,7 +256,7 @@ fn motion_columns<S: StateArrays>(
         if let Some(forces) = &m.forces {
             let most = |i: usize| friction.strength() * friction.patch() * S::normal(&forces[i]);
             let couple = |i: usize| match path.kinds[i] {
-                Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i))[1]),
+                Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i)).couple),
                 _ => f64::NAN,
             };
             rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
@@ -566,9 +566,10 @@ const FEW: usize = 64;
 /// the period. The last five are NaN for a motion without a period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
-    let swing = Swing::new(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?, true)?;
+    let swing = Swing::with_pose(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?)?;
     let [low, high] = swing.turning_points();
-    let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
-    let [drift, radius] = swing.drift().unwrap_or([f64::NAN; 2]);
+    let [phi, psi] =
+        swing.angles_per_period().map_or([f64::NAN; 2], |angles| [angles.precession, angles.spin]);
+    let [drift, radius] = swing.drift().map_or([f64::NAN; 2], |drift| [drift.step, drift.radius]);
     Ok([swing.period(), low, high, phi, psi, drift, radius, swing.period_error()])
 }

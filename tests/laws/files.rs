@@ -9,6 +9,7 @@ use spincyl::body::parts::BodyPart;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
+use spincyl::motion::path::{AfterImpact, Lands, Strike};
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Scale, State, steady};
@@ -250,6 +251,34 @@ fn motions_come_back_whole() {
     let motion = motion.unwrap().unwrap();
     same(&motion);
     same(&motion.readings().collect::<Vec<_>>());
+}
+
+#[test]
+fn numbers_that_have_names_are_arrays_and_bools_in_files() {
+    let y = json!(state(1.2, 0.1, 0.2, 0.3));
+    let strike = json!({
+        "time": 1.5, "other": true, "rim": 1, "hit": "Slips", "states": [y, y],
+        "velocities": [[0.5, 0.25, -1.0], [0.5, 0.0, 0.5]], "impulse": [0.125, 0.0, 1.0], "couple": 0.0,
+        "lost": 0.5, "stays": false,
+    });
+    let read = Strike::<State>::deserialize(&strike).unwrap();
+    assert_eq!((read.lands, read.after), (Lands::Other, AfterImpact::Leaves));
+    assert_eq!(serde_json::to_value(read).unwrap(), strike);
+    let start = json!({
+        "state": y, "slip": [0.5, 0.25], "time": 0.0, "aloft": [0.5, -1.0], "heading": 0.0, "place": [0.0, 0.0],
+    });
+    let read = Start::<State>::deserialize(&start).unwrap();
+    assert_eq!(read.aloft, Some(AboveTable::new(0.5, -1.0)));
+    assert_eq!(serde_json::to_value(read).unwrap(), start);
+    // The slip of the other rim, and then the force on it: its normal component, and those across and along the lean.
+    let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0).with_force(true);
+    let lies = Start::from(state(std::f64::consts::FRAC_PI_2, 0.2, 0.0, 0.0));
+    let motion = roll_with(&Body::solid(2.0).unwrap(), lies, &[0.01], &ask, || true).unwrap().unwrap();
+    let other = motion.samples().next().unwrap().other_rim.unwrap();
+    let file = serde_json::to_value(&motion).unwrap();
+    let numbers = [other.slip[0], other.slip[1], other.force.normal, other.force.along, other.force.across];
+    assert_eq!(file["path"]["other_rim"], json!([numbers]));
+    assert!(numbers[2] > 0.1 && file["path"]["aloft"] == json!([[0.0, 0.0]]), "{numbers:?}");
 }
 
 #[test]

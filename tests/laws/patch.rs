@@ -80,7 +80,8 @@ fn a_ball_that_rolls_heavily_creeps_with_a_constant_k_and_slows_down_evenly() {
         [u.hypot(v) / (eps * drilling(&y).abs()), rolling.hypot(y.w2), drilling(&y).abs()]
     };
     let [k, rolls, drills] = seen(0);
-    let [force, couple] = patch::of(k).map(|share| mu * share);
+    let shares = patch::of(k);
+    let [force, couple] = [shares.force, shares.couple].map(|share| mu * share);
     assert!((force * (1.0 + inertia) - arm - eps * eps * k * couple).abs() < 1e-12);
     for (i, t) in times.iter().enumerate().take(4).skip(1) {
         let (since, [same, rolling, drilling]) = (t - times[0], seen(i));
@@ -149,7 +150,7 @@ fn energy_and_heat_have_a_constant_sum_and_friction_acts_against_the_slip() {
             slipping += 1;
             let f = m.forces.as_ref().unwrap()[i];
             assert!((f.along * u - f.across * v).abs() < 1e-10 * speed && f.along * v + f.across * u < 0.0);
-            let [share, _] = patch::of(speed / (eps * drilling(y).abs()));
+            let share = patch::of(speed / (eps * drilling(y).abs())).force;
             assert!((f.friction() - mu * f.normal * share).abs() < 1e-9 * f.normal.abs());
         }
     }
@@ -170,7 +171,7 @@ fn jelletts_number_of_a_ball_falls_by_the_couple_alone() {
         let (s, c) = y.theta.sin_cos();
         let turned = i1 * (d.w1 * s + y.w1 * c * d.theta) + i3 * (d.w3 * (ell + c) - y.w3 * s * d.theta);
         let spin = drilling(&y);
-        let [_, couple] = patch::of(slip[0].hypot(slip[1]) / (eps * spin.abs()));
+        let couple = patch::of(slip[0].hypot(slip[1]) / (eps * spin.abs())).couple;
         let expected = -mu * f.normal * eps * couple * spin.signum() * (1.0 + ell * c);
         assert!((turned - expected).abs() < 1e-13 * (1.0 + f.normal.abs()), "{turned} {expected}");
     }

@@ -124,7 +124,7 @@ impl Desk {
         &Wish { body, start: (y, _), t, .. }: &Wish,
         (contact, mu): (Contact, f64),
     ) -> Answer {
-        let swing = Swing::new(&body, &y, contact, true)?;
+        let swing = Swing::with_pose(&body, &y, contact)?;
         let event = motion::first_event(&swing, mu).filter(|e| e.time <= t);
         let until = event.map_or(t, |e| e.time);
         let looks = || (1..=ERRORS).map(|i| until * f64::from(i) / f64::from(ERRORS));
@@ -132,7 +132,8 @@ impl Desk {
         let pose_error = looks().map(|t| swing.pose_error(t)).fold(0.0, f64::max);
         let (code, time) = told(event);
         let [low, high] = swing.turning_points();
-        let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
+        let angles = swing.angles_per_period();
+        let [phi, psi] = angles.map_or([f64::NAN; 2], |angles| [angles.precession, angles.spin]);
         self.out.extend([0.0, code, time, swing.period(), low, high, phi, psi, error, pose_error]);
         self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until, 0.0, 0.0]);
         self.motion = Some(Kept::Exact { swing: Box::new(swing), body: Box::new(body), contact, until });
