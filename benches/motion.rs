@@ -40,7 +40,7 @@ fn exact(c: &mut Criterion) {
     let (body, y) = start();
     let mut group = c.benchmark_group("exact");
     for (name, pose) in [("swing", false), ("swing and pose", true)] {
-        let swing_of = |y| {
+        let swing_of = |y: &State| {
             let found = if pose {
                 Swing::with_pose(&body, y, Contact::Rolling)
             } else {
