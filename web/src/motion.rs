@@ -3,7 +3,7 @@
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
 use crate::{Answer, Desk, Refusal, count};
-use spincyl::contact::{Force, Table, TableKind, force};
+use spincyl::contact::{Force, Friction, Table, TableKind, force};
 use spincyl::exact::Swing;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
@@ -108,7 +108,12 @@ impl Desk {
         let kind = TableKind::from_code(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
         let restitution = (!e.is_nan()).then_some(e);
-        let table = kind.with([mu, mu, patch]);
+        let table = match kind {
+            TableKind::Rolling => Table::Rolling { mu },
+            TableKind::Coulomb => Friction::Coulomb { mu, fixed: mu, patch }.into(),
+            TableKind::Viscous => Friction::Viscous { c: mu }.into(),
+            _ => Table::Smooth,
+        };
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), table, t, n, restitution };
         if kind.rubs() || !self.losses.is_none() || restitution.is_some() || self.slope[0] != 0.0 {
             #[cfg(feature = "friction")]
