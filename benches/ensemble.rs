@@ -2,7 +2,7 @@
 //! steps).
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use spincyl::ensemble::{Job, MotionOutput, MotionStarts, roll};
+use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, roll};
 use spincyl::motion::{Ask, Method};
 use spincyl::{Body, steady};
 
@@ -62,12 +62,11 @@ fn ensembles(c: &mut Criterion) {
         group.throughput(Throughput::Elements(elements as u64));
         group.bench_function(name, |b| {
             b.iter(|| {
-                let starts = MotionStarts::new(
-                    many.body.each_ref().map(Vec::as_slice),
-                    many.state.each_ref().map(Vec::as_slice),
-                );
-                let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
-                out.last = Some(states.each_mut().map(Vec::as_mut_slice));
+                let [ell, i1, i3, fillet, theta_end] = many.body.each_ref().map(Vec::as_slice);
+                let bodies = BodyColumns::new(ell, i1, i3).with_fillet(fillet).with_theta_end(theta_end);
+                let starts = MotionStarts::new(bodies, many.state.each_ref().map(Vec::as_slice));
+                let out = MotionOutput::new(&mut error, &mut method, &mut status)
+                    .with_last(states.each_mut().map(Vec::as_mut_slice));
                 roll(&starts, &job, out, 1, |_| true).unwrap()
             })
         });

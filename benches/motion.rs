@@ -40,14 +40,16 @@ fn exact(c: &mut Criterion) {
     let (body, y) = start();
     let mut group = c.benchmark_group("exact");
     for (name, pose) in [("swing", false), ("swing and pose", true)] {
-        group.bench_function(name, |b| {
-            b.iter_batched(
-                || y,
-                |y| Swing::new(&body, &y, Contact::Rolling, pose).unwrap(),
-                BatchSize::SmallInput,
-            )
-        });
-        let swing = Swing::new(&body, &y, Contact::Rolling, pose).unwrap();
+        let swing_of = |y: &State| {
+            let found = if pose {
+                Swing::with_pose(&body, y, Contact::Rolling)
+            } else {
+                Swing::new(&body, y, Contact::Rolling)
+            };
+            found.unwrap()
+        };
+        group.bench_function(name, |b| b.iter_batched(|| y, |y| swing_of(&y), BatchSize::SmallInput));
+        let swing = swing_of(&y);
         for t in [20.0, 1e9] {
             if pose {
                 group.bench_function(format!("pose at {t:e}"), |b| b.iter(|| swing.pose(black_box(t))));

@@ -37,19 +37,17 @@ fn map(c: &mut Criterion) {
     for threads in [1, 2] {
         group.bench_function(format!("rate, {threads} threads"), |b| {
             b.iter(|| {
-                let out = sweep::Portrait { rate: Some(&mut rate), ..Default::default() };
+                let out = sweep::Portrait::default().with_rate(&mut rate);
                 sweep::portrait(&theta, &bodies, out, threads, |_| true)
             });
         });
         group.bench_function(format!("all four quantities, {threads} threads"), |b| {
             b.iter(|| {
-                let out = sweep::Portrait {
-                    rate: Some(&mut rate),
-                    kappa_rolling: Some(&mut rolling),
-                    kappa_smooth: Some(&mut smooth),
-                    region: Some(&mut region),
-                    ..Default::default()
-                };
+                let out = sweep::Portrait::default()
+                    .with_rate(&mut rate)
+                    .with_kappa_rolling(&mut rolling)
+                    .with_kappa_smooth(&mut smooth)
+                    .with_region(&mut region);
                 sweep::portrait(&theta, &bodies, out, threads, |_| true)
             });
         });

@@ -11,7 +11,7 @@
 
 use spincyl::contact::{Friction, Table, TableKind, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Event, Motion, Start, path::Path, roll_with};
+use spincyl::motion::{AboveTable, Ask, Event, Motion, Start, path::Path, roll_with};
 use spincyl::stone::{self, StoneState};
 use spincyl::{Body, Contact, Ellipsoid, Error, State, contact, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -147,12 +147,10 @@ impl Scene {
     }
 
     fn ask(&self) -> Ask {
-        let [kind, numbers @ ..] = self.table;
-        let kinds = [TableKind::Rolling, TableKind::Smooth, TableKind::Coulomb, TableKind::Viscous];
         let all = Law::ALL.iter().zip(self.losses);
         let losses = all.fold(Losses::NONE, |sum, (law, x)| sum.with(*law, x));
         let restitution = Some(self.restitution).filter(|e| !e.is_nan());
-        Ask::on(kinds[kind as usize].with(numbers)).with_losses(losses).with_restitution(restitution)
+        Ask::on(table_of(self.table)).with_losses(losses).with_restitution(restitution)
     }
 
     fn follow(&self) -> Result<String, Error> {
@@ -162,7 +160,7 @@ impl Scene {
             let [ell, i1, i3, fillet, theta_end] = self.body[..] else { unreachable!() };
             let body = Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?;
             let [theta, w1, w2, w3] = self.start[..] else { unreachable!() };
-            let aloft = Some(self.aloft).filter(|[height, _]| !height.is_nan());
+            let aloft = Some(AboveTable::from(self.aloft)).filter(|aloft| !aloft.height.is_nan());
             let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(aloft);
             let found = roll_with(&body, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| vec![y.theta, y.w1, y.w2, y.w3]))
@@ -191,6 +189,16 @@ fn told<S: spincyl::motion::Moving>(found: &Motion<S>, numbers: impl Fn(&S) -> V
     let phases = path.map_or(1, |path| path.phases.len());
     let last: Vec<String> = last.iter().chain(&slip).map(|x| format!("{x:e}")).collect();
     format!("{ending} {time:e} {phases} {:e} {}", found.error, last.join(" "))
+}
+
+/// The table of these numbers.
+fn table_of([kind, a, fixed, patch]: [f64; 4]) -> Table {
+    match TableKind::from_code(kind as u8) {
+        Some(TableKind::Rolling) => Table::Rolling { mu: a },
+        Some(TableKind::Coulomb) => Friction::Coulomb { mu: a, fixed, patch }.into(),
+        Some(TableKind::Viscous) => Friction::Viscous { c: a }.into(),
+        _ => Table::Smooth,
+    }
 }
 
 /// The kind of the table, its one or two coefficients, and the radius of a patch.

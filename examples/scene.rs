@@ -9,7 +9,7 @@
 use spincyl::State;
 use spincyl::contact::Friction;
 use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Start};
+use spincyl::motion::{AboveTable, Ask, Start};
 use spincyl::scene::{Scene, SceneError};
 
 /// The scene of a tube that is thrown.
@@ -23,7 +23,9 @@ pub fn thrown() -> Result<Scene, SceneError> {
     // It leans by 80 degrees, turns by 20 rad/s about the vertical and by 30 about its axis, 5 mm above the table.
     let [precession, spin] = [20.0, 30.0].map(|w| scale.angular_velocity(w));
     let state = State::from_rates(80f64.to_radians(), 0.0, precession, spin);
-    let start = Start::from(state).with_slip([0.0, scale.speed(0.2)]).with_aloft([scale.length(5e-3), 0.0]);
+    let start = Start::from(state)
+        .with_slip([0.0, scale.speed(0.2)])
+        .with_aloft(AboveTable::new(scale.length(5e-3), 0.0));
     let seconds: Vec<f64> = (0..=400).map(|i| 0.0025 * f64::from(i)).collect();
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
     Scene::of(&pipe, start, &seconds, &ask)

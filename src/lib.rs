@@ -94,7 +94,7 @@ pub mod drift {
     //! # Ok::<(), spincyl::Error>(())
     //! ```
 
-    pub use crate::many::columns::LossColumns;
+    pub use crate::many::columns::{BodyColumns, LossColumns, StateColumns};
     pub use crate::many::drifts::{
         Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops,
     };
@@ -159,7 +159,7 @@ pub mod stone {
 
     pub use crate::laws::stone::{Ellipsoid, StonePose, StoneState};
     #[cfg(feature = "many")]
-    pub use crate::many::stones::{StoneRow, StoneSummary, many};
+    pub use crate::many::stones::{StoneJob, StoneRow, StoneSummary, Turns, many};
     pub use crate::motions::stone::{RollingStone, roll, rolling};
     pub use crate::states::rocking::Rocking;
 }

@@ -421,6 +421,81 @@ def test_every_public_module_begins_with_an_example():
     assert not [word for word, head in [*heads.items(), *inline] if not has_example(head)]
 
 
+# Public types that can grow.
+
+#: Public types to which nothing will be added, so that programs may write and match all of their fields, and why.
+CLOSED = {
+    "State": "the four numbers of a state of a body are all",
+    "StateColumns": "a column for each of these four numbers",
+    "StoneState": "the two vectors of a state of a stone are all",
+    "Circle": "three numbers are a circle that touches the table",
+    "Angle": "whole turns and the rest, whose sum it is",
+    "Compensated": "numbers, and what was rounded off them",
+}
+
+
+def exported_types():
+    """The names of the types that lib.rs exports; in the sources a name of a type stands once."""
+    texts = [HOMES[module].read_text("utf-8") for module in public_modules()]
+    found = set()
+    for text in [*texts, (SRC / "lib.rs").read_text("utf-8")]:
+        text = re.sub(r"//.*", "", text.split("#[cfg(test)]\nmod tests")[0])
+        trees = re.findall(r"\bpub use ([^;]+);", text)
+        found |= {words[-1] for tree in trees for words in paths(re.sub(r"\s", "", tree))}
+        found |= set(re.findall(r"^ *pub (?:struct|enum|union) (\w+)", text, re.M))
+    assert "*" not in found
+    return found
+
+
+def closed_types(text):
+    """The public structs and enums of a source to which nothing can be added without an error in programs of users."""
+    lines = text.split("#[cfg(test)]\nmod tests")[0].splitlines()
+    for at, line in enumerate(lines):
+        found = re.match(r"( *)pub (struct|enum|union) (\w+)(.*)", line)
+        if not found:
+            continue
+        indent, kind, word, rest = found.groups()
+        before = lines[:at]
+        while before and before[-1].strip() and not before[-1].endswith("{"):
+            if "non_exhaustive" in before.pop():
+                break
+        else:
+            # an enumeration of these macros has the attribute by them
+            in_macro = indent and before and re.fullmatch(r" *(?:coded|laws)! \{", before[-1])
+            end = at if rest.endswith(";") else lines.index(f"{indent}}}", at)
+            after = [line.strip() for line in lines[at + 1 : end]]
+            fields = [re.sub(r".*?\(", "", rest, count=1)] if "(" in rest else after
+            hidden = [x for x in fields if re.match(r"(?!pub )[\w(]+(?:: |.*\);|\(crate\))", x)]
+            if not in_macro and not (kind == "struct" and hidden):
+                yield word
+
+
+@pytest.mark.parametrize(
+    ("text", "closed"),
+    [
+        ("pub struct Start {\n    /// Time.\n    pub time: f64,\n}", True),
+        ("#[derive(Debug)]\n#[non_exhaustive]\npub struct Start {\n    pub time: f64,\n}", False),
+        ("#[non_exhaustive]\npub struct Other {\n}\n\npub struct Start {\n    pub time: f64,\n}", True),
+        ("pub struct Start<'a> {\n    pub time: f64,\n    pub(crate) at: [&'a [f64]; 2],\n}", False),
+        ("pub struct Start {\n    pub time: f64,\n    smooth: bool,\n}", False),
+        ("pub struct Start(pub f64);", True),
+        ("pub struct Start(pub(crate) [f64; 4]);", False),
+        ("pub struct Start;", True),
+        ("pub enum Start {\n    /// Here.\n    Here,\n}", True),
+        ("coded! {\n    /// A start.\n    pub enum Start {\n        Here = 0,\n    }\n}", False),
+    ],
+)
+def test_a_type_that_cannot_grow_is_seen(text, closed):
+    assert ("Start" in closed_types(text)) == closed
+
+
+def test_every_public_type_can_grow_or_there_is_a_reason():
+    exported = exported_types()
+    assert len(exported) > 120 and set(CLOSED) < exported
+    closed = {word for path in SOURCES for word in closed_types(path.read_text("utf-8"))} & exported
+    assert closed == set(CLOSED), (closed - set(CLOSED), set(CLOSED) - closed)
+
+
 def test_no_layer_uses_a_later_one():
     order = {layer: rank for rank, layer in enumerate(layers_of_src())}
     found = list(uses())

@@ -81,11 +81,19 @@ impl Moment {
 
 /// What drives a body: a horizontal force on its centre of mass, and a couple.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Push {
     /// The force along x and y of the table, in M g.
     pub force: Vector2<f64>,
     /// The couple along e1, e2, e3, in M g R.
     pub couple: Vector3<f64>,
+}
+
+impl Push {
+    /// This force along x and y, and this couple along e1, e2, e3.
+    pub fn new(force: Vector2<f64>, couple: Vector3<f64>) -> Self {
+        Self { force, couple }
+    }
 }
 
 /// A force and a couple that act on a body beside gravity and the table: a motor, a wind, a hand. They may give energy and

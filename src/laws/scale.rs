@@ -137,8 +137,23 @@ impl Scale {
         self.mass * self.gravity * self.radius
     }
 
+    /// The radius of the rim, in metres.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The mass, in kilograms.
+    pub fn mass(&self) -> f64 {
+        self.mass
+    }
+
+    /// The acceleration of gravity, in m/s^2.
+    pub fn gravity(&self) -> f64 {
+        self.gravity
+    }
+
     /// The rim radius in metres, the mass in kilograms and gravity in m/s^2.
-    pub fn numbers(&self) -> [f64; 3] {
+    pub(crate) fn numbers(&self) -> [f64; 3] {
         [self.radius, self.mass, self.gravity]
     }
 }

@@ -153,6 +153,18 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     Ok([a, rim.height(flat)])
 }
 
+/// What a body at rest on a slope needs, as shares of what holds it there; a body whose shares are all below 1 stays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SlopeShares {
+    /// The share of the friction that keeps it from slipping.
+    pub slipping: f64,
+    /// The share of the losses that keep it from rolling.
+    pub rolling: f64,
+    /// The share of the weight that keeps it from tipping.
+    pub tipping: f64,
+}
+
 /// What a body at rest on a table needs to be held, as a share of what friction, dry losses and its width can hold:
 /// three shares, against slipping, rolling and tipping. The last two arguments are the slope and phi.
 ///
@@ -165,7 +177,7 @@ pub fn shares(
     losses: &Losses,
     posture: Posture,
     [slope, phi]: [f64; 2],
-) -> Result<[f64; 3], Error> {
+) -> Result<SlopeShares, Error> {
     let t = slope.tan();
     let of = |need: f64, most: f64| if need.abs() < NO_COUPLE { 0.0 } else { (need / most).abs() };
     let slips = if mu < f64::INFINITY { slip_slope(body, theta, mu, posture, phi)? } else { FRAC_PI_2 };
@@ -191,5 +203,5 @@ pub fn shares(
         }
         _ => 1.0,
     };
-    Ok([of(t, slips.tan()), rolls, of(t, tips * wider)])
+    Ok(SlopeShares { slipping: of(t, slips.tan()), rolling: rolls, tipping: of(t, tips * wider) })
 }

@@ -48,6 +48,83 @@ impl<'a> LossColumns<'a> {
     }
 }
 
+/// Columns of the numbers of bodies: each has the length n, or is a single number for all rows.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct BodyColumns<'a> {
+    /// Height of the centre of mass above the rim, in R.
+    pub ell: &'a [f64],
+    /// Moment of inertia about a diameter through the centre of mass, in M R^2.
+    pub i1: &'a [f64],
+    /// Moment of inertia about the axis, in M R^2.
+    pub i3: &'a [f64],
+    /// Inner radius of tubes, in R; NaN for other bodies.
+    pub bore: &'a [f64],
+    /// Radius of the rounding of the rim, in R.
+    pub fillet: &'a [f64],
+    /// Inclination at which another part of the body touches the table; NaN for the default of the body.
+    pub theta_end: &'a [f64],
+}
+
+impl<'a> BodyColumns<'a> {
+    /// Bodies with sharp rims.
+    ///
+    /// ```
+    /// use spincyl::ensemble::BodyColumns;
+    ///
+    /// // Three bodies of different moments about a diameter.
+    /// let bodies = BodyColumns::new(&[1.0], &[0.5, 0.6, 0.7], &[0.5]).with_fillet(&[0.1]);
+    /// assert_eq!((bodies.i1.len(), bodies.fillet), (3, &[0.1][..]));
+    /// ```
+    pub const fn new(ell: &'a [f64], i1: &'a [f64], i3: &'a [f64]) -> Self {
+        Self { ell, i1, i3, bore: &[f64::NAN], fillet: &[0.0], theta_end: &[f64::NAN] }
+    }
+
+    /// Returns these columns with this column of the inner radii of tubes.
+    #[must_use]
+    pub const fn with_bore(self, bore: &'a [f64]) -> Self {
+        Self { bore, ..self }
+    }
+
+    /// Returns these columns with this column of the radii of the rounding.
+    #[must_use]
+    pub const fn with_fillet(self, fillet: &'a [f64]) -> Self {
+        Self { fillet, ..self }
+    }
+
+    /// Returns these columns with this column of the inclinations at which another part of the body touches the table.
+    #[must_use]
+    pub const fn with_theta_end(self, theta_end: &'a [f64]) -> Self {
+        Self { theta_end, ..self }
+    }
+}
+
+/// Columns of the four numbers of a [`State`](crate::State), to be read or to be written.
+#[derive(Debug, Clone, Copy)]
+pub struct StateColumns<C> {
+    /// Inclination.
+    pub theta: C,
+    /// Angular velocity along e1.
+    pub w1: C,
+    /// Angular velocity along e2.
+    pub w2: C,
+    /// Angular velocity along the axis.
+    pub w3: C,
+}
+
+impl<C> From<[C; 4]> for StateColumns<C> {
+    /// The columns in the order theta, w1, w2, w3, as those of a [`State`](crate::State).
+    fn from([theta, w1, w2, w3]: [C; 4]) -> Self {
+        Self { theta, w1, w2, w3 }
+    }
+}
+
+impl<C> From<StateColumns<C>> for [C; 4] {
+    fn from(of: StateColumns<C>) -> Self {
+        [of.theta, of.w1, of.w2, of.w3]
+    }
+}
+
 /// Output columns that can be split at a row.
 pub(crate) trait Split: Sized {
     /// The first `rows` rows, and the remaining rows.

@@ -3,6 +3,7 @@
 use super::motions::CustomLaws;
 use super::threads::share;
 use crate::error::{Error, room, within};
+use crate::laws::contact::Friction;
 use crate::laws::custom::Custom;
 use crate::laws::loss::Losses;
 use crate::laws::stone::{Ellipsoid, StoneState};
@@ -23,20 +24,112 @@ use std::sync::OnceLock;
 #[non_exhaustive]
 pub struct StoneRow {
     /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
-    pub stone: [f64; 13],
+    pub(crate) stone: [f64; 13],
     /// The initial vertical and angular velocity.
-    pub state: [f64; 6],
+    pub(crate) state: [f64; 6],
     /// The initial slip.
-    pub slip: [f64; 2],
+    pub(crate) slip: [f64; 2],
     /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and two
     /// numbers that are not used; None for those of `ask`.
-    pub coefficients: Option<[f64; 3]>,
+    pub(crate) coefficients: Option<[f64; 3]>,
     /// The losses of this motion, if it has its own; None for those of `ask`.
-    pub losses: Option<Losses>,
+    pub(crate) losses: Option<Losses>,
     /// The slope of the table, and phi at the start; None for a level table.
-    pub slope: Option<[f64; 2]>,
+    pub(crate) slope: Option<[f64; 2]>,
     /// The height of the lowest point and its vertical velocity at the start; None on the table.
-    pub aloft: Option<[f64; 2]>,
+    pub(crate) aloft: Option<[f64; 2]>,
+}
+
+impl StoneRow {
+    /// A stone on a level table without a slip, with the friction and the losses of all.
+    pub fn new(stone: &Ellipsoid, state: StoneState) -> Self {
+        let StoneState { vertical: [a, b, c], w: [d, e, f] } = state;
+        Self {
+            stone: stone.numbers(),
+            state: [a, b, c, d, e, f],
+            slip: [0.0; 2],
+            coefficients: None,
+            losses: None,
+            slope: None,
+            aloft: None,
+        }
+    }
+
+    /// Returns this row with this slip along x and y.
+    #[must_use]
+    pub fn with_slip(self, x: f64, y: f64) -> Self {
+        Self { slip: [x, y], ..self }
+    }
+
+    /// Returns this row with friction of its own, of the kind that all have.
+    #[must_use]
+    pub fn with_friction(self, friction: Friction) -> Self {
+        let coefficients = match friction {
+            Friction::Coulomb { mu, fixed, patch } => [mu, fixed, patch],
+            Friction::Viscous { c } => [c, 0.0, 0.0],
+        };
+        Self { coefficients: Some(coefficients), ..self }
+    }
+
+    /// Returns this row with losses of its own.
+    #[must_use]
+    pub fn with_losses(self, losses: Losses) -> Self {
+        Self { losses: Some(losses), ..self }
+    }
+
+    /// Returns this row on a table with this slope, with the angle phi at the start.
+    #[must_use]
+    pub fn with_slope(self, slope: f64, phi: f64) -> Self {
+        Self { slope: Some([slope, phi]), ..self }
+    }
+
+    /// Returns this row in the air, with the height of the lowest point and its vertical velocity.
+    #[must_use]
+    pub fn with_aloft(self, height: f64, lift: f64) -> Self {
+        Self { aloft: Some([height, lift]), ..self }
+    }
+}
+
+/// Whether the reversals of the spins of many stones are counted, which needs the error of each motion on its way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Turns {
+    /// They are not counted.
+    #[default]
+    Uncounted,
+    /// They are counted.
+    Counted,
+}
+
+/// What is the same for all stones of a call.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct StoneJob<'a> {
+    /// The options of every motion. What a row has of its own replaces them.
+    pub ask: Ask,
+    /// Times of the motions, of which the last one counts.
+    pub times: &'a [f64],
+    /// Whether reversals of the spin are counted.
+    pub turns: Turns,
+}
+
+impl<'a> StoneJob<'a> {
+    /// A job of rolling, in which reversals are not counted.
+    pub fn new(times: &'a [f64]) -> Self {
+        Self { ask: Ask::default(), times, turns: Turns::Uncounted }
+    }
+
+    /// Returns this job with these options.
+    #[must_use]
+    pub fn with_ask(self, ask: Ask) -> Self {
+        Self { ask, ..self }
+    }
+
+    /// Returns this job, with or without reversals.
+    #[must_use]
+    pub fn with_turns(self, turns: Turns) -> Self {
+        Self { turns, ..self }
+    }
 }
 
 /// The result of one motion of many.
@@ -44,9 +137,9 @@ pub struct StoneRow {
 #[non_exhaustive]
 pub struct StoneSummary {
     /// The status: the code of an [`Ending`].
-    pub status: u8,
+    pub(crate) status: u8,
     /// The numbers, in the order of [`NAMES`](Self::NAMES).
-    pub numbers: [f64; 19],
+    pub(crate) numbers: [f64; 19],
 }
 
 impl StoneSummary {
@@ -54,7 +147,7 @@ impl StoneSummary {
     /// the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
     /// numbers of impacts and of landings after which the stone stays, the time in the air, the energy lost in
     /// impacts, the kind of the last phase, the estimated error, and the time up to which the motion is known.
-    pub const NAMES: [&str; 19] = [
+    pub(crate) const NAMES: [&str; 19] = [
         "n1",
         "n2",
         "n3",
@@ -76,6 +169,82 @@ impl StoneSummary {
         "known_until",
     ];
 
+    /// How the motion ended; all numbers of an invalid one are NaN.
+    pub fn ending(&self) -> Ending {
+        Ending::from_code(self.status).unwrap_or(Ending::Invalid)
+    }
+
+    /// The last state.
+    pub fn state(&self) -> StoneState {
+        let [a, b, c, d, e, f, ..] = self.numbers;
+        StoneState { vertical: [a, b, c], w: [d, e, f] }
+    }
+
+    /// The time of the end.
+    pub fn end(&self) -> f64 {
+        self.numbers[6]
+    }
+
+    /// The last spin.
+    pub fn spin(&self) -> f64 {
+        self.numbers[7]
+    }
+
+    /// The number of reversals of the spin; None unless they are counted.
+    pub fn reversals(&self) -> Option<usize> {
+        Some(self.numbers[8]).filter(|count| !count.is_nan()).map(|count| count as usize)
+    }
+
+    /// The time of the first reversal, if there is one and reversals are counted.
+    pub fn first_reversal(&self) -> Option<f64> {
+        Some(self.numbers[9]).filter(|time| !time.is_nan())
+    }
+
+    /// The heat of friction.
+    pub fn dissipated(&self) -> f64 {
+        self.numbers[10]
+    }
+
+    /// The energy lost to the losses.
+    pub fn work_lost(&self) -> f64 {
+        self.numbers[11]
+    }
+
+    /// The number of impacts; NaN for a motion without numbers.
+    pub fn impacts(&self) -> f64 {
+        self.numbers[12]
+    }
+
+    /// The number of landings after which the stone stays; NaN for a motion without numbers.
+    pub fn landings(&self) -> f64 {
+        self.numbers[13]
+    }
+
+    /// The time in the air.
+    pub fn air_time(&self) -> f64 {
+        self.numbers[14]
+    }
+
+    /// The energy lost in impacts.
+    pub fn lost_in_impacts(&self) -> f64 {
+        self.numbers[15]
+    }
+
+    /// The kind of the last phase; None for a motion without phases.
+    pub fn last_phase(&self) -> Option<Kind> {
+        Some(self.numbers[16]).filter(|code| !code.is_nan()).and_then(|code| Kind::from_code(code as u8))
+    }
+
+    /// The estimated error of the last state.
+    pub fn error(&self) -> f64 {
+        self.numbers[17]
+    }
+
+    /// The time up to which the motion is known.
+    pub fn known_until(&self) -> f64 {
+        self.numbers[18]
+    }
+
     const fn none(status: Ending) -> Self {
         Self { status: status as u8, numbers: [f64::NAN; 19] }
     }
@@ -95,21 +264,34 @@ impl StoneSummary {
 ///
 /// A reversal is complete when the spin has passed zero and reached at least a tenth of the initial spin in the other
 /// direction; the time of the reversal is that of the last zero before, to about 1e-4 of a period of the rocking.
-/// If `turns` is true, reversals are counted as long as the motion is known; the motion then also counts as
+/// With [`Turns::Counted`] reversals are counted as long as the motion is known; the motion then also counts as
 /// unknown when its estimated error exceeds that tenth. An initial spin of less than 1e-12 has no direction.
+///
+/// ```
+/// use spincyl::Ellipsoid;
+/// use spincyl::stone::{StoneJob, StoneRow, Turns, many};
+///
+/// // A rattleback that is spun the wrong way turns back, and the other way it does not.
+/// let stone = Ellipsoid::rattleback([1.0, 0.2, 0.15], None, 0.1, None)?;
+/// let row = |i: usize| StoneRow::new(&stone, stone.spinning([-0.4, 0.4][i], 1e-2, 1e-2));
+/// let job = StoneJob::new(&[60.0]).with_turns(Turns::Counted);
+/// let found = many(2, &row, &job, 1, &mut |_| true)?;
+/// let count: Vec<_> = found.expect("not stopped").iter().map(|one| one.reversals()).collect();
+/// assert!(count[0] != count[1], "{count:?}");
+/// # Ok::<(), spincyl::Error>(())
+/// ```
 ///
 /// # Errors
 /// Those of [`roll`](crate::motions::stone::roll) for invalid times or options, and too little memory.
 pub fn many(
     count: usize,
     row: &(dyn Fn(usize) -> StoneRow + Sync),
-    times: &[f64],
-    (ask, turns): (&Ask, bool),
+    job: &StoneJob<'_>,
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     let laws = CustomLaws::AnyThread(&Custom::default);
-    many_custom(count, row, times, (ask, turns), (&laws, threads), go_on)
+    many_custom(count, row, job.times, (&job.ask, job.turns == Turns::Counted), (&laws, threads), go_on)
 }
 
 /// Computes the motions of [`many`] under a law of friction of the user, whose wrong values are errors.
@@ -172,7 +354,7 @@ fn one(
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let [slope, heading] = row.slope.unwrap_or_default();
-    let start = Start { slip: row.slip, heading, aloft: row.aloft, ..Start::from(state) };
+    let start = Start { slip: row.slip, heading, aloft: row.aloft.map(Into::into), ..Start::from(state) };
     let mut ask = ask.with_slope(slope);
     // A walk on a slope has units of its own, in which it sees reversals, too.
     let pace = slope.cos().sqrt();

@@ -113,6 +113,33 @@ impl Tube {
     }
 }
 
+/// The numbers of a body of which the moments of inertia are known, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MeasuredMoments {
+    /// Height of the centre of mass above the circle of the rim, in metres.
+    pub height: f64,
+    /// Radius of the rounded edge, in metres.
+    pub fillet: f64,
+    /// Moment of inertia about a diameter through the centre of mass, in kg m^2.
+    pub i1: f64,
+    /// Moment of inertia about the axis, in kg m^2.
+    pub i3: f64,
+}
+
+impl MeasuredMoments {
+    /// A body with a sharp edge: the height of its centre of mass in metres, and its moments in kg m^2.
+    pub fn new(height: f64, i1: f64, i3: f64) -> Self {
+        Self { height, fillet: 0.0, i1, i3 }
+    }
+
+    /// Returns these numbers with this radius of the edge, in metres.
+    #[must_use]
+    pub fn with_fillet(self, fillet: f64) -> Self {
+        Self { fillet, ..self }
+    }
+}
+
 /// A body with a size and a mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -203,17 +230,16 @@ impl Measured {
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
-    /// Any axisymmetric body of this size. `height` is that of the centre of mass above the circle of the rim, and
-    /// `fillet` the radius of the rounded edge, both in metres; `i1` and `i3` are the moments about the centre of mass,
-    /// in kg m^2.
+    /// Any axisymmetric body of this size with these moments.
     ///
     /// ```
-    /// use spincyl::{Body, Scale, measured::Measured};
+    /// use spincyl::measured::{Measured, MeasuredMoments};
+    /// use spincyl::{Body, Scale};
     ///
     /// let coin = Scale::new(12e-3, 8e-3, 9.81)?;
-    /// let measured = Measured::with_moments(coin, [1e-3, 0.0], [2.9e-7, 5.76e-7])?;
+    /// let measured = Measured::with_moments(coin, &MeasuredMoments::new(1e-3, 2.9e-7, 5.76e-7))?;
     /// assert!((measured.body().i3() - 0.5).abs() < 1e-15);
-    /// assert!(Measured::with_moments(coin, [1e-3, 0.0], [0.25, 0.5]).is_err()); // in M R^2
+    /// assert!(Measured::with_moments(coin, &MeasuredMoments::new(1e-3, 0.25, 0.5)).is_err()); // in M R^2
     /// assert!(Body::new(1.0 / 12.0, 2.9e-7, 5.76e-7).is_err()); // in kg m^2
     /// # Ok::<(), spincyl::Error>(())
     /// ```
@@ -221,7 +247,8 @@ impl Measured {
     /// # Errors
     /// Those of [`Body::rounded`], and `OutOfRange` for moments that are so small or large for this mass and radius
     /// that they must be in another unit.
-    pub fn with_moments(scale: Scale, [height, fillet]: [f64; 2], [i1, i3]: [f64; 2]) -> Result<Self, Error> {
+    pub fn with_moments(scale: Scale, of: &MeasuredMoments) -> Result<Self, Error> {
+        let &MeasuredMoments { height, fillet, i1, i3 } = of;
         let [low, high] = [1e-3, 1e4].map(|natural| scale.kilogram_square_metres(natural));
         within("i1", i1, (low, high), "1e-3 to 1e4 M R^2, in kg m^2")?;
         within("i3", i3, (0.0, high), "at most 1e4 M R^2, in kg m^2")?;

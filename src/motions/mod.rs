@@ -20,6 +20,8 @@ pub mod world;
 pub use ask::bounds::Bounds;
 pub use ask::moving::Moving;
 pub use ask::rests_on::RestsOn;
-pub use ask::result::{Ending, Event, Hit, Kind, Limit, Motion, Path, Phase, Strike};
+pub use ask::result::{
+    AfterImpact, Ending, Event, Hit, Kind, Lands, Limit, Motion, OtherRim, Path, Phase, Strike,
+};
 pub use ask::sample::Sample;
-pub use ask::{Ask, Method, Start};
+pub use ask::{AboveTable, Ask, Method, Start};

@@ -26,7 +26,8 @@
 
 use super::exact::Swing;
 pub use super::{
-    Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start, body as path,
+    AboveTable, Ask, Bounds, Ending, Event, Limit, Method, Motion, Moving, RestsOn, Sample, Start,
+    body as path,
 };
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -127,7 +128,7 @@ fn rolled(
 /// use spincyl::{Body, Contact, exact::Swing, motion, steady};
 ///
 /// let body = Body::solid(2.5)?;
-/// let swing = Swing::new(&body, &steady::state(&body, 1.3)?.kicked(0.05), Contact::Rolling, false)?;
+/// let swing = Swing::new(&body, &steady::state(&body, 1.3)?.kicked(0.05), Contact::Rolling)?;
 /// assert_eq!(motion::first_event(&swing, f64::INFINITY), None);
 /// assert_eq!(motion::first_event(&swing, 0.0).unwrap().time, 0.0); // the body does not roll on ice
 /// # Ok::<(), spincyl::Error>(())

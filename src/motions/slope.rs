@@ -16,7 +16,7 @@
 //! The slip u is that over the table, and U changes with P and with the axes along which u is told.
 
 use super::walk::two_runs::Followed;
-use super::{Ask, Motion, Moving, Start};
+use super::{AboveTable, Ask, Motion, Moving, Start};
 use crate::error::{Error, room, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
@@ -176,7 +176,7 @@ impl Slope {
             state: start.state.at_pace(speed(1.0)),
             slip: start.slip.map(speed),
             time: 0.0,
-            aloft: start.aloft.map(|[height, lift]| [height, speed(lift)]),
+            aloft: start.aloft.map(|AboveTable { height, lift }| AboveTable::new(height, speed(lift))),
             ..*start
         }
     }
@@ -200,11 +200,11 @@ impl Slope {
         for phase in &mut path.phases {
             phase.time = later(phase.time);
             phase.state = phase.state.at_pace(pace);
-            (phase.slip, phase.aloft[1]) = (faster(phase.slip), phase.aloft[1] * pace);
+            (phase.slip, phase.aloft.lift) = (faster(phase.slip), phase.aloft.lift * pace);
         }
         (path.heat, path.lost) = (path.heat * weight, path.lost * weight);
         path.slipping = scale.seconds(path.slipping);
-        path.aloft.iter_mut().for_each(|aloft| aloft[1] *= pace);
+        path.aloft.iter_mut().for_each(|aloft| aloft.lift *= pace);
         for hit in &mut path.impacts {
             hit.time = later(hit.time);
             hit.states = hit.states.map(|state| state.at_pace(pace));
@@ -212,9 +212,8 @@ impl Slope {
             (hit.impulse, hit.lost) = (hit.impulse.map(|p| p * pace), hit.lost * weight);
             hit.couple *= pace;
         }
-        for [u_h, u_2, rest @ ..] in &mut path.other_rim {
-            (*u_h, *u_2) = (*u_h * pace, *u_2 * pace);
-            rest.iter_mut().for_each(|force| *force *= weight);
+        for other in &mut path.other_rim {
+            (other.slip, other.force) = (faster(other.slip), State::force_at(&other.force, weight));
         }
         path.last_slip = faster(path.last_slip);
         path.known_until = later(path.known_until);

@@ -42,17 +42,23 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
     Written::deserialize(from).map(|x| x.0)
 }
 
-/// The same for rows of numbers.
+/// The same for rows that are arrays of numbers.
 pub(crate) mod rows {
     use super::Written;
     use serde::{Deserialize, Deserializer, Serializer};
 
-    pub(crate) fn serialize<S: Serializer>(rows: &[[f64; 5]], to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(rows.iter().map(|row| row.map(Written)))
+    pub(crate) fn serialize<T, S: Serializer>(rows: &[T], to: S) -> Result<S::Ok, S::Error>
+    where
+        T: Copy + Into<[f64; 5]>,
+    {
+        to.collect_seq(rows.iter().map(|row| (*row).into().map(Written)))
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<[f64; 5]>, D::Error> {
+    pub(crate) fn deserialize<'de, T, D: Deserializer<'de>>(from: D) -> Result<Vec<T>, D::Error>
+    where
+        T: From<[f64; 5]>,
+    {
         let rows = Vec::<[Written; 5]>::deserialize(from)?;
-        Ok(rows.into_iter().map(|row| row.map(|x| x.0)).collect())
+        Ok(rows.into_iter().map(|row| row.map(|x| x.0).into()).collect())
     }
 }

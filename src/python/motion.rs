@@ -19,7 +19,7 @@ use crate::motions::motion;
 use crate::motions::slope::{energy_beside, energy_of_fall};
 use crate::motions::stone;
 use crate::motions::turning;
-use crate::motions::{Ask, Bounds, Kind, Method, Motion, Moving, Path, RestsOn, Sample, Start};
+use crate::motions::{AboveTable, Ask, Bounds, Kind, Method, Motion, Moving, Path, RestsOn, Sample, Start};
 use crate::{Body, Error, State};
 use nalgebra::Vector3;
 use numpy::ndarray::ArrayView2;
@@ -219,19 +219,17 @@ fn motion_columns<S: StateArrays>(
     if let Some(path) = &m.path
         && !path.aloft.is_empty()
     {
-        rows.add("height", 0, &|i, to| to.push(path.aloft[i][0]))?;
-        rows.add("lift", 0, &|i, to| to.push(path.aloft[i][1]))?;
+        rows.add("height", 0, &|i, to| to.push(path.aloft[i].height))?;
+        rows.add("lift", 0, &|i, to| to.push(path.aloft[i].lift))?;
     }
     if let Some(path) = &m.path
         && S::RIMS
         && !path.aloft.is_empty()
     {
-        rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i][..2]))?;
+        rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i].slip))?;
         if m.forces.is_some() {
-            rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i][2]))?;
-            rows.add("friction_other", 0, &|i, to| {
-                to.push(path.other_rim[i][3].hypot(path.other_rim[i][4]))
-            })?;
+            rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i].force.normal))?;
+            rows.add("friction_other", 0, &|i, to| to.push(path.other_rim[i].force.friction()))?;
         }
     }
     if let Some(path) = &m.path
@@ -258,7 +256,7 @@ fn motion_columns<S: StateArrays>(
         if let Some(forces) = &m.forces {
             let most = |i: usize| friction.strength() * friction.patch() * S::normal(&forces[i]);
             let couple = |i: usize| match path.kinds[i] {
-                Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i))[1]),
+                Kind::Slipping => -(drilling(i).signum() * most(i) * patch::of(creep(i)).couple),
                 _ => f64::NAN,
             };
             rows.add("couple", 0, &|i, to| to.push(couple(i)))?;
@@ -323,7 +321,10 @@ pub fn roll<'py>(
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_rows(body.into(), &asked.circles)?;
             let state = State::from(<[f64; 4]>::from(state));
-            let start = Start::from(state).with_slip(start.0).with_time(start.1).with_aloft(asked.aloft);
+            let start = Start::from(state)
+                .with_slip(start.0)
+                .with_time(start.1)
+                .with_aloft(asked.aloft.map(AboveTable::from));
             let start = start.with_heading(asked.heading).with_place(asked.place);
             let rests = asked.slip.is_none() && ask.table.rubs();
             let start = if rests { start.at_rest_on_face(&body) } else { start };
@@ -339,7 +340,10 @@ pub fn roll<'py>(
         (AnyBody::Stone(stone), AnyState::Stone([a, b, c, d, e, f])) => {
             let stone = stone_of(&stone)?;
             let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
-            let start = Start::from(state).with_slip(start.0).with_time(start.1).with_aloft(asked.aloft);
+            let start = Start::from(state)
+                .with_slip(start.0)
+                .with_time(start.1)
+                .with_aloft(asked.aloft.map(AboveTable::from));
             let start = start.with_heading(asked.heading).with_place(asked.place);
             if asked.is_custom() {
                 return under_own_laws(py, (&stone, &asked), (&ask, loses), |laws, go_on| {
@@ -512,7 +516,9 @@ fn dictionary<'py, S: StateArrays>(
         let mut phases = room(path.phases.len() * row)?;
         for phase in &path.phases {
             phases.extend([phase.time, f64::from(phase.kind as u8), f64::from(phase.rim)]);
-            phases.extend(phase.slip.iter().chain(&phase.aloft).chain(phase.state.numbers().as_ref()));
+            phases.extend(
+                phase.slip.iter().chain(&<[f64; 2]>::from(phase.aloft)).chain(phase.state.numbers().as_ref()),
+            );
         }
         out.set_item(
             intern!(py, "_phases"),
@@ -521,7 +527,7 @@ fn dictionary<'py, S: StateArrays>(
         let row = 9 + path.impacts.first().map_or(0, |at| 2 * (3 + at.states[0].numbers().as_ref().len()));
         let mut impacts = room(path.impacts.len() * row)?;
         for at in &path.impacts {
-            let codes = [at.rim, at.hit as u8, at.stays as u8].map(f64::from);
+            let codes = [at.rim, at.hit as u8, bool::from(at.after).into()].map(f64::from);
             impacts.push(at.time);
             impacts.extend(codes.iter().chain(&[at.lost]).chain(&at.impulse).chain(&[at.couple]));
             for (state, velocity) in at.states.iter().zip(&at.velocities) {
@@ -560,9 +566,10 @@ const FEW: usize = 64;
 /// the period. The last five are NaN for a motion without a period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
-    let swing = Swing::new(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?, true)?;
+    let swing = Swing::with_pose(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?)?;
     let [low, high] = swing.turning_points();
-    let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
-    let [drift, radius] = swing.drift().unwrap_or([f64::NAN; 2]);
+    let [phi, psi] =
+        swing.angles_per_period().map_or([f64::NAN; 2], |angles| [angles.precession, angles.spin]);
+    let [drift, radius] = swing.drift().map_or([f64::NAN; 2], |drift| [drift.step, drift.radius]);
     Ok([swing.period(), low, high, phi, psi, drift, radius, swing.period_error()])
 }

@@ -33,5 +33,6 @@ pub fn shares_on_slope(
     let mu = table_of(contact.0)?.with(contact.1).mu();
     let losses = losses.map_or(Losses::NONE, |coefficients| Losses { coefficients });
     let on = Posture::try_from(posture)?;
-    Ok(shares(&Body::of_rows(body.0, &body.1)?, theta, mu, &losses, on, slope_and_phi)?)
+    let found = shares(&Body::of_rows(body.0, &body.1)?, theta, mu, &losses, on, slope_and_phi)?;
+    Ok([found.slipping, found.rolling, found.tipping])
 }

@@ -78,6 +78,7 @@ pub fn portrait<'py>(
             py.detach(|| {
                 let [theta, ell, bore, fillet] = columns;
                 if scattered {
+                    let columns = sweep::TubePoints { theta, half_length: ell, bore, fillet };
                     return sweep::points(columns, out, threads, |share| watch.go_on(share));
                 }
                 let Some(tubes) = tubes([ell, bore, fillet], &mut watch)? else { return Ok(false) };
@@ -124,12 +125,14 @@ pub fn extrema<'py>(
     wanted: [bool; 4],
     threads: usize,
     progress: Option<Py<PyAny>>,
-) -> PyResult<[sweep::Extrema; 4]> {
+) -> PyResult<[sweep::Ends; 4]> {
     let given = GivenColumns::of(&given)?;
     let [theta, ell, bore, fillet] = given.all(AXES)?;
     let mut watch = Watch::new(progress);
     let found = py.detach(|| match tubes([ell, bore, fillet], &mut watch)? {
-        Some(bodies) => sweep::extrema(theta, &bodies, wanted, threads, |share| watch.go_on(share)),
+        Some(bodies) => {
+            sweep::extrema_compiled_once(theta, &bodies, wanted, threads, &mut |share| watch.go_on(share))
+        }
         None => Ok(None),
     })?;
     watch.done(py)?;

@@ -13,7 +13,7 @@ use crate::laws::state::State;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::ask::sample::Sample;
 use crate::motions::slope::{energy_beside, energy_of_fall};
-use crate::motions::{Ask, Bounds, Ending, Kind, Motion, Moving, Start, motion, stone};
+use crate::motions::{AboveTable, Ask, Bounds, Ending, Kind, Motion, Moving, Start, motion, stone};
 use crate::numbers::larger_or_nan;
 use nalgebra::{Matrix3, Point3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -236,13 +236,14 @@ fn body_at(m: &Motion<State>, body: &Body, ask: &Ask, i: usize) -> Option<Known>
     let now = m.sample(i);
     let (pose, touch, force) = (now.pose?, TouchNow::of(&now), now.force?);
     let (position, orientation, velocity) = (now.centre(body)?, now.orientation()?, now.velocity(body)?);
-    let other = now.other_rim.filter(|_| touch.both).map_or(0.0, |other| other[2]);
+    let other = now.other_rim.filter(|_| touch.both).map_or(0.0, |other| other.force.normal);
     let normal = force.normal + other;
     let axis = orientation * Vector3::z();
     let theta = axis.x.hypot(axis.y).atan2(axis.z);
     let circles = body.standing_on(0).circles();
     let extent = circles.iter().map(|circle| circle.height(theta)).fold(f64::NEG_INFINITY, f64::max);
-    let height = if touch.flies { now.aloft[0].min(position.z - extent).max(0.0) } else { now.aloft[0] };
+    let height =
+        if touch.flies { now.aloft.height.min(position.z - extent).max(0.0) } else { now.aloft.height };
     let beside = if ask.is_level() { 0.0 } else { energy_beside(body, ask, m, i)? };
     Some(Known {
         time: now.time,
@@ -265,7 +266,7 @@ fn stone_at(m: &Motion<StoneState>, of: &Ellipsoid, ask: &Ask, i: usize) -> Opti
     let position = Point3::from(pose.centre);
     let [a, b, c, d] = now.state.orientation();
     let least = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d));
-    let ([along, across], [height, lift]) = (now.slip.unwrap_or_default(), now.aloft);
+    let ([along, across], AboveTable { height, lift, .. }) = (now.slip.unwrap_or_default(), now.aloft);
     let slip = pose.orientation * (least.inverse() * Vector3::new(along, across, lift));
     let own = Vector3::from(now.state.w);
     let w = pose.orientation * own;

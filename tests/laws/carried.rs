@@ -5,7 +5,7 @@ use crate::common::wander;
 use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Motion, RestsOn, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, RestsOn, Start, roll_with};
 use spincyl::{Body, State};
 
 /// A cup, a cone, a bottle, the same upside down, unequal balls, and a hemisphere, whose joint is smooth.
@@ -77,7 +77,7 @@ fn centre_axis_and_velocity_are_those_of_the_body_whichever_circle_carries_it() 
                 let lowest = centre - axis * depth + out * radius + down * fillet;
                 let pose = now.pose.unwrap();
                 let [off, aside] =
-                    [lowest.z - now.aloft[0], (lowest.xy() - pose.contact_point.coords).norm()];
+                    [lowest.z - now.aloft.height, (lowest.xy() - pose.contact_point.coords).norm()];
                 // Near a pole the direction to the lowest point is known less well.
                 let close = 1e-13 * (1.0 + 0.1 / now.state.theta.sin());
                 assert!(off.abs() < close && aside < close, "{off}, {aside}, {body:?}, {now:?}");
@@ -109,7 +109,8 @@ fn a_cup_rests_on_its_face_on_its_other_face_or_on_two_circles() {
     let losses = Losses::NONE.with(Law::RollingResistance, 0.02).with(Law::Drilling, 0.02);
     let ask = Ask::on(Friction::coulomb(0.4)).with_restitution(0.0).with_losses(losses);
     let falls = |body: &Body, theta: f64| {
-        let start = Start::from(State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft([0.1, 0.0]);
+        let start =
+            Start::from(State { theta, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft(AboveTable::new(0.1, 0.0));
         let m = roll_with(body, start, &[0.0, 400.0], &ask, || true).unwrap().unwrap();
         (m.rests_on(body), m.ending())
     };

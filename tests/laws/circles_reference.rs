@@ -236,7 +236,7 @@ impl Case {
     /// A row of the library as told by the body.
     fn told(&self, m: &Motion, i: usize) -> Told {
         let (path, pose) = (m.path.as_ref().unwrap(), m.poses.as_ref().unwrap()[i]);
-        let [u, v, ..] = path.other_rim[i];
+        let [u, v] = path.other_rim[i].slip;
         let at = pose.contact_point;
         let lies = !u.is_nan();
         Told {

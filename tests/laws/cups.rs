@@ -7,7 +7,7 @@ use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{PI, TAU};
 
@@ -162,7 +162,7 @@ fn the_narrow_end_of_what_rolls_round_its_apex_rises_above_a_rate_and_its_fricti
         let holds = cup.height * wide / cup.inertia;
         let m = rolled(1.0 - near, 1.1 * holds);
         assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
-        assert!(m.path.as_ref().unwrap().other_rim[0][0] == 0.0);
+        assert!(m.path.as_ref().unwrap().other_rim[0].slip[0] == 0.0);
         let m = rolled(1.0 + near, 1.1 * holds);
         assert_eq!(kinds(&m), [Kind::Rolling], "{:?}", m.event);
         assert_eq!(m.path.as_ref().unwrap().rims[0], 1 - narrow as u8, "the wide end carries it");
@@ -238,7 +238,7 @@ fn a_body_that_pivots_on_one_end_loses_its_turn_to_the_friction_of_the_other_end
         let [a, b, c] = [0, 1, 2].map(|i| cup.turning(&m.states[i])[0]);
         let found = (4.0 * b - 3.0 * a - c) / (2.0 * step);
         assert!((found - slows).abs() < 1e-5 * (1.0 + slows.abs()), "{found} {slows}");
-        assert!((m.path.as_ref().unwrap().other_rim[0][2] - load).abs() < 1e-13);
+        assert!((m.path.as_ref().unwrap().other_rim[0].force.normal - load).abs() < 1e-13);
         pivots += 1;
     }
     assert!(pivots > 10, "{pivots}");
@@ -373,7 +373,7 @@ fn a_body_whose_centre_is_not_between_its_contacts_leaves_the_table_with_both_wh
         let path = m.path.as_ref().unwrap();
         if free.iter().all(|rise| *rise > 0.0) {
             assert_eq!(kinds(&m), [Kind::Flying], "{:?} {start:?}", cup.body);
-            let [height, _] = path.aloft[0];
+            let AboveTable { height, .. } = path.aloft[0];
             // Each circle rises as its free acceleration says.
             let known = 0.5 * 1e-4 * free[usize::from(path.rims[0])];
             assert!((height - known).abs() < 0.05 * known, "{height} {known}");

@@ -63,9 +63,8 @@ fn apart(a: &Motion, b: &Motion) -> [f64; 2] {
 #[test]
 fn a_ball_that_a_force_shakes_rolls_with_five_sevenths_of_its_acceleration() {
     let (ball, f, om) = (Body::ball(0.0, 0.4, 0.4).unwrap(), 0.2, 1.3);
-    let shake = |_: &Body, now: &Moment| Push {
-        force: Vector2::new(f * (om * now.time).sin(), 0.5 * f * (om * now.time).cos()),
-        couple: NO_COUPLE,
+    let shake = |_: &Body, now: &Moment| {
+        Push::new(Vector2::new(f * (om * now.time).sin(), 0.5 * f * (om * now.time).cos()), NO_COUPLE)
     };
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
     for since in [0.0, 2.5] {
@@ -89,10 +88,7 @@ fn a_ball_that_a_force_shakes_rolls_with_five_sevenths_of_its_acceleration() {
 fn a_motor_turns_a_hoop_faster_until_friction_no_longer_holds_its_rim() {
     // (1 + 1) w' = m = k t, and the rim holds m/2 <= mu.
     let (hoop, k, mu) = (Body::tube(0.0, 1.0).unwrap(), 0.05, 0.3);
-    let motor = |_: &Body, now: &Moment| Push {
-        force: Vector2::zeros(),
-        couple: Vector3::new(0.0, 0.0, k * now.time),
-    };
+    let motor = |_: &Body, now: &Moment| Push::new(Vector2::zeros(), Vector3::new(0.0, 0.0, k * now.time));
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 1.0 });
     let times = [0.0, 5.0, 10.0, 20.0];
     let ask = Ask::on(Friction::coulomb(mu)).with_force(true);
@@ -120,7 +116,7 @@ fn a_constant_force_moves_a_body_as_a_slope_does() {
         // In units with g cos(slope) as gravity the slope is level, and pulls with its tangent.
         let pace = slope.cos().sqrt();
         let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
-        let pull = |_: &Body, _: &Moment| Push { force: Vector2::new(slope.tan(), 0.0), couple: NO_COUPLE };
+        let pull = |_: &Body, _: &Moment| Push::new(Vector2::new(slope.tan(), 0.0), NO_COUPLE);
         let ask = Ask::on(table).with_pose(true);
         let m = driven(&body, start, &times, &ask, &pull);
         let State { theta, w1, w2, w3 } = start.state;
@@ -170,10 +166,7 @@ fn a_drive_that_resists_as_the_air_does_moves_a_body_as_the_air_does() {
         let (body, start, table) = any(&mut r);
         let b = 0.1 * r();
         let times: Vec<f64> = (0..=20).map(|i| 0.2 * f64::from(i)).collect();
-        let drag = |_: &Body, now: &Moment| Push {
-            force: Vector2::zeros(),
-            couple: -b * now.state.angular_velocity(),
-        };
+        let drag = |_: &Body, now: &Moment| Push::new(Vector2::zeros(), -b * now.state.angular_velocity());
         let ask = Ask::on(table);
         let beside = ask.with_losses(Losses::of(Law::AirLinear, b));
         let (Ok(m), Ok(Some(of))) =
@@ -195,7 +188,7 @@ fn stirs(_: &Body, now: &Moment) -> Push {
         + 0.02 * Vector2::new(now.slip[0], now.slip[1] * now.phi.cos())
         - 0.01 * now.contact_point.coords;
     let couple = Vector3::new(0.1 * sin, 0.05, 0.06 * cos) + 0.01 * Vector3::new(now.psi.sin(), 0.0, 0.0);
-    Push { force, couple: now.axes().transpose() * couple }
+    Push::new(force, now.axes().transpose() * couple)
 }
 
 #[test]
@@ -234,7 +227,7 @@ fn a_table_that_is_told_from_another_direction_has_the_same_motion() {
             then.velocity = back * now.velocity;
             then.contact_point = back * now.contact_point;
             let push = stirs(body, &then);
-            Push { force: back.inverse() * push.force, couple: push.couple }
+            Push::new(back.inverse() * push.force, push.couple)
         };
         let there = start.with_heading(start.heading + by);
         let both = (driven(&body, start, &times, &ask, &stirs), driven(&body, there, &times, &ask, &turned));
@@ -265,7 +258,7 @@ fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end
         let pushes = |_: &Body, now: &Moment| {
             let (sin, cos) = (0.7 * now.time).sin_cos();
             let force = Vector2::new(0.2 * cos, 0.1) - 0.1 * now.velocity - 0.05 * now.contact_point.coords;
-            Push { force, couple: now.axes().transpose() * Vector3::new(0.1 * sin, 0.05, 0.06 * cos) }
+            Push::new(force, now.axes().transpose() * Vector3::new(0.1 * sin, 0.05, 0.06 * cos))
         };
         let times: Vec<f64> = (0..=16).map(|i| 0.25 * f64::from(i)).collect();
         let ask = Ask::on(Friction::coulomb(0.3));
@@ -288,7 +281,7 @@ fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end
 fn what_a_drive_does_not_know_is_an_error_that_names_it() {
     let body = Body::solid(0.5).unwrap();
     let start = Start::from(State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
-    let still = |_: &Body, _: &Moment| Push { force: Vector2::zeros(), couple: NO_COUPLE };
+    let still = |_: &Body, _: &Moment| Push::new(Vector2::zeros(), NO_COUPLE);
     let coulomb = Ask::on(Friction::coulomb(0.3));
     let named = |ask: &Ask, start: Start| match driven(&body, start, &[0.0, 1.0], ask, &still) {
         Err(Error::OutOfRange { name, .. }) => name,
@@ -301,9 +294,8 @@ fn what_a_drive_does_not_know_is_an_error_that_names_it() {
     assert_eq!(named(&Ask::on(Table::of(Contact::Smooth, 0.0)), start), "contact");
     let lies = Start::from(State { theta: 0.0, w1: 0.0, w2: 0.0, w3: 1.0 });
     assert_eq!(named(&coulomb, lies), "theta");
-    let fails = |_: &Body, now: &Moment| Push {
-        force: Vector2::new(if now.time > 0.5 { f64::NAN } else { 0.0 }, 0.0),
-        couple: NO_COUPLE,
+    let fails = |_: &Body, now: &Moment| {
+        Push::new(Vector2::new(if now.time > 0.5 { f64::NAN } else { 0.0 }, 0.0), NO_COUPLE)
     };
     let found = driven(&body, start, &[0.0, 1.0], &coulomb, &fails);
     assert!(matches!(found, Err(Error::OutOfRange { name: "drive", .. })), "{found:?}");
@@ -313,16 +305,18 @@ fn what_a_drive_does_not_know_is_an_error_that_names_it() {
 fn a_drive_in_newtons_and_seconds_is_the_same_in_natural_units() {
     let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3)).unwrap();
     let scale = coin.scale();
-    let in_si = InSi::new(scale, |now: &MomentInSi| Push {
-        force: Vector2::new(0.01 * (20.0 * now.time).sin(), 0.0) - 0.01 * now.velocity,
-        couple: now.axes.transpose() * Vector3::new(0.0, 2e-5, 0.0) - 1e-8 * now.w,
+    let in_si = InSi::new(scale, |now: &MomentInSi| {
+        Push::new(
+            Vector2::new(0.01 * (20.0 * now.time).sin(), 0.0) - 0.01 * now.velocity,
+            now.axes.transpose() * Vector3::new(0.0, 2e-5, 0.0) - 1e-8 * now.w,
+        )
     });
     let natural = |_: &Body, now: &Moment| {
         let velocity = now.velocity.map(|u| scale.metres_per_second(u));
         let force = Vector2::new(0.01 * (20.0 * scale.seconds(now.time)).sin(), 0.0) - 0.01 * velocity;
         let w = now.state.angular_velocity().map(|w| scale.radians_per_second(w));
         let couple = now.axes().transpose() * Vector3::new(0.0, 2e-5, 0.0) - 1e-8 * w;
-        Push { force: force.map(|f| scale.force(f)), couple: couple.map(|m| scale.couple(m)) }
+        Push::new(force.map(|f| scale.force(f)), couple.map(|m| scale.couple(m)))
     };
     let (start, ask) = (steady::state(coin.body(), 1.0).unwrap(), Ask::on(Friction::coulomb(0.4)));
     let seconds = [0.0, 0.02, 0.05];

@@ -82,10 +82,10 @@ fn a_body_thrown_up_lands_later_and_has_come_from_the_table_earlier() {
     // the times to the landings after and before the start add up to two falls from the turning point
     for (ell, theta, speed) in [(0.3, 0.3, 0.2), (1.0, 0.2, 0.1)] {
         let body = Body::solid(ell).unwrap();
-        let swing = Swing::new(&body, &state(theta, 0.0, -speed, 0.0), Contact::Rolling, false).unwrap();
+        let swing = Swing::new(&body, &state(theta, 0.0, -speed, 0.0), Contact::Rolling).unwrap();
         let ([low, top], after, before) = (swing.turning_points(), swing.landing(1.0), swing.landing(-1.0));
         let ((after, down), (before, up)) = (after.unwrap(), before.unwrap());
-        let fall = Swing::new(&body, &state(top, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap();
+        let fall = Swing::new(&body, &state(top, 0.0, 0.0, 0.0), Contact::Rolling).unwrap();
         let (fallen, landed) = fall.landing(1.0).unwrap();
         assert!(low == 0.0 && top > theta && after > fallen && before < fallen);
         assert!((after + before - 2.0 * fallen).abs() < 1e-13, "{after} {before} {fallen}");
@@ -94,12 +94,10 @@ fn a_body_thrown_up_lands_later_and_has_come_from_the_table_earlier() {
     }
     // a coin that leans to the other side lands on its other face
     let coin = Body::solid(0.0).unwrap();
-    let (time, landed) = Swing::new(&coin, &state(PI - 0.3, 0.0, 0.0, 0.0), Contact::Rolling, false)
-        .unwrap()
-        .landing(1.0)
-        .unwrap();
+    let (time, landed) =
+        Swing::new(&coin, &state(PI - 0.3, 0.0, 0.0, 0.0), Contact::Rolling).unwrap().landing(1.0).unwrap();
     let (mirrored, face) =
-        Swing::new(&coin, &state(0.3, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap().landing(1.0).unwrap();
+        Swing::new(&coin, &state(0.3, 0.0, 0.0, 0.0), Contact::Rolling).unwrap().landing(1.0).unwrap();
     assert!((time - mirrored).abs() < 1e-13 && landed.theta == PI && (landed.w2 + face.w2).abs() < 1e-13);
 }
 
@@ -144,7 +142,7 @@ fn a_margin_that_dips_right_after_the_start_is_seen() {
     let mut checked = 0;
     for _ in 0..2000 {
         let (body, y, _) = wild(&mut r);
-        let Ok(swing) = Swing::new(&body, &y, Contact::Rolling, false) else { continue };
+        let Ok(swing) = Swing::new(&body, &y, Contact::Rolling) else { continue };
         let demand = |t: f64| contact::force(Contact::Rolling, &body, &swing.state(t)).friction_coefficient();
         let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
         let peak = times.windows(3).find(|w| demand(w[1]) > demand(w[0]) && demand(w[1]) > demand(w[2]));
@@ -185,7 +183,7 @@ fn d9_grazing_the_side() {
     // the upper turning point is pi/2 + graze, and the start lies a quarter period before it
     for (graze, hits) in [(1e-9, true), (-1e-9, false)] {
         let top = state(FRAC_PI_2 + graze, 1.6, 0.0, 4.0);
-        let swing = Swing::new(&body, &top, Contact::Rolling, false).unwrap();
+        let swing = Swing::new(&body, &top, Contact::Rolling).unwrap();
         let below = swing.state(-0.25 * swing.period());
         assert!(below.theta < FRAC_PI_2 && swing.turning_points()[1] < FRAC_PI_2 + 2e-9, "{top:?}");
         for method in [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-13)] {
@@ -246,7 +244,7 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
         assert!(at(&rest.kicked(0.05), f64::INFINITY).is_none());
     }
     // an ordinary start that leaves the model: rolling needs a coefficient of 4, and N almost vanishes
-    let swing = Swing::new(&body, &rest.kicked(0.3), Contact::Rolling, false).unwrap();
+    let swing = Swing::new(&body, &rest.kicked(0.3), Contact::Rolling).unwrap();
     let most = (0..400)
         .map(|i| {
             contact::force(Contact::Rolling, &body, &swing.state(0.02 * f64::from(i))).friction_coefficient()

@@ -8,7 +8,7 @@ use crate::common::{
 };
 use proptest::prelude::*;
 use spincyl::contact::{Table, TableKind};
-use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, Summary, roll};
+use spincyl::ensemble::{Answer, BodyColumns, Job, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, contact, rk4, rolling, stability, steady};
@@ -96,7 +96,7 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
             for (i, (body, start)) in all.iter().enumerate() {
                 let in_lanes = many.method[i] == Answer::Lanes as u8;
                 lanes += usize::from(in_lanes);
-                let Ok(swing) = Swing::new(body, start, contact, true) else { continue };
+                let Ok(swing) = Swing::with_pose(body, start, contact) else { continue };
                 for (j, t) in times.iter().enumerate() {
                     let y = many.at(i, j);
                     if y.theta.is_nan() && !sharp(body) {
@@ -113,7 +113,7 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
                 if in_lanes && swing.error(40.0) < 1e-9 {
                     let near = |a: f64, b: f64| (a - b).abs() <= 1e3 * tol * (1.0 + b.abs());
                     assert!(near(many.sum(Summary::Period, i), swing.period()), "{body:?} {start:?}: period");
-                    let [phi, _] = swing.angles_per_period().unwrap();
+                    let phi = swing.angles_per_period().unwrap().precession;
                     let turn = many.sum(Summary::PrecessionPerPeriod, i);
                     assert!(near(turn, phi), "{body:?} {start:?}: precession");
                 }
@@ -156,7 +156,7 @@ fn the_extremes_are_those_of_a_dense_look() {
         let times = [span];
         let many = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond(true)), 2);
         for (i, (body, y)) in all.iter().enumerate() {
-            let Ok(swing) = Swing::new(body, y, Contact::Rolling, false) else { continue };
+            let Ok(swing) = Swing::new(body, y, Contact::Rolling) else { continue };
             let mut found = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0];
             for k in 0..=2000 {
                 let y = swing.state(span * f64::from(k) / 2000.0);
@@ -322,10 +322,8 @@ fn what_makes_no_sense_is_refused_or_marked() {
         }
     }
     let refused = |job: &Job<'_>| {
-        let starts = MotionStarts::new(
-            [&[1.0], &[0.6], &[0.5], &[0.0], &[f64::NAN]],
-            [&[1.3], &[1.0], &[0.0], &[1.0]],
-        );
+        let states: [&[f64]; 4] = [&[1.3], &[1.0], &[0.0], &[1.0]];
+        let starts = MotionStarts::new(BodyColumns::new(&[1.0], &[0.6], &[0.5]), states);
         let (mut error, mut method, mut status) = ([0.0], [0], [0]);
         let out = MotionOutput::new(&mut error, &mut method, &mut status);
         roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
@@ -368,7 +366,7 @@ fn a_body_released_at_rest_falls() {
     let body = Body::solid(2.8057204670343325).unwrap();
     let y = State { theta: 0.2718205029824101, w1: 0.10806715919341818, w2: 0.0, w3: 0.3032062403632308 };
     let lanes = Many::of(&[(body, y)]).run(&Job::new(&[7.0]).with_ask(Ask::default().with_beyond(true)), 1);
-    let swing = Swing::new(&body, &y, Contact::Rolling, false).unwrap();
+    let swing = Swing::new(&body, &y, Contact::Rolling).unwrap();
     let off = distance(&lanes.last(0), &numbers(&swing.state(7.0)));
     assert!(off <= lanes.error[0] + swing.error(7.0) && off < 1e-12, "{off:e}, claimed {:e}", lanes.error[0]);
 }
@@ -437,7 +435,7 @@ proptest! {
             }
             // the error of the integrator is an estimate; a face that lands is compared at its landing
             let (there, claimed) = if sharp(&body) && many.status[0] == Ending::Face as u8 {
-                let swing = Swing::new(&body, &y, contact, false).unwrap();
+                let swing = Swing::new(&body, &y, contact).unwrap();
                 let (time, landed) = swing.landing(1.0).unwrap();
                 (landed, swing.error(time))
             } else {

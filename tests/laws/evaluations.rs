@@ -2,7 +2,7 @@
 
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State, steady};
 
 const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
@@ -87,7 +87,9 @@ fn a_slow_slip_ends_at_the_cost_of_its_series() {
 /// A dropped coin, up to a time.
 fn dropped_coin(ell: f64, numbers: [f64; 8], (mu, losses): (f64, Losses), until: f64, tol: f64) -> Motion {
     let [theta, w1, w2, w3, u_h, u_2, height, lift] = numbers;
-    let start = Start::from(State { theta, w1, w2, w3 }).with_slip([u_h, u_2]).with_aloft([height, lift]);
+    let start = Start::from(State { theta, w1, w2, w3 })
+        .with_slip([u_h, u_2])
+        .with_aloft(AboveTable::new(height, lift));
     let ask = Ask::on(Table::Rubs(Friction::coulomb(mu))).with_losses(losses).with_restitution(0.0);
     followed(&Body::solid(ell).unwrap(), start, until, ask, tol)
 }
@@ -198,7 +200,13 @@ fn a_uniform_ball_is_never_integrated() {
             assert_eq!(followed(&ball, start, 60.0, ask, tol).evaluations, 0);
         }
         for e in [0.0, 0.5, 0.9] {
-            let m = followed(&ball, slips.with_aloft([1.0, 0.3]), 60.0, ask.with_restitution(e), tol);
+            let m = followed(
+                &ball,
+                slips.with_aloft(AboveTable::new(1.0, 0.3)),
+                60.0,
+                ask.with_restitution(e),
+                tol,
+            );
             assert_eq!((m.evaluations, m.ending()), (0, Ending::Done));
         }
     }

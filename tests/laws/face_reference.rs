@@ -88,7 +88,7 @@ fn case(of: &Value) -> Case {
         name: of["name"].as_str().unwrap().to_string(),
         body: body.unwrap(),
         ask: ask.with_restitution(number(&of["restitution"])),
-        start: start.with_aloft((aloft != [0.0; 2]).then_some(aloft)),
+        start: start.with_aloft((aloft != [0.0; 2]).then_some(aloft.into())),
         rows: of["rows"].as_array().unwrap().iter().map(row).collect(),
     }
 }
@@ -138,7 +138,8 @@ fn states_slips_heat_and_poses_on_a_face_are_those_of_the_references() {
             let State { theta, w1, w2, w3 } = now.state;
             let [u, v] = now.slip.unwrap();
             let known = [row.state.theta, row.state.w1, row.state.w2, row.state.w3, row.slip[0], row.slip[1]];
-            let state = most(&[theta, w1, w2, w3, u, v], &known).max(most(&[now.aloft[0]], &[row.height]));
+            let state =
+                most(&[theta, w1, w2, w3, u, v], &known).max(most(&[now.aloft.height], &[row.height]));
             let struck: f64 =
                 path.impacts.iter().filter(|hit| hit.time <= row.time).map(|hit| hit.lost).sum();
             let heat = (path.dissipated[i + 1] + struck - row.heat).abs();

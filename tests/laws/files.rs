@@ -9,7 +9,8 @@ use spincyl::body::parts::BodyPart;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::path::{AfterImpact, Lands, Strike};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Scale, State, steady};
 use std::fmt::Debug;
@@ -97,7 +98,9 @@ fn options_and_starts_come_back_and_may_be_short() {
     }
     let sticky = Friction::Coulomb { mu: 0.2, fixed: f64::INFINITY, patch: 0.01 };
     comes_back(Ask::on(sticky).with_method(Method::Tolerance(1e-9)).with_restitution(0.5));
-    comes_back(Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft([0.5, 0.0]));
+    comes_back(
+        Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft(AboveTable::new(0.5, 0.0)),
+    );
     let short: Ask =
         from_str(r#"{"losses": {"AirFilm": 1e-7, "DryContour": 0.01}, "table": "Smooth"}"#).unwrap();
     assert_eq!(
@@ -181,7 +184,8 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
     let tube = Tube::solid(24e-3, 2e-3, 8e-3);
     let coin = Measured::tube(&tube).unwrap();
     objects += every_name_counts(&tube) + every_name_counts(&coin);
-    objects += every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft([0.5, 0.0]));
+    objects +=
+        every_name_counts(&Start::from(state(1.0, 0.1, 0.2, 0.3)).with_aloft(AboveTable::new(0.5, 0.0)));
     for form in [
         r#""Solid": {"radii": [1, 1], "bores": [0, 0], "ends": [0, 1], "fillet": 0}"#,
         r#""Ball": {"radius": 1, "hollow": 0, "centre": 0, "ends": [-1, 1]}"#,
@@ -192,7 +196,7 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
         objects += every_name_counts(&part);
     }
     let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true).with_restitution(0.5);
-    let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft([0.3, 0.0]);
+    let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft(AboveTable::new(0.3, 0.0));
     let motion = roll_with(coin.body(), falls, &[1.0, 40.0], &ask, || true).unwrap().unwrap();
     assert!(motion.path.as_ref().is_some_and(|path| !path.impacts.is_empty()));
     objects += every_name_counts(&motion.samples().next().unwrap()) + every_name_counts(&motion);
@@ -227,8 +231,8 @@ fn motions_come_back_whole() {
     let tube = Body::tube(1.5, 0.6).unwrap();
     let mut turned = 0;
     for _ in 0..drawn(9) {
-        let start =
-            Start::from(state(0.4 + r(), 2.0 * r() - 1.0, r(), 3.0 * r() - 1.5)).with_aloft([0.3, 0.0]);
+        let start = Start::from(state(0.4 + r(), 2.0 * r() - 1.0, r(), 3.0 * r() - 1.5))
+            .with_aloft(AboveTable::new(0.3, 0.0));
         let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.4).with_pose(true);
         let motion = roll_with(&tube, start, &times, &ask, || true).unwrap().unwrap();
         same(&motion);
@@ -247,6 +251,34 @@ fn motions_come_back_whole() {
     let motion = motion.unwrap().unwrap();
     same(&motion);
     same(&motion.readings().collect::<Vec<_>>());
+}
+
+#[test]
+fn numbers_that_have_names_are_arrays_and_bools_in_files() {
+    let y = json!(state(1.2, 0.1, 0.2, 0.3));
+    let strike = json!({
+        "time": 1.5, "other": true, "rim": 1, "hit": "Slips", "states": [y, y],
+        "velocities": [[0.5, 0.25, -1.0], [0.5, 0.0, 0.5]], "impulse": [0.125, 0.0, 1.0], "couple": 0.0,
+        "lost": 0.5, "stays": false,
+    });
+    let read = Strike::<State>::deserialize(&strike).unwrap();
+    assert_eq!((read.lands, read.after), (Lands::Other, AfterImpact::Leaves));
+    assert_eq!(serde_json::to_value(read).unwrap(), strike);
+    let start = json!({
+        "state": y, "slip": [0.5, 0.25], "time": 0.0, "aloft": [0.5, -1.0], "heading": 0.0, "place": [0.0, 0.0],
+    });
+    let read = Start::<State>::deserialize(&start).unwrap();
+    assert_eq!(read.aloft, Some(AboveTable::new(0.5, -1.0)));
+    assert_eq!(serde_json::to_value(read).unwrap(), start);
+    // The slip of the other rim, and then the force on it: its normal component, and those across and along the lean.
+    let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0).with_force(true);
+    let lies = Start::from(state(std::f64::consts::FRAC_PI_2, 0.2, 0.0, 0.0));
+    let motion = roll_with(&Body::solid(2.0).unwrap(), lies, &[0.01], &ask, || true).unwrap().unwrap();
+    let other = motion.samples().next().unwrap().other_rim.unwrap();
+    let file = serde_json::to_value(&motion).unwrap();
+    let numbers = [other.slip[0], other.slip[1], other.force.normal, other.force.along, other.force.across];
+    assert_eq!(file["path"]["other_rim"], json!([numbers]));
+    assert!(numbers[2] > 0.1 && file["path"]["aloft"] == json!([[0.0, 0.0]]), "{numbers:?}");
 }
 
 #[test]

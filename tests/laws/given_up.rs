@@ -1,11 +1,12 @@
 //! Motions that are too much work, or that their caller interrupts: one ending for bodies and stones, the motion so far, and
 //! the limit that it has reached.
 
+use crate::common::many::body_columns;
 use crate::common::{path_of, state};
 use spincyl::contact::{Friction, Table, TableKind};
 use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid};
 use spincyl::{Body, State, steady};
 
@@ -182,7 +183,8 @@ fn each_limit_has_its_reason_in_words() {
     reasons.dedup();
     assert_eq!(reasons.len(), Limit::ALL.len());
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
-    let bounces = Start::from(State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft([1e-6, 0.0]);
+    let bounces =
+        Start::from(State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft(AboveTable::new(1e-6, 0.0));
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(1.0);
     let m = roll_with(&ball, bounces, &[1e3], &ask, || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Impacts)));
@@ -204,14 +206,15 @@ fn a_sweep_gives_up_where_a_single_motion_does() {
     let numbers = [body.ell(), body.i1(), body.i3(), body.fillet(), body.theta_end()].map(|x| [x]);
     let (theta, w1, w2) = ([theta], [w1], [w2]);
     for table in [Table::Smooth, Table::default()] {
-        let mut starts = MotionStarts::new(numbers.each_ref().map(|x| &x[..]), [&theta, &w1, &w2, &w3]);
-        starts.losses = Some(LossColumns::NONE.with(Law::AirLinear, &lost));
+        let states: [&[f64]; 4] = [&theta, &w1, &w2, &w3];
+        let starts = MotionStarts::new(body_columns(numbers.each_ref().map(|x| &x[..])), states)
+            .with_losses(LossColumns::NONE.with(Law::AirLinear, &lost));
         let (mut error, mut end) = (vec![0.0; w3.len()], vec![0.0; w3.len()]);
         let (mut method, mut status) = (vec![0; w3.len()], vec![0; w3.len()]);
         let kind = if table == Table::Smooth { TableKind::Smooth } else { TableKind::Rolling };
         let job = Job::new(&[60.0]).with_ask(Ask::on(kind).with_max_evaluations(most)).with_tol(1e-13);
-        let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
-        out.summary[Summary::End as usize] = Some(&mut end);
+        let out =
+            MotionOutput::new(&mut error, &mut method, &mut status).with_summary(Summary::End, &mut end);
         assert!(roll(&starts, &job, out, 1, |_| true).unwrap());
         let ask = ask.with_table(table).with_method(Method::Tolerance(1e-13)).with_max_evaluations(most);
         for (i, w3) in w3.iter().enumerate() {

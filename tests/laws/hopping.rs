@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
+use spincyl::motion::path::{Hit, Kind, Lands};
+use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -48,8 +48,8 @@ fn any_start(body: &Body, r: &mut impl FnMut() -> f64) -> Start {
     let state = State { theta, w1, w2, w3 };
     let start = Start::from(state).with_slip([2.0 * r() - 1.0, 2.0 * r() - 1.0]);
     match (4.0 * r()) as u8 {
-        0 => start.with_aloft([1.5 * r(), 2.0 * r() - 1.0]),
-        1 => start.with_aloft([0.0, 2.0 * r() - 1.0]),
+        0 => start.with_aloft(AboveTable::new(1.5 * r(), 2.0 * r() - 1.0)),
+        1 => start.with_aloft(AboveTable::new(0.0, 2.0 * r() - 1.0)),
         _ => start,
     }
 }
@@ -71,7 +71,7 @@ fn whatever_hops_keeps_its_energy_within_its_estimated_error_and_nothing_sinks_i
         let m = moved(&body, &start, &Ask::on(coulomb(mu)).with_restitution(e).with_losses(air), &times);
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             energy(&body, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]
@@ -84,7 +84,7 @@ fn whatever_hops_keeps_its_energy_within_its_estimated_error_and_nothing_sinks_i
         for i in 0..m.times.len() {
             let off = (whole(i) - whole(0)).abs();
             assert!(off < m.error.max(1e-12) * (1.0 + whole(0).abs()), "{off:e} {case}");
-            let [height, _] = path.aloft[i];
+            let AboveTable { height, .. } = path.aloft[i];
             let other = if two_rims(&body) { 2.0 * body.ell() * m.states[i].theta.cos() } else { 0.0 };
             let lowest = height + other.min(0.0);
             assert!(lowest >= -m.error.max(1e-13), "{lowest:e} at {} {case}", m.times[i]);
@@ -110,7 +110,7 @@ fn a_body_on_both_rims_that_turns_lands_with_the_velocity_of_its_start() {
             let ask = Ask::on(coulomb(0.3)).with_restitution(e);
             let m = moved(&body, &dropped(state, slip, 0.0, lift), &ask, &[0.0, 0.01]);
             let hit = impacts(&m)[0];
-            let lands = if hit.other { there } else { lift };
+            let lands = if hit.lands == Lands::Other { there } else { lift };
             assert_eq!(hit.time, 0.0);
             assert!((hit.velocities[0][2] - lands).abs() < 1e-15, "{state:?} {lift} {hit:?}");
             assert_eq!([hit.states[0].w1, hit.states[0].w2.abs()], [state.w1, state.w2.abs()]);
@@ -222,7 +222,8 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
             }
             let Some(hit) = path.impacts.iter().find(|hit| hit.time == pair[1].time) else { continue };
             // The model follows one rim.
-            let other = path.impacts.iter().any(|before| before.other && before.time <= hit.time);
+            let other =
+                path.impacts.iter().any(|before| before.lands == Lands::Other && before.time <= hit.time);
             if other || hit.states[0].theta > FRAC_PI_2 - 0.01 {
                 continue;
             }
@@ -240,7 +241,8 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
     let (mut r, mut met, mut upper) = (wander(646), 0, 0);
     for _ in 0..drawn(1500) {
         let body = any_profile(&mut r);
-        let mut start = any_start(&body, &mut r).with_aloft([2.0 * r() * r(), 2.0 * r() - 1.0]);
+        let mut start =
+            any_start(&body, &mut r).with_aloft(AboveTable::new(2.0 * r() * r(), 2.0 * r() - 1.0));
         let fast = 1.0 + 9.0 * r() * r();
         let State { theta, w1, w2, w3 } = start.state;
         start.state = State { theta, w1: fast * w1, w2: fast * w2, w3: fast * w3 };
@@ -255,10 +257,10 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
         let off = (found.time - known.time).abs() * steep.min(1.0);
         // Of two rims that land together rounding says which one is first.
         let together = two_rims(&body) && (known.states[0].theta - FRAC_PI_2).abs() < 1e-8;
-        let same = together || found.other == known.other;
+        let same = together || found.lands == known.lands;
         assert!(off < 1e-8 && same, "{body:?} {start:?}: {off:e}");
         met += 1;
-        upper += usize::from(found.other);
+        upper += usize::from(found.lands == Lands::Other);
     }
     assert!(met > drawn(900) && upper > drawn(60), "{met} {upper}");
 }
@@ -267,7 +269,7 @@ fn against_an_air_that_hardly_acts_a_body_lands_when_and_as_it_does_without_air(
 fn a_long_flight_against_the_air_can_be_interrupted_and_has_the_limit_of_a_motion() {
     let (body, air) = (Body::solid(0.5).unwrap(), Losses::of(Law::AirLinear, 1e-3));
     let state = State { theta: 1.0, w1: 40.0, w2: -30.0, w3: 60.0 };
-    let start = Start::from(state).with_aloft([500.0, 0.0]);
+    let start = Start::from(state).with_aloft(AboveTable::new(500.0, 0.0));
     let ask = Ask::on(coulomb(0.3)).with_restitution(0.5).with_losses(air);
     let mut asked = 0;
     let go_on = || {
@@ -296,7 +298,7 @@ fn a_can_that_is_dropped_flat_rises_level_over_its_spot_to_the_square_of_its_res
             let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose(true);
             let m = moved(&can, &dropped(state, [0.0; 2], height, 0.0), &ask, &times);
             let path = m.path.as_ref().unwrap();
-            assert!((path.aloft[1][0] - e * e * height).abs() < 1e-14, "{ell} {e}: {:?}", path.aloft);
+            assert!((path.aloft[1].height - e * e * height).abs() < 1e-14, "{ell} {e}: {:?}", path.aloft);
             assert!(m.states.iter().all(|y| y.theta == FRAC_PI_2 && y.w2 == 0.0), "{:?}", m.states);
             let point = m.poses.as_ref().unwrap()[1].contact_point;
             assert!(point.x.abs() < 1e-15 && point.y == 0.0, "{point}");
@@ -384,7 +386,7 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
     for _ in 0..drawn(600) {
         let (body, start) = both_come_down(&mut r);
         let (mu, e) = (1.2 * r(), r());
-        let (y, [u, v], [_, lift]) = (start.state, start.slip, start.aloft.unwrap());
+        let (y, [u, v], AboveTable { lift, .. }) = (start.state, start.slip, start.aloft.unwrap());
         let ask = Ask::on(Table::from(Friction::coulomb(mu))).with_restitution(e);
         let first = |start: &Start| {
             let m = moved(&body, start, &ask, &[0.0, 1e-9]);
@@ -394,7 +396,7 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
         let after = |hit: &spincyl::motion::path::Strike, other: bool| {
             // As seen from the rim of the start, or from the other one.
             let (y, [u, v, lift]) = (hit.states[1], hit.velocities[1]);
-            if hit.other == other {
+            if (hit.lands == Lands::Other) == other {
                 return [y.w1, y.w2, y.w3, u, v, lift];
             }
             let apart = 2.0 * body.ell();
@@ -530,7 +532,7 @@ fn bounces_that_are_summed_above_a_film_of_air_claim_what_the_film_does_at_a_con
         State::from([0.6696691498500239, -0.23756640506288826, 1.232347931628101, -0.3763522090355309]);
     let start = Start::from(state)
         .with_slip([-0.257834306992858, 0.8479262272929056])
-        .with_aloft([0.4789478567397365, -1.151243805702898]);
+        .with_aloft(AboveTable::new(0.4789478567397365, -1.151243805702898));
     let losses = Losses::of(Law::AirFilm, 0.0063086151208995855);
     let ask = Ask::on(coulomb(0.058676901727985425)).with_restitution(0.0400865823815999).with_losses(losses);
     let of = |tol: f64| {

@@ -5,7 +5,7 @@ use crate::flight::{any_drop, centre, coulomb, dropped, energy, hops, impacts, r
 use nalgebra::{Matrix3, Vector3};
 use spincyl::contact::slip::Friction;
 use spincyl::contact::{self, Contact, Table};
-use spincyl::motion::path::{Hit, Kind};
+use spincyl::motion::path::{AfterImpact, Hit, Kind};
 use spincyl::motion::{Ask, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::FRAC_PI_2;
@@ -130,7 +130,7 @@ fn an_impact_is_that_of_newton_and_euler_and_never_gains_energy() {
             let lost = energy(&body, &before, hit.velocities[0], 0.0)
                 - energy(&body, &after, hit.velocities[1], 0.0);
             // The last impact of a sequence of bounces also has the friction of those that are summed.
-            let summed = if hit.stays { 1e-5 } else { 0.0 };
+            let summed = if hit.after == AfterImpact::Stays { 1e-5 } else { 0.0 };
             assert!(hit.lost >= 0.0 && hit.lost > lost - 1e-12 * (1.0 + lost), "{lost} {}", hit.lost);
             assert!(hit.lost < lost + summed + 1e-12 * (1.0 + lost), "{lost} {}", hit.lost);
             assert!(hit.velocities[1][2] >= 0.0 && hit.velocities[0][2] < 0.0);
@@ -172,7 +172,7 @@ fn without_friction_coupling_or_restitution_the_laws_of_newton_and_of_energy_are
     for _ in 0..drawn(200) {
         let (body, start, mu, e) = any_drop(&mut r);
         let ice = hops(&body, &start, coulomb(0.0), e, &[4.0]);
-        for hit in impacts(&ice).iter().filter(|hit| !hit.stays) {
+        for hit in impacts(&ice).iter().filter(|hit| hit.after != AfterImpact::Stays) {
             let [before, after] = [hit.velocities[0][2], hit.velocities[1][2]];
             assert!((after + e * before).abs() < 1e-13 * before.abs(), "{before} {after}");
             assert!(hit.impulse[..2] == [0.0; 2] && hit.hit == Hit::Smooth);

@@ -19,7 +19,7 @@ fn d1_rk4_is_of_fourth_order() {
     for ((body, y), contact) in
         rounded_starts().into_iter().chain([slower]).flat_map(|x| BOTH.map(|c| (x, c)))
     {
-        let swing = Swing::new(&body, &y, contact, false).unwrap();
+        let swing = Swing::new(&body, &y, contact).unwrap();
         let end = swing.state(5.0);
         let error = |k: u32| {
             let n = 20u64 << k;
@@ -83,7 +83,7 @@ fn d14_energy_and_both_linear_integrals_hold_along_rk4() {
         let y = steady::state(&body, theta).unwrap().kicked(kick);
         for contact in BOTH {
             let end = rk4::integrate(|y| contact.derivative(&body, y), y, 2e-4, 100_000);
-            let swing = Swing::new(&body, &y, contact, false).unwrap();
+            let swing = Swing::new(&body, &y, contact).unwrap();
             // Newton's iteration for the time of that inclination
             let mut t = 20.0;
             for _ in 0..30 {
@@ -212,7 +212,7 @@ fn d5_a_step_too_large_for_the_nutation_is_never_silent() {
     // a body that hardly precesses: the nutation alone decides
     let coin = Body::solid(0.0).unwrap();
     let rolling_fast = state(1.57, 0.0, 0.0, 20.0);
-    let w = Swing::new(&coin, &rolling_fast, Contact::Rolling, false).unwrap().nutation();
+    let w = Swing::new(&coin, &rolling_fast, Contact::Rolling).unwrap().nutation();
     for hw in [0.05, 0.1, 0.5, 1.0, 2.4, 2.6, 2.82, 2.84, 10.0] {
         match moved(&coin, &rolling_fast, &[200.0 * hw / w], by(Method::Step(hw / w))) {
             Ok(m) => assert!(hw < 2.5 && m.coarse == (hw > 0.3), "{hw}: {}", m.step_loss),
@@ -230,8 +230,8 @@ fn d5_the_predicted_loss_is_what_rk4_takes_from_the_nutation() {
         let (kick, step) = (1e-5, hw / w);
         let y = rest.kicked(kick);
         let end = rk4::integrate(|y| rolling::derivative(&body, y), y, step, n);
-        let amplitude = Swing::new(&body, &end, Contact::Rolling, false).unwrap().turning_points();
-        let before = Swing::new(&body, &y, Contact::Rolling, false).unwrap().turning_points();
+        let amplitude = Swing::new(&body, &end, Contact::Rolling).unwrap().turning_points();
+        let before = Swing::new(&body, &y, Contact::Rolling).unwrap().turning_points();
         let kept = (amplitude[1] - amplitude[0]) / (before[1] - before[0]);
         let predicted = n as f64 * f64::powi(hw, 6) / 144.0;
         assert!((-kept.ln() / predicted - 1.0).abs() < 0.15, "{hw}: kept {kept}, predicted loss {predicted}");
@@ -243,8 +243,11 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
     for r in motions().iter().filter(|r| r.kind == "period" && r.scene.starts_with("D6")) {
         let (i1, ell) = (r.body.i1(), r.body.ell());
         let limit = PI * ((i1 + ell * ell + 1.0) / (i1 + ell * ell)).sqrt();
-        let turn =
-            Swing::new(&r.body, &r.start, Contact::Rolling, true).unwrap().angles_per_period().unwrap()[0];
+        let turn = Swing::with_pose(&r.body, &r.start, Contact::Rolling)
+            .unwrap()
+            .angles_per_period()
+            .unwrap()
+            .precession;
         let allowed = if r.start.w1 > 5e-4 {
             4e-3
         } else if r.start.w1 > 5e-5 {
@@ -264,8 +267,8 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
     }
     // 402.49 degrees for the thin disk
     let disk = Body::solid(0.0).unwrap();
-    let swing = Swing::new(&disk, &state(0.3, 1e-8, 0.0, 0.0), Contact::Rolling, true).unwrap();
-    assert!((swing.angles_per_period().unwrap()[0].to_degrees() - 402.49).abs() < 0.01);
+    let swing = Swing::with_pose(&disk, &state(0.3, 1e-8, 0.0, 0.0), Contact::Rolling).unwrap();
+    assert!((swing.angles_per_period().unwrap().precession.to_degrees() - 402.49).abs() < 0.01);
 }
 
 #[test]
@@ -273,7 +276,7 @@ fn d7_a_fixed_step_that_would_jump_over_the_passage_is_refused_with_one_that_wou
     let body = Body::solid(1.0).unwrap();
     for exponent in [3, 5, 7] {
         let y = state(0.3, 1.3 * 10f64.powi(-exponent), 0.0, 0.0);
-        let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
+        let swing = Swing::with_pose(&body, &y, Contact::Rolling).unwrap();
         let period = swing.period();
         let fastest = swing.state(0.5 * period).precession().abs();
         for turn in [1.1, 3.0, 100.0] {
@@ -309,11 +312,11 @@ fn d11_the_suggested_step_is_within_a_factor_two_of_the_largest_that_keeps_the_n
         let w = stability::at_rest(&body, theta, Contact::Rolling).sqrt();
         let y = rest.kicked(1e-3 * theta * w);
         let span = 200.0 / w;
-        let before = Swing::new(&body, &y, Contact::Rolling, false).unwrap().turning_points();
+        let before = Swing::new(&body, &y, Contact::Rolling).unwrap().turning_points();
         let advice = moved(&body, &y, &[span], by(Method::Step(0.01 / w))).unwrap().advice;
         let kept = |step: f64| {
             let end = rk4::integrate(|y| rolling::derivative(&body, y), y, step, (span / step) as u64);
-            let after = Swing::new(&body, &end, Contact::Rolling, false).unwrap().turning_points();
+            let after = Swing::new(&body, &end, Contact::Rolling).unwrap().turning_points();
             (after[1] - after[0]) / (before[1] - before[0])
         };
         assert!((1.0 - kept(advice)).abs() < 3e-3, "{theta}: {}", kept(advice));

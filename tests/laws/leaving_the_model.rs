@@ -30,7 +30,7 @@ fn random_runs(count: u64) -> [u64; 4] {
             1 => Method::Tolerance(10f64.powf(-5.0 - 5.0 * r())),
             _ => Method::Step(10f64.powf(-3.0 * r() - 0.5)),
         };
-        let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
+        let Ok(swing) = Swing::new(&body, &y, contact) else { continue };
         let leaves_at = leaves(&swing, &body, contact, t, 1e-3);
         match moved(&body, &y, &[t], by(method).with_table(contact)) {
             Err(Error::Step { .. }) => refused += 1,

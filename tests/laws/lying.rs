@@ -3,8 +3,8 @@
 use crate::common::{drawn, wander};
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::path::{Hit, Kind, OtherRim};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Error, State};
 use std::f64::consts::FRAC_PI_2;
 
@@ -196,7 +196,7 @@ fn energy_heat_and_losses_are_constant_while_both_rims_press_and_their_friction_
             let lost = path.work_lost.get(i).copied().unwrap_or(0.0);
             let struck: f64 =
                 path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
-            let [height, lift] = path.aloft[i];
+            let AboveTable { height, lift, .. } = path.aloft[i];
             let rise = height + lift * (lift / 2.0 + lever(&body, &m.states[i]) * m.states[i].w2);
             energy(&body, &m.states[i], path.slip[i]) + rise + path.dissipated[i] + lost + struck
         };
@@ -209,13 +209,15 @@ fn energy_heat_and_losses_are_constant_while_both_rims_press_and_their_friction_
                 whole(i) - first
             );
             if !matches!(kind, Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide) {
-                assert!(path.other_rim[i].iter().all(|x| x.is_nan()));
+                assert!(path.other_rim[i].slip[0].is_nan() && path.other_rim[i].force.normal.is_nan());
                 continue;
             }
             let here = m.forces.as_ref().unwrap()[i];
-            let [_, _, other, across, along] = path.other_rim[i];
-            assert!((here.normal + other - 1.0).abs() < 1e-13 && here.normal >= -1e-12 && other >= -1e-12);
-            assert!(here.friction() <= mu * here.normal + 1e-10 && across.hypot(along) <= mu * other + 1e-10);
+            let there = path.other_rim[i].force;
+            assert!((here.normal + there.normal - 1.0).abs() < 1e-13);
+            for force in [here, there] {
+                assert!(force.normal >= -1e-12 && force.friction() <= mu * force.normal + 1e-10);
+            }
             assert!(m.states[i].theta == FRAC_PI_2 && m.states[i].w2 == 0.0);
         }
     }
@@ -447,10 +449,10 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
                 seen += 1;
                 // Friction at neither rim gives energy, whichever of them the motion is followed from.
                 let (push, [u, v]) = (m.forces.as_ref().unwrap()[i], path.slip[i]);
-                let [u_up, v_up, _, across, along] = path.other_rim[i];
+                let OtherRim { slip: [u_up, v_up], force: pull, .. } = path.other_rim[i];
                 // A force has its name from the direction of rolling, which is across the lean.
                 assert!(push.across * u + push.along * v < 1e-12, "{body:?} {}", m.times[i]);
-                assert!(along * u_up + across * v_up < 1e-12, "{body:?} {}", m.times[i]);
+                assert!(pull.across * u_up + pull.along * v_up < 1e-12, "{body:?} {}", m.times[i]);
                 let fast = m.states[i - 1].w1.abs().max(m.states[i].w1.abs());
                 let turned = poses[i].phi.radians() - poses[i - 1].phi.radians();
                 assert!(turned.abs() < 1.2 * fast * 0.01 + 1e-9, "{body:?} {} {turned}", m.times[i]);

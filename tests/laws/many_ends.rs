@@ -156,7 +156,7 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
             continue;
         }
         lanes += 1;
-        let swing = Swing::new(body, start, Contact::Rolling, true).unwrap();
+        let swing = Swing::with_pose(body, start, Contact::Rolling).unwrap();
         let end = many.sum(Summary::End, i);
         // five thousand samples of the motion
         let (mut low, mut high, mut least, mut most) = (start.theta, start.theta, f64::INFINITY, 0f64);
@@ -190,7 +190,7 @@ fn what_sums_up_a_motion_is_the_same_in_lanes_and_alone() {
         }
         assert!((needed == f64::INFINITY) == (many.status[i] == Ending::LiftOff as u8), "{needed}");
         close(Summary::Period, swing.period(), 1e-10);
-        close(Summary::PrecessionPerPeriod, swing.angles_per_period().unwrap()[0], 1e-10);
+        close(Summary::PrecessionPerPeriod, swing.angles_per_period().unwrap().precession, 1e-10);
     }
     assert!(lanes > 145 && pressed > 25, "{lanes} {pressed}");
 }

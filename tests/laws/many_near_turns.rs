@@ -14,7 +14,7 @@ use spincyl::{Body, Contact, State};
 /// The difference of a motion in lanes and the single one, over the sum of their claimed errors; None if no
 /// lane computed it.
 fn share(body: &Body, y: &State, contact: Contact, t: f64) -> Option<f64> {
-    let swing = Swing::new(body, y, contact, false).ok()?;
+    let swing = Swing::new(body, y, contact).ok()?;
     let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::on(contact).with_beyond(true)), 1);
     let off = distance(&many.last(0), &numbers(&swing.state(t)));
     (many.method[0] == Answer::Lanes as u8).then(|| off / (many.error[0] + swing.error(t)))
@@ -40,7 +40,7 @@ fn a_swing_of_many_panels_claims_the_roundings_of_all_of_them() {
     let body = Body::new(3.8418816469838872, 0.1, 0.03647048537898937).unwrap();
     let (theta, w1, w3) = (3.0139791555068944, -2.6123408118855647, -5.294493679643214);
     let y = State { theta, w1, w2: 0.0, w3 };
-    let period = Swing::new(&body, &y, Contact::Rolling, false).unwrap().period();
+    let period = Swing::new(&body, &y, Contact::Rolling).unwrap().period();
     for halves in 1..5 {
         let t = 0.5 * f64::from(halves) * period + 1e-4;
         let share = share(&body, &y, Contact::Rolling, t);
@@ -61,7 +61,7 @@ proptest! {
     ) {
         let y = State { w2: if at_rest { 0.0 } else { y.w2 }, ..y };
         for contact in BOTH {
-            let Ok(swing) = Swing::new(&body, &y, contact, false) else { continue };
+            let Ok(swing) = Swing::new(&body, &y, contact) else { continue };
             let beside = 10f64.powf(early) * if before { -1.0 } else { 1.0 };
             let t = 0.5 * f64::from(halves) * swing.period() + beside;
             if t > 0.0 && t < 100.0 && swing.landing(1.0).is_none() {

@@ -2,8 +2,8 @@
 
 use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::measured::{Measured, Tube};
-use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
+use spincyl::measured::{Measured, MeasuredMoments, Tube};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Start, roll_with};
 use spincyl::{Body, Error, Scale, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,8 +19,8 @@ fn name(found: Result<Measured, Error>) -> String {
 fn a_dropped_coin_falls_by_half_g_t_squared() {
     let coin = Measured::tube(&coin()).unwrap();
     let (height, g) = (0.05, 9.80665);
-    let start =
-        Start::from(State::from_rates(1.2, 0.0, 2.0, 1.0)).with_aloft([coin.scale().length(height), 0.0]);
+    let start = Start::from(State::from_rates(1.2, 0.0, 2.0, 1.0))
+        .with_aloft(AboveTable::new(coin.scale().length(height), 0.0));
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
     let seconds = [0.0, 0.03, 0.07];
     let motion = coin.roll(start, &seconds, &ask, || true).unwrap().unwrap();
@@ -62,7 +62,7 @@ fn a_hoop_that_rolls_has_the_speed_of_its_rim_and_carries_its_weight() {
 #[test]
 fn a_wheel_given_in_kg_m2_rolls_where_modelicas_does() {
     let scale = Scale::new(0.3, 2.0, 9.80665).unwrap();
-    let wheel = Measured::with_moments(scale, [0.0, 0.0], [0.12, 0.06]).unwrap();
+    let wheel = Measured::with_moments(scale, &MeasuredMoments::new(0.0, 0.12, 0.06)).unwrap();
     let w = |x: f64| scale.angular_velocity(x);
     let start = State::from_rates(FRAC_PI_2, w(1.0), 0.0, w(5.0));
     let motion = wheel.roll(start, &[0.0, 4.0], &Ask::default(), || true).unwrap().unwrap();
@@ -90,15 +90,26 @@ fn readings_are_the_samples_in_other_units() {
 #[test]
 fn moments_in_the_wrong_unit_are_refused_by_name() {
     let scale = Scale::new(12e-3, 8e-3, 9.81).unwrap();
-    let right = Measured::with_moments(scale, [1e-3, 0.0], [2.9e-7, 5.76e-7]).unwrap();
+    let right = Measured::with_moments(scale, &MeasuredMoments::new(1e-3, 2.9e-7, 5.76e-7)).unwrap();
     assert!((right.body().i1() - 2.9e-7 / (8e-3 * 144e-6)).abs() < 1e-15);
-    assert!(name(Measured::with_moments(scale, [1e-3, 0.0], [0.25, 0.5])).starts_with("i1 = 0.25: expected"));
     assert!(
-        name(Measured::with_moments(scale, [1e-3, 0.0], [2.9e-10, 5.76e-10])).starts_with("i1 = 2.9e-10")
+        name(Measured::with_moments(scale, &MeasuredMoments::new(1e-3, 0.25, 0.5)))
+            .starts_with("i1 = 0.25: expected")
     );
-    assert!(name(Measured::with_moments(scale, [1e-3, 0.0], [2.9e-7, 0.5])).starts_with("i3 = 0.5"));
-    assert!(name(Measured::with_moments(scale, [1e-3, 0.0], [f64::NAN, 5e-7])).starts_with("i1 = NaN"));
-    assert!(name(Measured::with_moments(scale, [1.0, 0.0], [2.9e-7, 5.9e-7])).starts_with("i3 = "));
+    assert!(
+        name(Measured::with_moments(scale, &MeasuredMoments::new(1e-3, 2.9e-10, 5.76e-10)))
+            .starts_with("i1 = 2.9e-10")
+    );
+    assert!(
+        name(Measured::with_moments(scale, &MeasuredMoments::new(1e-3, 2.9e-7, 0.5))).starts_with("i3 = 0.5")
+    );
+    assert!(
+        name(Measured::with_moments(scale, &MeasuredMoments::new(1e-3, f64::NAN, 5e-7)))
+            .starts_with("i1 = NaN")
+    );
+    assert!(
+        name(Measured::with_moments(scale, &MeasuredMoments::new(1.0, 2.9e-7, 5.9e-7))).starts_with("i3 = ")
+    );
     for (i1, i3) in [(2.9e-7, 5.76e-7), (1.5e-4, 3.1e-4), (0.0, 0.0), (9.9e-4, 1e-3)] {
         let refused = Body::new(0.1, i1, i3).unwrap_err().to_string();
         assert!(refused.starts_with("i1 = ") && refused.contains("kg m^2"), "{refused}");

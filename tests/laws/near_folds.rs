@@ -48,9 +48,9 @@ fn maps_beside_folds_have_the_rates_of_single_states_in_both_precisions() {
     let bodies: Vec<Option<Body>> = rows.iter().step_by(3).map(|row| Some(row.body)).collect();
     let theta: Vec<f64> = rows.iter().map(|row| row.theta).collect();
     let (mut double, mut single) = (vec![7f64; 150 * 50], vec![7f32; 150 * 50]);
-    let out = sweep::Portrait { rate: Some(&mut double[..]), ..Default::default() };
+    let out = sweep::Portrait::default().with_rate(&mut double[..]);
     assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true).unwrap());
-    let out = sweep::Portrait { rate: Some(&mut single[..]), ..Default::default() };
+    let out = sweep::Portrait::default().with_rate(&mut single[..]);
     assert!(sweep::portrait(&theta, &bodies, out, 2, |_| true).unwrap());
     let mut known = 0;
     for (i, (double, single)) in double.iter().zip(single).enumerate() {

@@ -331,8 +331,8 @@ fn cups_among_tubes_move_in_a_sweep_as_they_do_alone() {
     for ask in [Ask::default(), Ask::on(Friction::coulomb(0.3)), hits] {
         let (mut error, mut method, mut status) = (vec![0.0; 60], vec![0; 60], vec![0; 60]);
         let mut last = [(); 4].map(|()| vec![f64::NAN; 60]);
-        let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
-        out.last = Some(last.each_mut().map(Vec::as_mut_slice));
+        let out = MotionOutput::new(&mut error, &mut method, &mut status)
+            .with_last(last.each_mut().map(Vec::as_mut_slice));
         let job = Job::new(&times).with_ask(ask).with_tol(1e-12);
         assert!(roll_many(&columns.starts(), &job, out, 2, |_| true).unwrap());
         for (i, (body, y)) in pairs.iter().enumerate() {

@@ -5,7 +5,7 @@ use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
 use spincyl::{Body, State, steady};
@@ -80,7 +80,8 @@ fn a_ball_that_rolls_heavily_creeps_with_a_constant_k_and_slows_down_evenly() {
         [u.hypot(v) / (eps * drilling(&y).abs()), rolling.hypot(y.w2), drilling(&y).abs()]
     };
     let [k, rolls, drills] = seen(0);
-    let [force, couple] = patch::of(k).map(|share| mu * share);
+    let shares = patch::of(k);
+    let [force, couple] = [shares.force, shares.couple].map(|share| mu * share);
     assert!((force * (1.0 + inertia) - arm - eps * eps * k * couple).abs() < 1e-12);
     for (i, t) in times.iter().enumerate().take(4).skip(1) {
         let (since, [same, rolling, drilling]) = (t - times[0], seen(i));
@@ -149,7 +150,7 @@ fn energy_and_heat_have_a_constant_sum_and_friction_acts_against_the_slip() {
             slipping += 1;
             let f = m.forces.as_ref().unwrap()[i];
             assert!((f.along * u - f.across * v).abs() < 1e-10 * speed && f.along * v + f.across * u < 0.0);
-            let [share, _] = patch::of(speed / (eps * drilling(y).abs()));
+            let share = patch::of(speed / (eps * drilling(y).abs())).force;
             assert!((f.friction() - mu * f.normal * share).abs() < 1e-9 * f.normal.abs());
         }
     }
@@ -170,7 +171,7 @@ fn jelletts_number_of_a_ball_falls_by_the_couple_alone() {
         let (s, c) = y.theta.sin_cos();
         let turned = i1 * (d.w1 * s + y.w1 * c * d.theta) + i3 * (d.w3 * (ell + c) - y.w3 * s * d.theta);
         let spin = drilling(&y);
-        let [_, couple] = patch::of(slip[0].hypot(slip[1]) / (eps * spin.abs()));
+        let couple = patch::of(slip[0].hypot(slip[1]) / (eps * spin.abs())).couple;
         let expected = -mu * f.normal * eps * couple * spin.signum() * (1.0 + ell * c);
         assert!((turned - expected).abs() < 1e-13 * (1.0 + f.normal.abs()), "{turned} {expected}");
     }
@@ -469,15 +470,16 @@ fn energy_heat_and_what_impacts_take_are_constant_on_patches_too_and_a_face_ends
             || if odd { [0.0, 1e-300, 1e-16, 0.1, -1.0][(5.0 * r()) as usize] } else { 4.0 * (r() - 0.5) };
         let [w1, w2, w3, u, v, lift] = core::array::from_fn(|_| speed());
         let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
-        let start =
-            Start::from(state).with_slip([u, v]).with_aloft([if r() < 0.3 { 0.0 } else { r() }, lift]);
+        let start = Start::from(state)
+            .with_slip([u, v])
+            .with_aloft(AboveTable::new(if r() < 0.3 { 0.0 } else { r() }, lift));
         let mu = 0.05 + 0.9 * r();
         let ask = Ask::on(on(mu, 10f64.powf(-1.0 - 4.0 * r()))).with_restitution(0.9 * r());
         let times: Vec<f64> = (0..40).map(|k| 0.1 * f64::from(k)).collect();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             crate::flight::energy(&body, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]

@@ -7,7 +7,7 @@ use crate::common::{
 };
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use spincyl::exact::Swing;
+use spincyl::exact::{ContactDrift, Swing};
 use spincyl::motion::{Ask, Method};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, State, contact, rk4, steady};
@@ -92,7 +92,7 @@ fn a_quick_pose_is_that_of_the_references_within_its_claim() {
     let mut quick = 0;
     for r in all_motions().filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
         let motion = moved(&r.body, &r.start, &[r.t], scene.with_table(r.contact)).unwrap();
-        let slow = Swing::new(&r.body, &r.start, r.contact, true).unwrap().pose(r.t).unwrap();
+        let slow = Swing::with_pose(&r.body, &r.start, r.contact).unwrap().pose(r.t).unwrap();
         let Some(pose) = motion.poses.unwrap().pop().filter(|pose| *pose != slow) else { continue };
         let (off, claimed) = (off(&pose, &r.values[4..8]), motion.pose_error);
         assert!(off <= claimed, "{} {:?} t = {}: {off:e}, claimed {claimed:e}", r.scene, r.contact, r.t);
@@ -121,7 +121,7 @@ fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
         times.iter_mut().enumerate().for_each(|(k, t)| *t = way * [20.0, 300.0][i % 2] * k as f64 / 8.0);
         let scene = Ask::default().with_table(contact).with_pose(true).with_beyond(true);
         let motion = moved(&body, &y, &times, scene).unwrap();
-        let Ok(swing) = Swing::new(&body, &y, contact, true) else { continue };
+        let Ok(swing) = Swing::with_pose(&body, &y, contact) else { continue };
         let poses = motion.poses.unwrap();
         if poses.len() < times.len() || poses[8] == swing.pose(times[8]).unwrap() {
             continue;
@@ -141,7 +141,7 @@ fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
 #[test]
 fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
     for (body, y) in starts() {
-        let swing = Swing::new(&body, &y, Contact::Rolling, true).unwrap();
+        let swing = Swing::with_pose(&body, &y, Contact::Rolling).unwrap();
         let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
         let [height, speed] = if sharp(&body) { [1e-14, 1e-8] } else { [4e-15, 1e-7] };
         for k in 1..50 {
@@ -167,7 +167,7 @@ fn the_body_touches_the_table_and_the_contact_point_does_not_slide() {
 #[test]
 fn the_contact_force_and_gravity_move_the_centre() {
     for ((body, y), contact) in starts().flat_map(|start| BOTH.map(|contact| (start, contact))) {
-        let swing = Swing::new(&body, &y, contact, true).unwrap();
+        let swing = Swing::with_pose(&body, &y, contact).unwrap();
         let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &swing.state(t));
         let allowed = if sharp(&body) { 1e-6 } else { 1e-5 };
         for k in 1..30 {
@@ -191,12 +191,12 @@ fn a_centre_at_rest_stays_and_a_nutating_path_drifts_on_a_circle() {
     let body = Body::tube(6.0, 0.8).unwrap();
     let rest = steady::state(&body, 1.4).unwrap();
     for contact in BOTH {
-        let swing = Swing::new(&body, &rest, contact, true).unwrap();
+        let swing = Swing::with_pose(&body, &rest, contact).unwrap();
         let centre = |t: f64| swing.pose(t).unwrap().centre(&body, &rest);
         assert!((centre(7.3) - centre(0.0)).norm() < 1e-12);
     }
-    let swing = Swing::new(&body, &rest.kicked(0.05), Contact::Rolling, true).unwrap();
-    let [step, radius] = swing.drift().unwrap();
+    let swing = Swing::with_pose(&body, &rest.kicked(0.05), Contact::Rolling).unwrap();
+    let ContactDrift { step, radius, .. } = swing.drift().unwrap();
     let place = |m: f64| swing.pose(m * swing.period()).unwrap().contact_point;
     assert!(((place(1.0) - place(0.0)).norm() - step).abs() < 1e-12);
     assert!(((place(1001.0) - place(1000.0)).norm() - step).abs() < 1e-8);
@@ -249,7 +249,7 @@ proptest! {
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
         let sharp = sharp(&body);
         let body = if sharp { body } else { body.with_theta_end(PI).unwrap() };
-        let Ok(swing) = Swing::new(&body, &y, contact, true) else { return Ok(()) };
+        let Ok(swing) = Swing::with_pose(&body, &y, contact) else { return Ok(()) };
         let method = Method::Tolerance(if sharp { 1e-11 } else { 1e-12 });
         let scene = by(method).with_table(contact).with_beyond(true).with_pose(true);
         let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };

@@ -70,7 +70,7 @@ impl Scene {
         let whole = self.energy(&state, slip, [0.0; 2], u8::from(state.theta > self.body.theta_end()));
         let at = |i: usize| {
             let struck = path.impacts.iter().filter(|hit| hit.time <= m.times[i]).map(|hit| hit.lost);
-            let has = self.energy(&m.states[i], path.slip[i], path.aloft[i], path.rims[i]);
+            let has = self.energy(&m.states[i], path.slip[i], path.aloft[i].into(), path.rims[i]);
             (has + path.dissipated[i] + struck.sum::<f64>() - whole).abs() / whole.max(1.0)
         };
         (0..m.states.len()).map(at).fold(0.0, f64::max)

@@ -5,7 +5,7 @@ use crate::flight::{account, any_drop, coulomb, dropped, impacts};
 use spincyl::contact::slip::Friction;
 use spincyl::contact::{ImpactLaw, Table};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
+use spincyl::motion::path::{AfterImpact, Hit, Kind};
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Error, State};
 use std::f64::consts::PI;
@@ -113,7 +113,7 @@ fn under_newtons_law_every_impact_has_its_ratio_and_a_second_rim_ends_the_motion
         let (body, start, mu, e) = any_drop(&mut r);
         let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(ImpactLaw::Newton);
         let m = bounces(&body, start, &ask, &[20.0]).unwrap();
-        for hit in impacts(&m).iter().filter(|hit| !hit.stays) {
+        for hit in impacts(&m).iter().filter(|hit| hit.after != AfterImpact::Stays) {
             let [[.., down], [.., up]] = hit.velocities;
             assert!((up + e * down).abs() < 1e-12 * (1.0 - down), "{k} {hit:?}");
             assert!(hit.hit != Hit::BothRims, "{k} {hit:?}");

@@ -5,7 +5,7 @@ use crate::common::{
 };
 use crate::{ULP, place};
 use proptest::prelude::*;
-use spincyl::exact::Swing;
+use spincyl::exact::{AnglesPerPeriod, Swing};
 use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, rk4, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -21,7 +21,7 @@ fn integrals(body: &Body, y: &State) -> [f64; 2] {
 #[test]
 fn routh_and_jellett_hold_along_exact_motions_and_along_rk4() {
     for (body, y) in rounded_starts().into_iter().filter(|(body, _)| body.fillet() == 1.0) {
-        let swing = Swing::new(&body, &y, Contact::Rolling, false).unwrap();
+        let swing = Swing::new(&body, &y, Contact::Rolling).unwrap();
         let start = integrals(&body, &y);
         for k in 1..60 {
             let now = integrals(&body, &swing.state(0.37 * f64::from(k)));
@@ -42,7 +42,7 @@ fn halving_the_fillet_halves_what_it_changes_of_a_motion() {
     for contact in BOTH {
         let at = |fillet: f64| {
             let body = Body::rounded(0.8, 0.6, 0.5, fillet).unwrap();
-            let swing = Swing::new(&body, &start, contact, true).unwrap();
+            let swing = Swing::with_pose(&body, &start, contact).unwrap();
             let (y, pose, rest) =
                 (swing.state(7.0), swing.pose(7.0).unwrap(), steady::state(&body, 0.6).unwrap());
             let kappa = spincyl::stability::at_rest(&body, 0.6, contact);
@@ -75,8 +75,8 @@ fn a_smooth_table_moves_a_rounded_body_as_it_moves_a_sharp_one_of_the_size_of_it
         let round = Body::rounded(ell, i1, i3, 0.75).unwrap();
         let sharp = Body::new(4.0 * ell, 16.0 * i1, 16.0 * i3).unwrap();
         let scaled = State { w1: 0.5 * y.w1, w2: 0.5 * y.w2, w3: 0.5 * y.w3, ..y };
-        let here = Swing::new(&round, &y, Contact::Smooth, true).unwrap();
-        let there = Swing::new(&sharp, &scaled, Contact::Smooth, true).unwrap();
+        let here = Swing::with_pose(&round, &y, Contact::Smooth).unwrap();
+        let there = Swing::with_pose(&sharp, &scaled, Contact::Smooth).unwrap();
         assert!((2.0 * here.period() / there.period() - 1.0).abs() < 4e-15);
         for t in [0.3, 2.0, 30.0] {
             let (a, b) = (here.state(t), there.state(2.0 * t));
@@ -116,8 +116,8 @@ fn a_rocking_body_turns_by_a_fixed_angle_at_every_pass() {
     for (body, theta) in [(rounded_disk(), 0.3), (sharp, 0.3), (can, 0.2), (torus, 0.5), (ball, 0.7)] {
         // from rest with a small precession, with which the turn in the rest of the swing vanishes
         for w1 in [1e-3, 1e-4, 1e-5] {
-            let swing = Swing::new(&body, &state(theta, w1, 0.0, 0.0), Contact::Rolling, true).unwrap();
-            let [phi, _] = swing.angles_per_period().unwrap();
+            let swing = Swing::with_pose(&body, &state(theta, w1, 0.0, 0.0), Contact::Rolling).unwrap();
+            let phi = swing.angles_per_period().unwrap().precession;
             assert!((phi - turn(&body)).abs() < 40.0 * w1, "{body:?} {w1:e}: {} {}", phi, turn(&body));
             let miss = (phi - turn(&body)).abs();
             assert!(miss > 1e-4 * w1 || body.fillet() == 1.0, "{miss:e}");
@@ -174,13 +174,13 @@ fn a_ball_goes_through_both_poles_without_an_end() {
                 assert!(y.theta >= 0.0 && y.theta <= PI && y.w1.abs() < 1e-12 && y.w3.abs() < 1e-12);
             }
             // a plane motion passes the pole like any other point
-            let swing = Swing::new(&ball, &y, contact, false).unwrap();
+            let swing = Swing::new(&ball, &y, contact).unwrap();
             let [low, high] = swing.turning_points();
             assert!(low == 0.0 && (high < PI) == (y.w2 == 0.0), "{low} {high}");
         }
     }
     // the period of this pendulum by quadrature: sqrt(J/(2 (h(1.2) - h))) d theta, with theta = 1.2 sin u
-    let swing = Swing::new(&ball, &state(1.2, 0.0, 0.0, 0.0), Contact::Rolling, false).unwrap();
+    let swing = Swing::new(&ball, &state(1.2, 0.0, 0.0, 0.0), Contact::Rolling).unwrap();
     let n = 4000;
     let quarter: f64 = (0..n)
         .map(|i| {
@@ -217,7 +217,7 @@ proptest! {
 
     #[test]
     fn a_ball_keeps_its_integrals_along_any_motion(body in any_ball(), y in any_state(), t in 0.0..20.0f64) {
-        let Ok(swing) = Swing::new(&body, &y, Contact::Rolling, false) else { return Ok(()) };
+        let Ok(swing) = Swing::new(&body, &y, Contact::Rolling) else { return Ok(()) };
         let (start, now) = (integrals(&body, &y), integrals(&body, &swing.state(t)));
         let size = (1.0 + y.w1.abs() + y.w3.abs()) * (body.i1() + body.i3()) * (2.0 + body.ell().abs()).powi(2);
         for i in 0..2 {
@@ -232,8 +232,8 @@ fn the_angles_of_a_ball_jump_together_where_it_passes_its_pole() {
     // phi and psi jump by half a turn against each other, so that the body turns smoothly
     let ball = Body::ball(-0.2, 0.3, 0.4).unwrap();
     for contact in BOTH {
-        let swing = Swing::new(&ball, &state(1.2, 0.0, -2.0, 0.0), contact, true).unwrap();
-        let [phi, psi] = swing.angles_per_period().unwrap();
+        let swing = Swing::with_pose(&ball, &state(1.2, 0.0, -2.0, 0.0), contact).unwrap();
+        let AnglesPerPeriod { precession: phi, spin: psi, .. } = swing.angles_per_period().unwrap();
         assert!(
             (phi / PI - (phi / PI).round()).abs() < 1e-12
                 && (phi.rem_euclid(TAU)).min(TAU - phi.rem_euclid(TAU)) < 1e-9

@@ -1,9 +1,10 @@
 //! Friction: laws that hold in every state, exact motions, and many slips side by side.
 
+use crate::common::many::with_summaries;
 use crate::common::path_of;
 use proptest::prelude::*;
 use spincyl::contact::{self, Friction, TableKind, slip};
-use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
 use spincyl::loss::Losses;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
@@ -269,19 +270,19 @@ fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>
     let [w1, w3, slip, mu] = of;
     let count = w1.len();
     let (i1, i3) = ([tube.i1()], [tube.i3()]);
-    let bodies: [&[f64]; 5] = [&[6.0], &i1, &i3, &[0.0], &[f64::NAN]];
-    let mut starts = MotionStarts::new(bodies, [&[FRAC_PI_2], w1, &[0.0], w3]);
-    starts.slips = Some([&[0.0], slip]);
-    starts.coefficients = Some([mu, mu, &[0.0]]);
+    let states: [&[f64]; 4] = [&[FRAC_PI_2], w1, &[0.0], w3];
+    let starts = MotionStarts::new(BodyColumns::new(&[6.0], &i1, &i3), states)
+        .with_slips(&[0.0], slip)
+        .with_friction(mu, mu, &[0.0]);
     let mut last = vec![vec![7.0; count]; 6];
     let mut sums = vec![vec![7.0; count]; SUMMARIES];
     let (mut error, mut method, mut status) = (vec![7.0; count], vec![7; count], vec![7; count]);
     let mut columns = last.iter_mut().map(Vec::as_mut_slice);
-    let mut summary = sums.iter_mut().map(|x| Some(x.as_mut_slice()));
-    let mut out = MotionOutput::new(&mut error, &mut method, &mut status);
-    out.last = Some(core::array::from_fn(|_| columns.next().unwrap()));
-    out.last_slip = Some(core::array::from_fn(|_| columns.next().unwrap()));
-    out.summary = core::array::from_fn(|_| summary.next().unwrap());
+    let mut next = || columns.next().unwrap();
+    let out = MotionOutput::new(&mut error, &mut method, &mut status)
+        .with_last(core::array::from_fn(|_| next()))
+        .with_last_slip(next(), next());
+    let out = with_summaries(out, &mut sums);
     let job = Job::new(times).with_ask(Ask::on(TableKind::Coulomb)).with_tol(1e-12);
     assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
     (last.into_iter().chain(sums).collect(), error, status)

@@ -19,7 +19,7 @@ fn centre(body: &Body, m: &Motion, i: usize) -> [f64; 3] {
     let (y, pose) = (m.states[i], m.poses.as_ref().unwrap()[i]);
     let (at, (sin, cos)) = (place(body, y.theta), pose.phi.radians().sin_cos());
     let lever = at.lever[0];
-    let high = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft[0]);
+    let high = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft.height);
     [pose.contact_point.x - lever * cos, pose.contact_point.y - lever * sin, at.height[0] + high]
 }
 
@@ -185,7 +185,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
 fn energy(body: &Body, ask: &Ask, m: &Motion, i: usize) -> f64 {
     let ([x, _, z], y) = (centre(body, m, i), m.states[i]);
     let u = m.path.as_ref().map_or([0.0; 2], |path| path.slip[i]);
-    let lift = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft[1]);
+    let lift = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft.lift);
     let at = place(body, y.theta);
     let rise = at.lever[0] * y.w2;
     let moves = 0.5 * ((rise + lift).powi(2) - rise * rise);

@@ -4,7 +4,7 @@ use crate::common::wander;
 use spincyl::contact::{Face, Friction, end_ratio};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Contact, State};
 use std::f64::consts::PI;
 
@@ -225,7 +225,7 @@ fn slide_and_spin_end_together_on_a_slope_that_holds_and_last_longer_the_steeper
 fn a_coin_dropped_flat_on_a_slope_bounces_and_then_slides_or_stays() {
     let body = Body::solid(0.1).unwrap();
     for (mu, beta) in [(0.2, 0.4), (0.6, 0.4)] {
-        let start = Start::from(State { w3: 1.5, ..LEVEL }).with_aloft([0.2, 0.0]);
+        let start = Start::from(State { w3: 1.5, ..LEVEL }).with_aloft(AboveTable::new(0.2, 0.0));
         let m = moved(&body, start, &[30.0], &rough(mu, beta).with_restitution(0.5));
         let path = m.path.as_ref().unwrap();
         assert!(path.impacts.len() > 5 && path.phases.iter().any(|phase| phase.kind == Kind::OnItsFace));

@@ -2,9 +2,10 @@
 
 use crate::common::{drawn, wander};
 use spincyl::body::Circle;
+use spincyl::contact::Force;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::Kind;
+use spincyl::motion::path::{Kind, OtherRim};
 use spincyl::motion::{Ask, Ending, Motion, Sample, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -132,14 +133,15 @@ fn a_body_whose_axis_is_not_across_is_held_along_it_where_both_rims_can() {
     let pull = slope.sin() * f64::sin(0.5);
     for (i, y) in m.states.iter().enumerate() {
         assert!((y.w3 - rate * m.times[i]).abs() < 1e-13 && y.w1 == 0.0);
-        let [.., normal, across, along] = m.path.as_ref().unwrap().other_rim[i];
+        let there = m.path.as_ref().unwrap().other_rim[i].force;
         let here = m.forces.as_ref().unwrap()[i];
-        assert!((here.across + along + pull).abs() < 1e-14, "{here:?} {along}");
-        assert!((here.normal + normal - slope.cos()).abs() < 1e-14);
-        assert!((here.along + across + 0.5 / 1.5 * slope.sin() * f64::cos(0.5)).abs() < 1e-14);
+        assert!((here.across + there.across + pull).abs() < 1e-14, "{here:?} {there:?}");
+        assert!((here.normal + there.normal - slope.cos()).abs() < 1e-14);
+        assert!((here.along + there.along + 0.5 / 1.5 * slope.sin() * f64::cos(0.5)).abs() < 1e-14);
         // Both are within their cones by the same share of what is left across.
         let left = |n: f64, f: f64| ((0.4 * n).powi(2) - f * f).sqrt();
-        let shares = [here.across / left(here.normal, here.along), along / left(normal, across)];
+        let shares =
+            [here.across / left(here.normal, here.along), there.across / left(there.normal, there.along)];
         assert!((shares[0] - shares[1]).abs() < 1e-12 && shares[0].abs() < 1.0, "{shares:?}");
     }
 }
@@ -216,8 +218,8 @@ fn what_is_let_go_at_rest_sticks_slips_pivots_or_rises_as_coulomb_says_at_both_r
         let m = moved(&body, start, mu, slope, &[t]);
         let (path, force) = (m.path.as_ref().unwrap(), m.forces.as_ref().unwrap()[0]);
         let case = format!("{body:?} {start:?} mu {mu} slope {slope} {:?}", kinds(&m));
-        let [u, v, normal, along, across] = path.other_rim[0];
-        let (here, there) = (path.slip[0], [u, v]);
+        let OtherRim { slip, force: Force { normal, along, across, .. }, .. } = path.other_rim[0];
+        let (here, there) = (path.slip[0], slip);
         let rims = [(here, [force.normal, force.across, force.along]), (there, [normal, across, along])];
         let kind = path.kinds[0];
         found[[Kind::RollingOnItsSide, Kind::Pivoting, Kind::Lying]

@@ -226,7 +226,7 @@ fn a_ball_sleeps_on_its_pole_above_the_spin_that_routh_found() {
             let high = |spin: f64| {
                 let (s, c) = 1e-4f64.sin_cos();
                 let y = State { theta: 1e-4, w1: spin * s, w2: 0.0, w3: spin * c };
-                Swing::new(&body, &y, contact, false).unwrap().turning_points()[1]
+                Swing::new(&body, &y, contact).unwrap().turning_points()[1]
             };
             // from 1e-4 the ball leans little above the critical spin, and by an angle of order 1 below
             assert!(

@@ -4,7 +4,7 @@ use crate::common::{drawn, wander};
 use spincyl::contact::{Face, Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Ending, Motion, RestsOn, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, RestsOn, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::PI;
 
@@ -203,7 +203,12 @@ fn a_flat_drop_brakes_slide_and_spin_by_its_impulse_and_ends_after_all_of_its_bo
         let time = falls + 2.0 * e * falls / (1.0 - e);
         let ask = rough(mu).with_restitution(e);
         for (v, w) in [(0.0, 2.0), (3.0, 0.0)] {
-            let m = moved(&tube, slides(&tube, [v, 0.0], w).with_aloft([0.08, 0.0]), &ask, time + 1e-9);
+            let m = moved(
+                &tube,
+                slides(&tube, [v, 0.0], w).with_aloft(AboveTable::new(0.08, 0.0)),
+                &ask,
+                time + 1e-9,
+            );
             assert_eq!(m.states.len(), 21, "{:?} {e} {v} {w} {:?}", m.event, m.path.as_ref().unwrap().phases);
             let (path, y) = (m.path.as_ref().unwrap(), m.states[20]);
             let last = path.phases.last().unwrap();
@@ -215,12 +220,18 @@ fn a_flat_drop_brakes_slide_and_spin_by_its_impulse_and_ends_after_all_of_its_bo
         }
         // Whatever the bounces, it stops as if it had slid all the time.
         let slid = end(&moved(&tube, slides(&tube, [1.5, 0.0], 1.0), &rough(mu), 50.0)).1;
-        let hopped = end(&moved(&tube, slides(&tube, [1.5, 0.0], 1.0).with_aloft([0.08, 0.0]), &ask, 50.0)).1;
+        let hopped = end(&moved(
+            &tube,
+            slides(&tube, [1.5, 0.0], 1.0).with_aloft(AboveTable::new(0.08, 0.0)),
+            &ask,
+            50.0,
+        ))
+        .1;
         assert!((slid - hopped).abs() < 1e-9, "{slid} {hopped}");
     }
     let for_ever = moved(
         &tube,
-        slides(&tube, [0.0; 2], 0.0).with_aloft([0.08, 0.0]),
+        slides(&tube, [0.0; 2], 0.0).with_aloft(AboveTable::new(0.08, 0.0)),
         &rough(mu).with_restitution(1.0),
         50.0,
     );
@@ -286,7 +297,7 @@ fn no_random_motion_over_faces_gains_energy() {
         let e = [0.0, 0.3, 0.9][k % 3];
         let ask = rough(0.05 + 0.9 * r()).with_restitution(e);
         let start = match k % 5 {
-            0 => slides(&body, [2.0 * r() - 1.0, r()], 4.0 * r() - 2.0).with_aloft([r(), 0.0]),
+            0 => slides(&body, [2.0 * r() - 1.0, r()], 4.0 * r() - 2.0).with_aloft(AboveTable::new(r(), 0.0)),
             1 => State { theta: 1.4 * r(), w1: 0.0, w2: r() - 0.5, w3: 0.0 }.into(),
             2 => kicked(-r()),
             3 => slides(&body, [2.0 * r() - 1.0, r()], 4.0 * r() - 2.0),

@@ -8,7 +8,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Start, roll_with};
 use spincyl::sideways::slope_drift;
-use spincyl::steep::{Posture, shares, slip_slope, tip_slope};
+use spincyl::steep::{Posture, SlopeShares, shares, slip_slope, tip_slope};
 use spincyl::{Body, State, stability, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -86,7 +86,7 @@ proptest! {
         prop_assert_eq!(slip_slope(&body, 0.0, mu, Posture::Standing, 0.0).unwrap(), mu.atan());
         if z > 1e-2 {
             let slope = 0.9 * tips;
-            let [slips, _, tips] =
+            let SlopeShares { slipping: slips, tipping: tips, .. } =
                 shares(&body, 0.0, mu, &Losses::NONE, Posture::Standing, [slope, 0.3]).unwrap();
             let near = |x: f64, y: f64| (x / y - 1.0).abs() < 1e-12;
             prop_assert!(near(tips, slope.tan() * z / a) && near(slips, slope.tan() / mu), "{slips} {tips}");
@@ -133,13 +133,13 @@ fn the_shares_of_a_body_at_rest_are_those_of_the_slopes_at_which_it_lets_go() {
     let losses = Losses::of(Law::RollingResistance, 0.06);
     let t = slope.tan();
     let of = |posture, body: &Body, theta| shares(body, theta, 0.3, &losses, posture, [slope, phi]).unwrap();
-    let [slip, roll, tip] = of(Posture::Lying, &can, SIDE);
+    let SlopeShares { slipping: slip, rolling: roll, tipping: tip, .. } = of(Posture::Lying, &can, SIDE);
     assert!((slip - t / slips(&can, 0.3, Posture::Lying, phi)).abs() < 1e-14);
     assert!((roll - t * phi.sin() / 0.06).abs() < 1e-14, "{roll}");
     assert!((tip - t * phi.cos() / 1.5).abs() < 1e-14, "{tip}");
     // A ball of any kind: the couple of its weight about the contact point, over the arm of the resistance.
     let ball = Body::ball(-0.2, 0.4, 0.42).unwrap();
-    let [slip, roll, tip] = of(Posture::Edge, &ball, 0.3);
+    let SlopeShares { slipping: slip, rolling: roll, tipping: tip, .. } = of(Posture::Edge, &ball, 0.3);
     let (high, lever) = (1.0 - 0.2 * 0.3f64.cos(), -0.2 * 0.3f64.sin());
     let couple = (high * t * phi.sin()).hypot(lever - high * t * phi.cos());
     assert!((slip - t / 0.3).abs() < 1e-14 && (roll - couple / 0.06).abs() < 1e-13 && tip < 1e-16, "{roll}");
@@ -233,7 +233,8 @@ fn a_body_on_its_face_tips_over_where_its_share_says_with_rolling_resistance_as_
         let limit = 0.5 * (1.0 + arm);
         for (share, holds) in [(1.0 - 1e-9, true), (1.0 + 1e-9, false)] {
             let slope = (share * limit).atan();
-            let [_, _, tips] = shares(&body, 0.0, 0.9, &losses, Posture::Standing, [slope, 0.0]).unwrap();
+            let SlopeShares { tipping: tips, .. } =
+                shares(&body, 0.0, 0.9, &losses, Posture::Standing, [slope, 0.0]).unwrap();
             assert!((tips / share - 1.0).abs() < 1e-14, "{arm} {tips}");
             assert_eq!(stays(&body, 0.0, 0.9, losses, slope, 0.0), holds, "{arm} {share}");
         }

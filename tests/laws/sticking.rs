@@ -1,5 +1,6 @@
 //! Many motions at a time under dry friction, some of which never slip, slip for a while, or hop.
 
+use crate::common::many::{body_columns, with_summaries};
 use crate::common::{numbers, path_of, wander};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, Table, TableKind};
@@ -30,10 +31,10 @@ impl Swept {
             [Body::ell, Body::i1, Body::i3, Body::fillet, Body::theta_end].map(|x| column(&|a| x(&a.0)));
         let states = [0, 1, 2, 3].map(|k| column(&|a| numbers(&a.1)[k]));
         let [mu, fixed] = [0, 1].map(|k| column(&|a| a.2[k]));
-        let mut starts =
-            MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
+        let columns = body_columns(bodies.each_ref().map(Vec::as_slice));
+        let mut starts = MotionStarts::new(columns, states.each_ref().map(Vec::as_slice));
         if job.ask.table.rubs() {
-            starts.coefficients = Some([&mu, &fixed, &[0.0]]);
+            starts = starts.with_friction(&mu, &fixed, &[0.0]);
         }
         let (count, times) = (all.len(), job.times.len());
         let mut to = Self {
@@ -44,11 +45,10 @@ impl Swept {
             method: vec![7; count],
             status: vec![7; count],
         };
-        let mut out = MotionOutput::new(&mut to.error, &mut to.method, &mut to.status);
-        out.states = Some(to.states.each_mut().map(Vec::as_mut_slice));
-        out.last = Some(to.last.each_mut().map(Vec::as_mut_slice));
-        out.summary = to.sums.each_mut().map(|x| Some(x.as_mut_slice()));
-        assert!(roll(&starts, job, out, 1, |_| true).unwrap());
+        let out = MotionOutput::new(&mut to.error, &mut to.method, &mut to.status)
+            .with_states(to.states.each_mut().map(Vec::as_mut_slice))
+            .with_last(to.last.each_mut().map(Vec::as_mut_slice));
+        assert!(roll(&starts, job, with_summaries(out, &mut to.sums), 1, |_| true).unwrap());
         to
     }
 

@@ -8,8 +8,8 @@ use spincyl::contact::slip::Friction;
 use spincyl::contact::{ImpactLaw, Table};
 use spincyl::custom::{Custom, roll_stone};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::path::{Hit, Kind};
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::path::{AfterImpact, Hit, Kind};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Error, State};
 
@@ -56,9 +56,9 @@ fn any_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let start = Start::from(state).with_slip(if r() < 0.3 { [0.0; 2] } else { [r() - 0.5, r() - 0.5] });
     let start = start.with_heading(if r() < 0.5 { 0.0 } else { 6.0 * r() - 3.0 });
     let start = match (4.0 * r()) as u8 {
-        0 => start.with_aloft([1.5 * r(), 2.0 * r() - 1.0]),
-        1 => start.with_aloft([0.0, -r()]),
-        2 => start.with_aloft([4.0 * r(), 0.0]),
+        0 => start.with_aloft(AboveTable::new(1.5 * r(), 2.0 * r() - 1.0)),
+        1 => start.with_aloft(AboveTable::new(0.0, -r())),
+        2 => start.with_aloft(AboveTable::new(4.0 * r(), 0.0)),
         _ => start,
     };
     (any_pebble(r), start)
@@ -72,7 +72,8 @@ fn odd_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let aloft = [odd().abs(), odd()];
     let vertical = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.6, 0.0, 0.8]];
     let start = Start::from(StoneState { vertical: vertical[(5.0 * r()) as usize], w });
-    let start = start.with_slip(slip).with_aloft(if r() < 0.7 { Some(aloft) } else { None });
+    let start =
+        start.with_slip(slip).with_aloft(if r() < 0.7 { Some(AboveTable::from(aloft)) } else { None });
     (any_pebble(r), start)
 }
 
@@ -138,7 +139,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_stone_is_below_the_tabl
         };
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], [height, lift]) = (path.slip[i], path.aloft[i]);
+            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             energy(&stone, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]
@@ -154,8 +155,12 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_stone_is_below_the_tabl
                 m.times[i]
             );
             assert!(m.states[i].w.iter().all(|w| w.is_finite()), "{k} {:?}", m.states[i]);
-            assert!(path.aloft[i][0] >= -1e-13, "{k}: {:?}", path.aloft[i]);
-            assert!(path.kinds[i] == Kind::Flying || path.aloft[i] == [0.0; 2], "{k} {:?}", path.aloft[i]);
+            assert!(path.aloft[i].height >= -1e-13, "{k}: {:?}", path.aloft[i]);
+            assert!(
+                path.kinds[i] == Kind::Flying || path.aloft[i] == AboveTable::default(),
+                "{k} {:?}",
+                path.aloft[i]
+            );
         }
         for hit in &path.impacts {
             let [p, q, n] = hit.impulse;
@@ -207,9 +212,10 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
         }
         let times: Vec<f64> = (0..16).map(|k| 0.2 * f64::from(k)).collect();
         let ask = ask.with_pose(true);
-        let there = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(aloft);
+        let there =
+            Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(AboveTable::from(aloft));
         let here = Start::from(StoneState { vertical: [s, 0.0, c], w: [w1, w2, w3] });
-        let here = here.with_slip(slip).with_aloft(aloft);
+        let here = here.with_slip(slip).with_aloft(AboveTable::from(aloft));
         let (a, b) = (hops(&stone, &here, &ask, &times), roll_with(&body, there, &times, &ask, || true));
         let b = b.unwrap().unwrap();
         let (p, q) = (a.path.as_ref().unwrap(), b.path.as_ref().unwrap());
@@ -221,8 +227,8 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
                 y.vertical[2] - z.theta.cos(),
                 y.w[2] - z.w3,
                 y.spin() - spin,
-                p.aloft[i][0] - q.aloft[i][0],
-                p.aloft[i][1] - q.aloft[i][1],
+                p.aloft[i].height - q.aloft[i].height,
+                p.aloft[i].lift - q.aloft[i].lift,
                 p.slip[i][0].hypot(p.slip[i][1]) - q.slip[i][0].hypot(q.slip[i][1]),
                 p.dissipated[i] - q.dissipated[i],
             ];
@@ -254,7 +260,12 @@ fn a_ball_that_drills_and_bounces_on_a_patch_loses_its_spin_as_if_it_rested_ther
     let ball = Ellipsoid::new([1.0; 3], inertia, [0.0; 3]).unwrap();
     let table = Table::Rubs(Friction::Coulomb { mu: 0.3, fixed: 0.3, patch: 0.05 });
     let start = Start::from(StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0, 0.0, 2.0] });
-    let m = hops(&ball, &start.with_aloft([1.0, 0.0]), &Ask::on(table).with_restitution(0.7), &[30.0]);
+    let m = hops(
+        &ball,
+        &start.with_aloft(AboveTable::new(1.0, 0.0)),
+        &Ask::on(table).with_restitution(0.7),
+        &[30.0],
+    );
     let path = m.path.as_ref().unwrap();
     let speed = 2f64.sqrt();
     let slows = |k: i32| 3.0 * core::f64::consts::PI / 16.0 * 0.3 * 0.05 * 1.7 / 0.4 * speed * 0.7f64.powi(k);
@@ -270,7 +281,12 @@ fn a_ball_that_drills_and_bounces_on_a_patch_loses_its_spin_as_if_it_rested_ther
     }
     // On the table it drills on until it has stopped, at 2 I/((3 pi/16) mu eps) in all.
     let last = path.phases.last().unwrap();
-    assert!(path.impacts.last().unwrap().stays && last.kind != Kind::Flying && m.error < 1e-10, "{last:?}");
+    assert!(
+        path.impacts.last().unwrap().after == AfterImpact::Stays
+            && last.kind != Kind::Flying
+            && m.error < 1e-10,
+        "{last:?}"
+    );
 }
 
 #[test]
@@ -280,7 +296,7 @@ fn a_stone_that_falls_on_the_end_of_an_axis_bounces_straight_up_and_does_not_tur
         let stone = Ellipsoid::rattleback([1.0, 0.6, 0.4], Some([0.1, 0.2, 0.25]), 0.3, None).unwrap();
         let mut vertical = [0.0; 3];
         vertical[axis] = 1.0;
-        let start = Start::from(StoneState { vertical, w: [0.0; 3] }).with_aloft([0.5, 0.0]);
+        let start = Start::from(StoneState { vertical, w: [0.0; 3] }).with_aloft(AboveTable::new(0.5, 0.0));
         let m = hops(&stone, &start, &Ask::on(Friction::coulomb(mu)).with_restitution(e), &[0.9, 3.0]);
         let path = m.path.as_ref().unwrap();
         let (mut time, mut up) = (1.0, 1.0);
@@ -307,7 +323,8 @@ fn the_mirror_image_of_a_stone_hops_as_the_mirror_image_of_its_motion() {
         let vertical @ [a, b, c] = any_vertical(&mut r);
         let w @ [p, q, s] = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let [u, v] = [r() - 0.5, r() - 0.5];
-        let here = Start::from(StoneState { vertical, w }).with_slip([u, v]).with_aloft([r(), 0.0]);
+        let here =
+            Start::from(StoneState { vertical, w }).with_slip([u, v]).with_aloft(AboveTable::new(r(), 0.0));
         let there = Start::from(StoneState { vertical: [a, -b, c], w: [-p, q, -s] }).with_slip([u, -v]);
         let there = there.with_aloft(here.aloft);
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e);
@@ -330,7 +347,8 @@ fn without_friction_and_with_full_restitution_the_reversed_motion_goes_back() {
         let stone = any_pebble(&mut r);
         let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let state = StoneState { vertical: any_vertical(&mut r), w };
-        let start = Start::from(state).with_slip([r() - 0.5, r() - 0.5]).with_aloft([0.3 + r(), 0.0]);
+        let start =
+            Start::from(state).with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(0.3 + r(), 0.0));
         let ask = Ask::on(Table::Smooth).with_restitution(1.0);
         let m = hops(&stone, &start, &ask, &[3.0]);
         let (end, path) = (m.states[0], m.path.as_ref().unwrap());
@@ -339,12 +357,14 @@ fn without_friction_and_with_full_restitution_the_reversed_motion_goes_back() {
         }
         // Nothing horizontal changes: the velocity of the centre and L_z stay.
         let turned = StoneState { vertical: end.vertical, w: end.w.map(|w| -w) };
-        let [height, lift] = path.aloft[0];
-        let there = Start::from(turned).with_slip(path.slip[0].map(|u| -u)).with_aloft([height, -lift]);
+        let AboveTable { height, lift, .. } = path.aloft[0];
+        let there = Start::from(turned)
+            .with_slip(path.slip[0].map(|u| -u))
+            .with_aloft(AboveTable::new(height, -lift));
         let n = hops(&stone, &there, &ask, &[3.0]);
         let home = StoneState { w: n.states[0].w.map(|w| -w), ..n.states[0] };
-        let off =
-            apart(&home, &state).max((n.path.as_ref().unwrap().aloft[0][0] - start.aloft.unwrap()[0]).abs());
+        let off = apart(&home, &state)
+            .max((n.path.as_ref().unwrap().aloft[0].height - start.aloft.unwrap().height).abs());
         assert!(off < 1e-9, "{k}: {off:e}");
         back += 1;
     }
@@ -358,7 +378,7 @@ fn friction_without_limit_tends_to_a_table_on_which_a_stone_rolls() {
         let stone = any_pebble(&mut r);
         let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let start = Start::from(StoneState { vertical: any_vertical(&mut r), w });
-        let start = start.with_slip([r() - 0.5, r() - 0.5]).with_aloft([0.2 + r(), 0.0]);
+        let start = start.with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(0.2 + r(), 0.0));
         let landed = |table: Table| {
             let m = hops(&stone, &start, &Ask::on(table).with_restitution(0.4), &[3.0]);
             m.path.unwrap().impacts.first().copied()
@@ -385,20 +405,20 @@ fn a_stone_that_spins_fast_leaves_the_table_from_its_slip_as_the_cube_of_the_tim
     let m = hops(&stone, &start, &ask, &[20.0]);
     let phases = &m.path.as_ref().unwrap().phases;
     let Some(jump) = phases.iter().zip(phases.iter().skip(1)).find(|(before, at)| {
-        before.kind == Kind::Slipping && at.kind == Kind::Flying && at.aloft == [0.0; 2]
+        before.kind == Kind::Slipping && at.kind == Kind::Flying && at.aloft == AboveTable::default()
     }) else {
         panic!("{phases:?}")
     };
     let after = [1e-3, 2e-3].map(|t| jump.1.time + t);
     let m = hops(&stone, &start, &ask, &after);
-    let [[low, _], [high, _]] = [0, 1].map(|i| m.path.as_ref().unwrap().aloft[i]);
+    let [low, high] = [0, 1].map(|i| m.path.as_ref().unwrap().aloft[i].height);
     assert!(low > 0.0 && (high / low - 8.0).abs() < 0.1, "{low:e} {high:e}");
 }
 
 #[test]
 fn a_law_of_friction_of_the_user_that_is_constant_is_coulombs() {
     let (stone, start) = any_drop(&mut wander(75));
-    let start = start.with_aloft([0.4, 0.0]);
+    let start = start.with_aloft(AboveTable::new(0.4, 0.0));
     let times = [0.5, 1.5, 2.5];
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);
     let own = Custom::default().with_friction(&|_: f64| 0.3);

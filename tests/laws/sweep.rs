@@ -5,8 +5,17 @@ use crate::common::rim::{condition, sharp, steady_end};
 use crate::common::{any_rounded, ordinary_tube, tube_or_rounded};
 use proptest::prelude::*;
 use spincyl::stability::{at_rest, region};
+use spincyl::sweep::{Extrema, MapPoint, MapQuantity, TubePoints};
 use spincyl::{Body, Contact, rolling, steady, sweep};
 use std::f64::consts::FRAC_PI_2;
+
+fn tube_points([theta, half_length, bore, fillet]: [&[f64]; 4]) -> TubePoints<'_> {
+    TubePoints::new(theta, half_length).with_bore(bore).with_fillet(fillet)
+}
+
+/// The quantities in the order of [`Map::numbers`].
+const QUANTITIES: [MapQuantity; 4] =
+    [MapQuantity::SquaredRate, MapQuantity::KappaRolling, MapQuantity::KappaSmooth, MapQuantity::Energy];
 
 /// Rate, kappa when rolling, kappa on a smooth table, energy; and the codes of the regions.
 struct Map {
@@ -20,13 +29,12 @@ impl Map {
     fn filled(size: usize, fill: impl FnOnce(sweep::Portrait<'_>) -> bool) -> Self {
         let mut map = Self { numbers: core::array::from_fn(|_| vec![7.0; size]), region: vec![9; size] };
         let [rate, rolling, smooth, energy] = &mut map.numbers;
-        let out = sweep::Portrait {
-            rate: Some(rate),
-            kappa_rolling: Some(rolling),
-            kappa_smooth: Some(smooth),
-            energy: Some(energy),
-            region: Some(&mut map.region),
-        };
+        let out = sweep::Portrait::default()
+            .with_rate(rate)
+            .with_kappa_rolling(rolling)
+            .with_kappa_smooth(smooth)
+            .with_energy(energy)
+            .with_region(&mut map.region);
         assert!(fill(out));
         map
     }
@@ -38,7 +46,7 @@ impl Map {
 
     /// The map of scattered points: inclinations, half lengths, bores and fillets.
     fn scattered(columns: [&[f64]; 4], count: usize, threads: usize) -> Self {
-        Self::filled(count, |out| sweep::points(columns, out, threads, |_| true).unwrap())
+        Self::filled(count, |out| sweep::points(tube_points(columns), out, threads, |_| true).unwrap())
     }
 
     fn bits(&self, i: usize) -> [u64; 5] {
@@ -59,9 +67,13 @@ impl Single {
     fn of(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Self {
         let size = theta.len() * bodies.len();
         let mut map = Self { numbers: core::array::from_fn(|_| vec![7.0; size]), region: vec![9; size] };
-        let [rate, rolling, smooth, energy] = map.numbers.each_mut().map(|x| Some(&mut x[..]));
-        let region = Some(&mut map.region[..]);
-        let out = sweep::Portrait { rate, kappa_rolling: rolling, kappa_smooth: smooth, energy, region };
+        let [rate, rolling, smooth, energy] = map.numbers.each_mut().map(|x| &mut x[..]);
+        let out = sweep::Portrait::default()
+            .with_rate(rate)
+            .with_kappa_rolling(rolling)
+            .with_kappa_smooth(smooth)
+            .with_energy(energy)
+            .with_region(&mut map.region);
         assert!(sweep::portrait(theta, bodies, out, threads, |_| true).unwrap());
         map
     }
@@ -70,7 +82,7 @@ impl Single {
 /// The rates of a map of rates alone.
 fn single_rates(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Vec<f32> {
     let mut rate = vec![7f32; theta.len() * bodies.len()];
-    let out = sweep::Portrait { rate: Some(&mut rate[..]), ..Default::default() };
+    let out = sweep::Portrait::default().with_rate(&mut rate[..]);
     assert!(sweep::portrait(theta, bodies, out, threads, |_| true).unwrap());
     rate
 }
@@ -118,7 +130,7 @@ fn near_folds_and_edges_and_at_any_scale_the_single_rate_is_that_of_doubles_what
     let (theta, bodies) = hard_places();
     let size = theta.len() * bodies.len();
     let (mut double, single) = (vec![7f64; size], single_rates(&theta, &bodies, 1));
-    let out = sweep::Portrait { rate: Some(&mut double[..]), ..Default::default() };
+    let out = sweep::Portrait::default().with_rate(&mut double[..]);
     assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true).unwrap());
     let found = single.iter().zip(&double).map(|(x, y)| off(*x, *y));
     let worst = found.fold(0.0, f64::max);
@@ -196,8 +208,8 @@ proptest! {
         }
         prop_assert_eq!(single.region, map.region);
         let mut points = vec![7f32; theta.len()];
-        let out = sweep::Portrait { rate: Some(&mut points[..]), ..Default::default() };
-        prop_assert!(sweep::points([&theta, &[2.5], &[0.5], &[0.0]], out, threads, |_| true).unwrap());
+        let out = sweep::Portrait::default().with_rate(&mut points[..]);
+        prop_assert!(sweep::points(TubePoints::new(&theta, &[2.5]).with_bore(&[0.5]), out, threads, |_| true).unwrap());
         let row = single_rates(&theta, &[Some(Body::tube(2.5, 0.5).unwrap())], 1);
         prop_assert!(points.iter().zip(&row).all(|(x, y)| bits(*x) == bits(*y)));
     }
@@ -257,17 +269,18 @@ proptest! {
             (0..rows).for_each(|i| counted[map.region[i * bodies.len() + j] as usize] += 1.0);
             prop_assert_eq!(*area, counted, "{:?}", bodies[j]);
         }
-        let found = sweep::extrema(&theta, &bodies, [true; 4], threads, |_| true).unwrap().unwrap();
+        let found = sweep::extrema(&theta, &bodies, &QUANTITIES, threads, |_| true).unwrap().unwrap();
         // the extrema of the rate alone are computed by another method
-        let alone = sweep::extrema(&theta, &bodies, [true, false, false, false], threads, |_| true).unwrap().unwrap();
-        prop_assert_eq!(alone[0], found[0]);
-        for (map, ends) in map.numbers.iter().zip(found) {
+        let alone = sweep::extrema(&theta, &bodies, &QUANTITIES[..1], threads, |_| true).unwrap().unwrap();
+        prop_assert_eq!(alone.of(QUANTITIES[0]), found.of(QUANTITIES[0]));
+        prop_assert_eq!(alone.of(QUANTITIES[1]), None);
+        for (map, quantity) in map.numbers.iter().zip(QUANTITIES) {
             let numbers = || map.iter().filter(|x| !x.is_nan());
-            let Some([least, greatest]) = ends else {
+            let Some(Extrema { least, greatest, .. }) = found.of(quantity) else {
                 prop_assert_eq!(numbers().count(), 0);
                 continue;
             };
-            let at = |end: (f64, usize, usize)| map[end.1 * bodies.len() + end.2];
+            let at = |end: MapPoint| map[end.theta * bodies.len() + end.body];
             prop_assert_eq!(at(least), numbers().fold(f64::INFINITY, |a, b| a.min(*b)));
             prop_assert_eq!(at(greatest), numbers().fold(f64::NEG_INFINITY, |a, b| a.max(*b)));
         }
@@ -305,11 +318,10 @@ proptest! {
             (0..theta.len()).for_each(|i| counted[map.region[i * bodies.len() + j] as usize] += 1.0);
             prop_assert_eq!(*area, counted, "{:?} around {}", bodies[j], centre);
         }
-        let wanted = [true, false, false, false];
-        let found = sweep::extrema(&theta, &bodies, wanted, 1, |_| true).unwrap().unwrap()[0];
+        let found = sweep::extrema(&theta, &bodies, &QUANTITIES[..1], 1, |_| true).unwrap().unwrap();
         let rates = || map.numbers[0].iter().copied().filter(|x| !x.is_nan());
-        if let Some([least, greatest]) = found {
-            let at = |end: (f64, usize, usize)| map.numbers[0][end.1 * bodies.len() + end.2];
+        if let Some(Extrema { least, greatest, .. }) = found.of(QUANTITIES[0]) {
+            let at = |end: MapPoint| map.numbers[0][end.theta * bodies.len() + end.body];
             prop_assert_eq!(at(least), rates().fold(f64::INFINITY, f64::min));
             prop_assert_eq!(at(greatest), rates().fold(f64::NEG_INFINITY, f64::max));
         } else {
@@ -328,7 +340,7 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
         asked.set(asked.get() + 1);
         false
     };
-    let out = sweep::Portrait { rate: Some(&mut rate), ..Default::default() };
+    let out = sweep::Portrait::default().with_rate(&mut rate);
     assert!(!sweep::portrait(&theta, &bodies, out, 1, go_on).unwrap());
     assert_eq!(asked.get(), 1, "asked once, and obeyed");
     let short = || {
@@ -336,7 +348,7 @@ fn a_map_can_be_stopped_and_refuses_arrays_of_another_size() {
         sweep::portrait(
             &[0.1, 0.2],
             &[None; 4],
-            sweep::Portrait::<f64> { region: Some(&mut region), ..Default::default() },
+            sweep::Portrait::<f64>::default().with_region(&mut region),
             1,
             |_| true,
         )

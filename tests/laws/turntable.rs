@@ -4,7 +4,7 @@ use crate::common::rim::place;
 use crate::common::wander;
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Contact, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -39,7 +39,8 @@ struct Seen {
 fn seen(body: &Body, om: f64, m: &Motion, i: usize) -> Seen {
     let (y, pose, path) = (m.states[i], m.poses.as_ref().unwrap()[i], m.path.as_ref());
     let ((sin, cos), at) = (pose.phi.radians().sin_cos(), place(body, y.theta));
-    let [high, lift] = path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default();
+    let AboveTable { height: high, lift, .. } =
+        path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default();
     let [v_h, v_2] = slip::centre_velocity(body, &y, path.map_or([0.0; 2], |path| path.slip[i]));
     let point = [pose.contact_point.x, pose.contact_point.y];
     let velocity = [v_h * cos - v_2 * sin - om * point[1], v_h * sin + v_2 * cos + om * point[0]];
@@ -118,7 +119,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
     if ask.table.rubs() && !on_patch && next() < 0.5 {
         ask = ask.with_restitution(0.9 * next());
         if next() < 0.6 {
-            start = start.with_aloft([within(next, 0.05, 0.5), within(next, -0.5, 0.5)]);
+            start = start.with_aloft(AboveTable::new(within(next, 0.05, 0.5), within(next, -0.5, 0.5)));
         }
     }
     (body, start, ask.with_turning(within(next, -1.0, 1.0)))
@@ -337,7 +338,7 @@ fn a_ball_that_falls_on_a_turntable_is_thrown_along_it_by_friction() {
     for mu in [0.1, 0.2, 0.5] {
         let slip = [-om * r * 0.4f64.sin(), -om * r * 0.4f64.cos()];
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e).with_turning(om);
-        let m = rolled(&ball(), start.with_slip(slip).with_aloft([0.0, -v]), &[0.5], &ask);
+        let m = rolled(&ball(), start.with_slip(slip).with_aloft(AboveTable::new(0.0, -v)), &[0.5], &ask);
         let thrown = seen(&ball(), om, &m, 0).velocity;
         let expected = (mu * (1.0 + e) * v).min(om * r * 2.0 / 7.0);
         assert!((thrown[1] - expected).abs() < 1e-13 && thrown[0].abs() < 1e-13, "{thrown:?} {expected}");
@@ -352,7 +353,7 @@ fn a_flight_above_a_turntable_is_that_above_a_table_at_rest() {
     for _ in 0..30 {
         let (body, start, ask) = drawn(&mut next);
         let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_losses(ask.losses);
-        let start = start.with_aloft([3.0, 0.5]);
+        let start = start.with_aloft(AboveTable::new(3.0, 0.5));
         let (sin, cos) = start.heading.sin_cos();
         let [x, y] = start.place;
         let table = [om * (x * sin - y * cos), om * (x * cos + y * sin)];
@@ -376,10 +377,15 @@ fn a_face_and_two_rims_end_a_motion_on_a_turntable() {
     let y = State { theta: 0.3, w1: 0.0, w2: 0.1, w3: 0.0 };
     let can = Body::solid(0.5).unwrap();
     let flat = State { theta: 0.0, w1: 0.0, w2: 0.0, w3: 0.3 };
-    let m = rolled(&can, Start::from(flat).with_aloft([0.3, 0.0]), &[5.0], &ask);
+    let m = rolled(&can, Start::from(flat).with_aloft(AboveTable::new(0.3, 0.0)), &[5.0], &ask);
     assert_eq!(m.ending(), Ending::Face);
     let lies = State { theta: FRAC_PI_2, ..y };
-    let m = rolled(&can, Start::from(State { w2: 0.0, ..lies }).with_aloft([0.3, 0.0]), &[5.0], &ask);
+    let m = rolled(
+        &can,
+        Start::from(State { w2: 0.0, ..lies }).with_aloft(AboveTable::new(0.3, 0.0)),
+        &[5.0],
+        &ask,
+    );
     assert_eq!(m.ending(), Ending::Side);
     let m = rolled(&can, Start::from(State { theta: 1.5, ..y }), &[60.0], &ask);
     assert!(matches!(m.ending(), Ending::Face | Ending::Side), "{:?}", m.event);

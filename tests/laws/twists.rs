@@ -7,7 +7,7 @@ use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::Kind;
-use spincyl::motion::{Ask, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Motion, Start, roll_with};
 use spincyl::pose::{axes, euler_angles};
 use spincyl::{Body, State};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -77,7 +77,7 @@ proptest! {
         let few = 1e-13 * (1.0 + body.ell()) / across.norm();
         let height = -r.z + 0.5;
         let start = Start::from_twist(&body, &q, w, v, Some(height)).unwrap();
-        let [up, lift] = start.aloft.unwrap();
+        let AboveTable { height: up, lift, .. } = start.aloft.unwrap();
         prop_assert!((up - 0.5).abs() < few && (lift - u.z).abs() < few);
         prop_assert!((start.slip[0] - u.dot(&lean)).abs() < few, "{:?} {}", start.slip, u);
         prop_assert!((start.slip[1] - u.dot(&z.cross(&lean))).abs() < few);
@@ -173,7 +173,7 @@ fn sampled() -> Vec<(Body, Motion)> {
     let mut r = wander(71);
     for _ in 0..30 {
         let y = state(0.4 + r(), 2.0 * r() - 1.0, r() - 0.5, 3.0 * r() - 1.5);
-        let start = Start::from(y).with_slip([r(), r()]).with_aloft([0.5 * r(), r()]);
+        let start = Start::from(y).with_slip([r(), r()]).with_aloft(AboveTable::new(0.5 * r(), r()));
         add(&tube, start, Ask::on(dry).with_restitution(0.6));
         add(&tube, start.with_slip([0.0; 2]), Ask::on(Table::Smooth).with_restitution(0.6));
     }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
-use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
+use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, State};
 use std::f64::consts::PI;
 
@@ -41,7 +41,7 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
         // Upside down, the rim from which the state is told is on top.
         let low = height + if over && body.ell() > 0.0 { 2.0 * body.ell() } else { 0.0 };
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2: 0.0, w3 };
-        let start = Start::from(y).with_slip(slip).with_aloft([low, lift]);
+        let start = Start::from(y).with_slip(slip).with_aloft(AboveTable::new(low, lift));
         let table = [Friction::coulomb(0.3).into(), Table::Smooth][k % 2];
         let mut ask = Ask::on(table).with_restitution([0.0, 0.5, 1.0][k % 3]).with_pose(true);
         if k % 5 == 0 {
@@ -87,7 +87,8 @@ fn a_body_that_tumbles_from_upright_flies_as_one_that_hardly_leans() {
         let w3 = if r() < 0.4 { 0.0 } else { 6.0 * r() - 3.0 };
         let w2 = (if r() < 0.5 { 1.0 } else { -1.0 }) * (0.1 + 3.0 * r());
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2, w3 };
-        let start = Start::from(y).with_slip([r() - 0.5, r() - 0.5]).with_aloft([9.0, 3.0 * r()]);
+        let start =
+            Start::from(y).with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(9.0, 3.0 * r()));
         let mut ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_pose(true);
         let air = r() < 0.3;
         if air {
@@ -139,7 +140,7 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         let (mut ask, mut start) = (Ask::on(rubs), Start::from(y).with_slip(slip));
         if k % 2 == 0 {
             ask = ask.with_restitution([0.0, 0.5][k % 4 / 2]);
-            start = start.with_aloft([0.3 * r(), 0.0]);
+            start = start.with_aloft(AboveTable::new(0.3 * r(), 0.0));
         }
         let times: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
         let m = match roll_with(&body, start, &times, &ask.with_pose(true), || true) {
@@ -154,7 +155,8 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         }
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], [height, lift]) = (path.slip[i], path.aloft.get(i).copied().unwrap_or([0.0; 2]));
+            let up = path.aloft.get(i).copied().unwrap_or_default();
+            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], up);
             let struck: f64 =
                 path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
             energy(&body, &m.states[i], [u, v, lift], height) + path.dissipated[i] + struck

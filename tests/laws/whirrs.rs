@@ -1,6 +1,6 @@
 //! Many motions with losses at once, against motions one at a time.
 
-use crate::common::many::{LAWS, loss_columns};
+use crate::common::many::{LAWS, body_columns, loss_columns, with_summaries};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Table, TableKind};
 use spincyl::ensemble::{Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
@@ -49,22 +49,19 @@ impl Scene {
     /// The ends, sums, claims and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
-        let mut starts = MotionStarts::new(
-            core::array::from_fn(|k| &self.bodies[k][..]),
-            core::array::from_fn(|k| &self.states[k][..]),
-        );
-        starts.losses = Some(loss_columns(&self.losses));
+        let bodies = body_columns(core::array::from_fn(|k| &self.bodies[k][..]));
+        let starts = MotionStarts::new(bodies, core::array::from_fn(|k| &self.states[k][..]))
+            .with_losses(loss_columns(&self.losses));
         let mut found = vec![vec![7.0; count]; 6 + SUMMARIES + 1];
         let (mut method, mut status) = (vec![9; count], vec![9; count]);
-        let mut columns = found.iter_mut().map(Vec::as_mut_slice);
-        let (last, last_slip) = (
-            Some(core::array::from_fn(|_| columns.next().unwrap())),
-            Some(core::array::from_fn(|_| columns.next().unwrap())),
-        );
-        let summary = core::array::from_fn(|_| columns.next());
-        let claims = columns.next().unwrap();
-        let mut out = MotionOutput::new(claims, &mut method, &mut status);
-        (out.last, out.last_slip, out.summary) = (last, last_slip, summary);
+        let (ends, others) = found.split_at_mut(6);
+        let (sums, claims) = others.split_at_mut(SUMMARIES);
+        let mut columns = ends.iter_mut().map(Vec::as_mut_slice);
+        let mut next = || columns.next().unwrap();
+        let out = MotionOutput::new(&mut claims[0], &mut method, &mut status)
+            .with_last(core::array::from_fn(|_| next()))
+            .with_last_slip(next(), next());
+        let out = with_summaries(out, sums);
         let job = Job::new(times).with_ask(Ask::on(on)).with_tol(1e-11);
         assert!(roll(&starts, &job, out, threads, |_| true).unwrap());
         (found, status)

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use spincyl::contact::Friction;
 use spincyl::measured::{Measured, Reading, Tube};
-use spincyl::motion::Ask;
+use spincyl::motion::{AboveTable, Ask};
 use spincyl::world::WorldStart;
 
 fn can() -> Measured {
@@ -118,12 +118,12 @@ fn a_body_touches_the_table_or_is_above_it() {
         can.start_in_world(&WorldStart::new(pose, Vector3::z() * v, Vector3::zeros()))
     };
     assert_eq!(at(height, 0.0).unwrap().aloft, None);
-    let [up, lift] = at(height + 0.05, 0.2).unwrap().aloft.unwrap();
+    let AboveTable { height: up, lift, .. } = at(height + 0.05, 0.2).unwrap().aloft.unwrap();
     assert!(
         (can.scale().metres(up) - 0.05).abs() < 1e-15
             && (can.scale().metres_per_second(lift) - 0.2).abs() < 1e-15
     );
-    assert!(at(height, 0.2).unwrap().aloft.unwrap()[1] > 0.0); // it leaves the table
+    assert!(at(height, 0.2).unwrap().aloft.unwrap().lift > 0.0); // it leaves the table
     assert!(at(height - 1e-3, 0.0).unwrap_err().to_string().starts_with("position"));
     assert!(at(height, -0.2).unwrap_err().to_string().starts_with("velocity"));
     assert!(at(f64::NAN, 0.0).unwrap_err().to_string().starts_with("start"));

@@ -3,7 +3,7 @@
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
 use crate::{Answer, Desk, Refusal, count};
-use spincyl::contact::{Force, Table, TableKind, force};
+use spincyl::contact::{Force, Friction, Table, TableKind, force};
 use spincyl::exact::Swing;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
@@ -108,7 +108,12 @@ impl Desk {
         let kind = TableKind::from_code(table as u8).unwrap_or_default();
         let kind = if mu.is_finite() || kind != TableKind::Coulomb { kind } else { TableKind::Rolling };
         let restitution = (!e.is_nan()).then_some(e);
-        let table = kind.with([mu, mu, patch]);
+        let table = match kind {
+            TableKind::Rolling => Table::Rolling { mu },
+            TableKind::Coulomb => Friction::Coulomb { mu, fixed: mu, patch }.into(),
+            TableKind::Viscous => Friction::Viscous { c: mu }.into(),
+            _ => Table::Smooth,
+        };
         let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), table, t, n, restitution };
         if kind.rubs() || !self.losses.is_none() || restitution.is_some() || self.slope[0] != 0.0 {
             #[cfg(feature = "friction")]
@@ -124,7 +129,7 @@ impl Desk {
         &Wish { body, start: (y, _), t, .. }: &Wish,
         (contact, mu): (Contact, f64),
     ) -> Answer {
-        let swing = Swing::new(&body, &y, contact, true)?;
+        let swing = Swing::with_pose(&body, &y, contact)?;
         let event = motion::first_event(&swing, mu).filter(|e| e.time <= t);
         let until = event.map_or(t, |e| e.time);
         let looks = || (1..=ERRORS).map(|i| until * f64::from(i) / f64::from(ERRORS));
@@ -132,7 +137,8 @@ impl Desk {
         let pose_error = looks().map(|t| swing.pose_error(t)).fold(0.0, f64::max);
         let (code, time) = told(event);
         let [low, high] = swing.turning_points();
-        let [phi, psi] = swing.angles_per_period().unwrap_or([f64::NAN; 2]);
+        let angles = swing.angles_per_period();
+        let [phi, psi] = angles.map_or([f64::NAN; 2], |angles| [angles.precession, angles.spin]);
         self.out.extend([0.0, code, time, swing.period(), low, high, phi, psi, error, pose_error]);
         self.out.extend([0.0, 1.0, 0.0, 0.0, 0.0, until, 0.0, 0.0]);
         self.motion = Some(Kept::Exact { swing: Box::new(swing), body: Box::new(body), contact, until });

@@ -41,7 +41,7 @@ impl Desk {
             self.out.push(row.time);
             let ([w, x, y, z], [left, ahead]) = (row.orientation, row.centre);
             self.out.extend_from_slice(&[x, y, z, left, ahead, w]);
-            let ([w, x, y, z], [left, ahead]) = row.rates;
+            let ([w, x, y, z], [left, ahead]) = (row.orientation_rate, row.centre_velocity);
             self.out.extend_from_slice(&[x, y, z, left, ahead, w]);
             let [n1, n2, _] = row.state.vertical;
             self.out.extend_from_slice(&[row.state.spin(), n1, n2, row.normal]);

@@ -9,7 +9,7 @@ use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
 use spincyl::contact::{Force, Table, slip};
 use spincyl::motion::path::{self, Kind};
-use spincyl::motion::{Ask, Method, Motion, Start};
+use spincyl::motion::{AboveTable, Ask, Method, Motion, Start};
 use spincyl::pose::{Angle, Pose};
 use spincyl::{Body, Contact};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -93,7 +93,7 @@ impl Walked {
         };
         if let Some(near) = self.rows.iter().rev().find(sound) {
             let since: Vec<f64> = wanted.iter().map(|t| t - near.t).collect();
-            let aloft = (near.kind == Kind::Flying).then_some([near.pose.height, near.lift]);
+            let aloft = (near.kind == Kind::Flying).then_some(AboveTable::new(near.pose.height, near.lift));
             let mut start = Start::from(near.y).with_slip(near.slip).with_aloft(aloft);
             if self.ask.slope != 0.0 {
                 let at = near.pose.contact_point;
@@ -148,7 +148,7 @@ impl Walked {
             let (t, y, slip) = (motion.times[i], motion.states[i], path.slip[i]);
             let knocks = path.impacts.iter().take_while(|hit| hit.time < t).map(|hit| hit.lost);
             let lost = path.dissipated[i] + path.work_lost.get(i).unwrap_or(&0.0) + knocks.sum::<f64>();
-            let [height, lift] = path.aloft.get(i).copied().unwrap_or_default();
+            let AboveTable { height, lift, .. } = path.aloft.get(i).copied().unwrap_or_default();
             let rim = path.rims.get(i).copied().unwrap_or_default();
             let body = self.body.standing_on(rim);
             let energy = match self.ask.table {

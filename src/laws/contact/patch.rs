@@ -21,9 +21,9 @@
 //! use spincyl::contact::patch;
 //!
 //! // A patch that only drills has a couple of 3 pi/16 mu N eps, and resists a small slip by a small force.
-//! let [force, couple] = patch::of(0.0);
+//! let patch::PatchShares { force, couple, .. } = patch::of(0.0);
 //! assert!(force == 0.0 && (couple - 3.0 * std::f64::consts::PI / 16.0).abs() < 1e-14);
-//! assert!((patch::of(patch::slip_for(0.5))[0] - 0.5).abs() < 1e-12);
+//! assert!((patch::of(patch::slip_for(0.5)).force - 0.5).abs() < 1e-12);
 //! ```
 
 use crate::methods::search::crossing;
@@ -114,13 +114,23 @@ impl Rubbing<Dual<f64>> {
     }
 }
 
+/// The friction of a patch, as shares of what it can be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PatchShares {
+    /// The force f against the slip, in mu N.
+    pub force: f64,
+    /// The couple g against drilling, in mu N eps.
+    pub couple: f64,
+}
+
 /// f and g of a slip that is `k` times eps |w_z|.
-pub fn of(k: f64) -> [f64; 2] {
+pub fn of(k: f64) -> PatchShares {
     if k.is_infinite() {
-        return [1.0, 0.0];
+        return PatchShares { force: 1.0, couple: 0.0 };
     }
     let [force, couple] = friction_and_couple(k, 1.0);
-    [k * force, couple]
+    PatchShares { force: k * force, couple }
 }
 
 /// The k at which f(k) equals this share of mu N, which is from 0 to 1; k is infinite for 1. Inside, a cubic gives k;
@@ -134,7 +144,7 @@ pub fn slip_for(share: f64) -> f64 {
         return f64::INFINITY;
     }
     // 1 - f is about q^2/10.
-    let off = |q: f64| of(1.0 / q)[0] - share;
+    let off = |q: f64| of(1.0 / q).force - share;
     1.0 / crossing(off, 0.0, 1.0, 1.0 - share, off(1.0))
 }
 
@@ -180,7 +190,7 @@ mod tests {
     fn force_and_couple_are_those_of_the_integral_over_the_patch() {
         for [k, force, couple] in KNOWN {
             let found = of(k);
-            for (found, known) in found.into_iter().zip([force, couple]) {
+            for (found, known) in [found.force, found.couple].into_iter().zip([force, couple]) {
                 assert!((found - known).abs() < 2e-15 * known, "k = {k:e}: {found} for {known}");
             }
         }
@@ -192,7 +202,7 @@ mod tests {
             let [force, couple] = friction_and_couple(slip, 0.0);
             assert!((force * slip - 1.0).abs() < 3e-16 && couple == 0.0);
         }
-        assert_eq!(of(f64::INFINITY), [1.0, 0.0]);
+        assert_eq!(of(f64::INFINITY), PatchShares { force: 1.0, couple: 0.0 });
     }
 
     #[test]
@@ -200,11 +210,11 @@ mod tests {
         // Phi = k f + g has the slope f, and g' = -k f'.
         for i in 1..400 {
             let (k, h) = (f64::from(i) * 0.01, 1e-4);
-            let ([f, _], [high, low]) = (of(k), [of(k + h), of(k - h)]);
-            let power = |k: f64, [f, g]: [f64; 2]| k * f + g;
+            let (f, [high, low]) = (of(k).force, [of(k + h), of(k - h)]);
+            let power = |k: f64, of: PatchShares| k * of.force + of.couple;
             let slope = (power(k + h, high) - power(k - h, low)) / (2.0 * h);
             assert!((slope - f).abs() < 1e-8, "{k}");
-            let (rises, falls) = (high[0] - low[0], low[1] - high[1]);
+            let (rises, falls) = (high.force - low.force, low.couple - high.couple);
             assert!(rises > 0.0 && (falls - k * rises).abs() < 1e-6 * rises, "{k}");
         }
     }
@@ -212,9 +222,9 @@ mod tests {
     #[test]
     fn the_slip_for_a_force_gives_that_force() {
         for k in [0.0, 1e-9, 0.1, 0.849, 0.9999, 1.0, 1.0001, 2.0, 30.0, 1e3] {
-            let [force, _] = of(k);
+            let force = of(k).force;
             let found = slip_for(force);
-            assert!((of(found)[0] - force).abs() <= 3e-16, "{k} {found}");
+            assert!((of(found).force - force).abs() <= 3e-16, "{k} {found}");
         }
         assert_eq!([slip_for(0.0), slip_for(1.0)], [0.0, f64::INFINITY]);
     }

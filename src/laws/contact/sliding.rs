@@ -15,7 +15,7 @@
 //! Error: the tolerance of the steps.
 
 use super::delassus::{Delassus, speed};
-use super::patch::{self, Rubbing, rubs};
+use super::patch::{self, PatchShares, Rubbing, rubs};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::methods::search::crossing;
 use crate::methods::{SHORT_CODE, rk8};
@@ -236,7 +236,7 @@ impl ImpactSlip<'_> {
         let holds @ [x, y, couple] = self.holding(patch);
         let friction = x.hypot(y);
         if friction <= fixed {
-            let [_, grip] = patch::of(patch::slip_for(friction / fixed));
+            let PatchShares { couple: grip, .. } = patch::of(patch::slip_for(friction / fixed));
             if couple.abs() <= fixed * patch.radius * grip || fixed == f64::INFINITY {
                 return Some((holds, true));
             }
@@ -268,11 +268,11 @@ impl ImpactSlip<'_> {
         // From there on it is followed while friction falls to its own value.
         let ratio = [driven[0].hypot(driven[1]), driven[2].abs() / radius];
         let leans = |beta: f64| {
-            let [force, couple] = patch::of(1.0 / beta.tan());
+            let PatchShares { force, couple } = patch::of(1.0 / beta.tan());
             force * ratio[1] - couple * ratio[0]
         };
         let beta = crossing(leans, 0.0, FRAC_PI_2, leans(0.0), leans(FRAC_PI_2));
-        let [force, couple] = patch::of(1.0 / beta.tan());
+        let PatchShares { force, couple } = patch::of(1.0 / beta.tan());
         let mut x = [driven[1].atan2(driven[0]), beta.copysign(driven[2]), 0.0];
         let (mut more, mut fall) = (ratio[0].hypot(ratio[1]) / (mu * force.hypot(couple)), 0.5);
         let mut left = MOST_NEWTON;

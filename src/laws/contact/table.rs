@@ -142,7 +142,7 @@ impl TableKind {
     }
 
     /// The law of this kind with these coefficients; coefficients that the kind does not have are ignored.
-    pub fn with(self, [a, b, patch]: [f64; 3]) -> Table {
+    pub(crate) fn with(self, [a, b, patch]: [f64; 3]) -> Table {
         match self {
             Self::Rolling => Table::Rolling { mu: a },
             Self::Smooth => Table::Smooth,

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::laws::body::Body;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
-use crate::many::columns::{LossColumns, Split, at, fit, rows};
+use crate::many::columns::{BodyColumns, LossColumns, Split, StateColumns, at, fit, rows};
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check_drift};
 
@@ -28,9 +28,9 @@ pub struct DriftStarts<'a> {
     pub centre: Centre,
     /// Columns of ell, i1, i3, bore (NaN unless the body is a tube), fillet and theta_end (NaN for the default of the
     /// body).
-    pub bodies: [&'a [f64]; 6],
+    pub(crate) bodies: [&'a [f64]; 6],
     /// Columns of theta, w1, w2 and w3; only theta matters for a centre at rest.
-    pub states: [&'a [f64]; 4],
+    pub(crate) states: [&'a [f64]; 4],
     /// Columns of the coefficients of the laws.
     pub losses: LossColumns<'a>,
 }
@@ -39,11 +39,13 @@ impl<'a> DriftStarts<'a> {
     /// Drifts of the bodies, states and losses in these columns, with this motion of the centres.
     pub fn new(
         centre: Centre,
-        bodies: [&'a [f64]; 6],
-        states: [&'a [f64]; 4],
+        bodies: BodyColumns<'a>,
+        states: impl Into<StateColumns<&'a [f64]>>,
         losses: LossColumns<'a>,
     ) -> Self {
-        Self { centre, bodies, states, losses }
+        let BodyColumns { ell, i1, i3, bore, fillet, theta_end } = bodies;
+        let bodies = [ell, i1, i3, bore, fillet, theta_end];
+        Self { centre, bodies, states: states.into().into(), losses }
     }
 }
 

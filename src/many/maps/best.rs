@@ -2,9 +2,58 @@
 
 use crate::numbers::side_by_side::SideBySide;
 
+/// A quantity of a map whose extrema [`extrema`](super::extrema) finds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MapQuantity {
+    /// The square of the reduced rotation rate.
+    SquaredRate,
+    /// Squared nutation frequency when rolling.
+    KappaRolling,
+    /// Squared nutation frequency on a smooth table.
+    KappaSmooth,
+    /// Energy, in M g R.
+    Energy,
+}
+
+/// A value of a map and its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MapPoint {
+    /// The value.
+    pub value: f64,
+    /// Index of the inclination.
+    pub theta: usize,
+    /// Index of the body.
+    pub body: usize,
+}
+
+/// Minimum and maximum of a quantity of a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Extrema {
+    /// The least value.
+    pub least: MapPoint,
+    /// The greatest value.
+    pub greatest: MapPoint,
+}
+
+/// The extrema of the quantities of a map, from [`extrema`](super::extrema).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapExtrema(pub(super) [Ends; 4]);
+
+impl MapExtrema {
+    /// The extrema of a quantity; None if it was not wanted, and without any steady state.
+    pub fn of(&self, quantity: MapQuantity) -> Option<Extrema> {
+        let at = |(value, theta, body)| MapPoint { value, theta, body };
+        self.0[quantity as usize]
+            .map(|[least, greatest]| Extrema { least: at(least), greatest: at(greatest) })
+    }
+}
+
 /// Minimum and maximum of a quantity of a map, each as (value, index of the inclination, index of the body); None
 /// without any steady state.
-pub type Extrema = Option<[(f64, usize, usize); 2]>;
+pub(crate) type Ends = Option<[(f64, usize, usize); 2]>;
 
 /// The minimum of x and of -x in each lane, each with its place: the index of the group of lanes, counted row
 /// by row.
@@ -40,7 +89,7 @@ impl<T: SideBySide> ExtremaInLanes<T> {
 
     /// Minimum and maximum with their places, for a map of this `width` with `chunks` groups in a row.
     #[inline(always)]
-    pub fn places(&self, chunks: usize, width: usize) -> Extrema {
+    pub fn places(&self, chunks: usize, width: usize) -> Ends {
         let mut ends = [(f64::INFINITY, 0, 0); 2];
         for (end, (value, place)) in ends.iter_mut().zip(&self.0) {
             let mut order = usize::MAX;

@@ -11,7 +11,7 @@
 //!
 //! let (theta, body) = ([1.2, 1.3], Body::solid(2.5)?);
 //! let mut rate = [0.0; 2];
-//! let wanted = Portrait { rate: Some(&mut rate[..]), ..Portrait::default() };
+//! let wanted = Portrait::default().with_rate(&mut rate[..]);
 //! assert!(portrait(&theta, &[Some(body)], wanted, 1, |_| true)?);
 //! assert_eq!(rate, theta.map(|theta| steady::rate(&body, theta)));
 //! # Ok::<(), spincyl::Error>(())
@@ -35,8 +35,10 @@ use fearless_simd::{Level, Simd, f64x8};
 use rates::RateNumbers;
 
 pub use areas::areas;
-pub use best::Extrema;
+pub(crate) use best::Ends;
+pub use best::{Extrema, MapExtrema, MapPoint, MapQuantity};
 pub use survey::extrema;
+pub(crate) use survey::extrema_compiled_once;
 
 /// Number of points in a block: a thread takes one block at a time, and the caller can stop the work between blocks.
 const POINTS_PER_BLOCK: usize = 1 << 16;
@@ -71,6 +73,7 @@ mod sealed {
 /// The quantities of a map, each as a row-major array (inclination, body), or, for points, as an array with one number
 /// for each point; a quantity that is `None` is not computed.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Portrait<'a, F = f64> {
     /// Reduced rotation rate, NaN without a steady state.
     pub rate: Option<&'a mut [F]>,
@@ -87,6 +90,72 @@ pub struct Portrait<'a, F = f64> {
 impl<F> Default for Portrait<'_, F> {
     fn default() -> Self {
         Self { rate: None, kappa_rolling: None, kappa_smooth: None, energy: None, region: None }
+    }
+}
+
+impl<'a, F> Portrait<'a, F> {
+    /// Returns these arrays with one for the reduced rotation rate.
+    #[must_use]
+    pub fn with_rate(self, rate: &'a mut [F]) -> Self {
+        Self { rate: Some(rate), ..self }
+    }
+
+    /// Returns these arrays with one for the squared nutation frequency when rolling.
+    #[must_use]
+    pub fn with_kappa_rolling(self, kappa_rolling: &'a mut [F]) -> Self {
+        Self { kappa_rolling: Some(kappa_rolling), ..self }
+    }
+
+    /// Returns these arrays with one for the squared nutation frequency on a smooth table.
+    #[must_use]
+    pub fn with_kappa_smooth(self, kappa_smooth: &'a mut [F]) -> Self {
+        Self { kappa_smooth: Some(kappa_smooth), ..self }
+    }
+
+    /// Returns these arrays with one for the energy.
+    #[must_use]
+    pub fn with_energy(self, energy: &'a mut [F]) -> Self {
+        Self { energy: Some(energy), ..self }
+    }
+
+    /// Returns these arrays with one for the codes of the regions.
+    #[must_use]
+    pub fn with_region(self, region: &'a mut [u8]) -> Self {
+        Self { region: Some(region), ..self }
+    }
+}
+
+/// Scattered points of a map, each with an inclination and a tube, as columns: each has the length n, or is a single
+/// number for all points.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct TubePoints<'a> {
+    /// Inclination.
+    pub theta: &'a [f64],
+    /// Half length of the tube, in R.
+    pub half_length: &'a [f64],
+    /// Inner radius of the tube, in R.
+    pub bore: &'a [f64],
+    /// Radius of the rounding of its outer edges, in R.
+    pub fillet: &'a [f64],
+}
+
+impl<'a> TubePoints<'a> {
+    /// Points with solid cylinders of sharp edges.
+    pub const fn new(theta: &'a [f64], half_length: &'a [f64]) -> Self {
+        Self { theta, half_length, bore: &[0.0], fillet: &[0.0] }
+    }
+
+    /// Returns these points with this column of the inner radii.
+    #[must_use]
+    pub const fn with_bore(self, bore: &'a [f64]) -> Self {
+        Self { bore, ..self }
+    }
+
+    /// Returns these points with this column of the radii of the rounding.
+    #[must_use]
+    pub const fn with_fillet(self, fillet: &'a [f64]) -> Self {
+        Self { fillet, ..self }
     }
 }
 
@@ -259,8 +328,18 @@ fn fill<T: Narrow, C: Stored>(
     }
 }
 
-/// Fills the quantities of scattered points, each with an inclination and a tube (half length, bore and fillet); any of
-/// these arrays may be a single number. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
+/// Fills the quantities of scattered points. NaN and `Region::Invalid` mark points where theta or the tube is out of range.
+///
+/// ```
+/// use spincyl::sweep::{Portrait, TubePoints, points};
+///
+/// // One inclination of three cylinders.
+/// let mut kappa = [0.0; 3];
+/// let out = Portrait::default().with_kappa_rolling(&mut kappa[..]);
+/// assert!(points(TubePoints::new(&[1.3], &[1.0, 2.0, 3.0]), out, 1, |_| true)?);
+/// assert!(kappa.iter().all(|kappa| *kappa > 0.0), "{kappa:?}");
+/// # Ok::<(), spincyl::Error>(())
+/// ```
 ///
 /// The values are those of [`portrait`], bit by bit; `threads` and `go_on` are as for `portrait`.
 ///
@@ -270,7 +349,7 @@ fn fill<T: Narrow, C: Stored>(
 /// # Panics
 /// Panics if columns differ in length (apart from single numbers), or an array of `out` does not fit them.
 pub fn points<F: Cell>(
-    [theta, ell, bore, fillet]: [&[f64]; 4],
+    TubePoints { theta, half_length: ell, bore, fillet }: TubePoints<'_>,
     out: Portrait<'_, F>,
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,

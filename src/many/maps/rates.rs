@@ -1,6 +1,6 @@
 //! Maps of the rate alone, which needs three numbers of a body on a sharp rim.
 
-use super::best::{Extrema, ExtremaInLanes};
+use super::best::{Ends, ExtremaInLanes};
 use super::block::Slot;
 use super::groups_in_cache;
 use crate::laws::body::{Body, Wall, tube_or_nan};
@@ -138,7 +138,7 @@ pub(super) fn extremes_at(
     theta: &[f64],
     columns: &[RateNumbers],
     width: usize,
-) -> Extrema {
+) -> Ends {
     in_lanes!(level, simd => rate_extremes(zero(simd), theta, columns, width), else unreachable!("{LANES_ARE_NEEDED}"))
 }
 
@@ -147,7 +147,7 @@ pub(super) fn extremes_at(
 const ROWS_PER_RUN: usize = 16;
 
 #[inline(always)]
-fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[RateNumbers], width: usize) -> Extrema {
+fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[RateNumbers], width: usize) -> Ends {
     let mut best = ExtremaInLanes::nothing(like);
     let mut bounds = [like.splat(f64::INFINITY), like.splat(f64::NEG_INFINITY)];
     let mut passing = Vec::with_capacity(columns.len());

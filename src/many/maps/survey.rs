@@ -1,7 +1,7 @@
 //! The extrema of the quantities of a map, kept block by block, so that no array as large as a map is ever
 //! stored.
 
-use super::best::{Extrema, ExtremaInLanes};
+use super::best::{Ends, ExtremaInLanes, MapExtrema, MapQuantity};
 use super::rates::{RateNumbers, extremes_at};
 use super::{blocks_of_map, body_columns};
 use crate::error::{Error, room};
@@ -12,7 +12,19 @@ use crate::numbers::{LANES, Narrow, in_lanes};
 use crate::states::stability::{AtRest, Stored, Wanted};
 use fearless_simd::Level;
 
-/// The extrema of the squared rate, of both kappas and of the energy over a map that is not stored.
+/// The extrema of the wanted quantities over a map that is not stored.
+///
+/// ```
+/// use spincyl::sweep::{MapQuantity, extrema};
+/// use spincyl::{Body, steady};
+///
+/// let (theta, body) = ([1.1, 1.2, 1.3], Body::solid(2.5)?);
+/// let found = extrema(&theta, &[Some(body)], &[MapQuantity::SquaredRate], 1, |_| true)?.expect("not stopped");
+/// let least = found.of(MapQuantity::SquaredRate).expect("there are steady states").least;
+/// assert!((least.value.sqrt() - steady::rate(&body, theta[least.theta])).abs() < 1e-15);
+/// assert_eq!(found.of(MapQuantity::Energy), None); // it was not wanted
+/// # Ok::<(), spincyl::Error>(())
+/// ```
 ///
 /// `threads` and `go_on` are as for [`portrait`](super::portrait); None if the work is not finished. Of equal values
 /// the first in row-major order counts.
@@ -22,21 +34,23 @@ use fearless_simd::Level;
 pub fn extrema(
     theta: &[f64],
     bodies: &[Option<Body>],
-    wanted: [bool; 4],
+    wanted: &[MapQuantity],
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
-) -> Result<Option<[Extrema; 4]>, Error> {
-    extrema_compiled_once(theta, bodies, wanted, threads, &mut go_on)
+) -> Result<Option<MapExtrema>, Error> {
+    let mut asked = [false; 4];
+    wanted.iter().for_each(|quantity| asked[*quantity as usize] = true);
+    Ok(extrema_compiled_once(theta, bodies, asked, threads, &mut go_on)?.map(MapExtrema))
 }
 
 /// The work of [`extrema`], compiled once for all callers.
-fn extrema_compiled_once(
+pub(crate) fn extrema_compiled_once(
     theta: &[f64],
     bodies: &[Option<Body>],
     wanted: [bool; 4],
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<[Extrema; 4]>, Error> {
+) -> Result<Option<[Ends; 4]>, Error> {
     let only_rate = wanted == [true, false, false, false];
     let Some(columns) = body_columns(bodies, only_rate, go_on)? else { return Ok(None) };
     let mut whole = [None; 4];
@@ -68,7 +82,7 @@ fn extrema_compiled_once(
 }
 
 /// The smaller minimum and the larger maximum; of equal values the first in row-major order.
-fn outer_extrema(a: Extrema, b: Extrema) -> Extrema {
+fn outer_extrema(a: Ends, b: Ends) -> Ends {
     let place = |end: &(f64, usize, usize)| (end.1, end.2);
     match (a, b) {
         (Some([low, high]), Some([lower, higher])) => {
@@ -89,7 +103,7 @@ fn all_extrema_of(
     wanted: [bool; 4],
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
-) -> Result<Option<[Extrema; 4]>, Error> {
+) -> Result<Option<[Ends; 4]>, Error> {
     extrema_of(theta, bodies, columns, threads, go_on, |theta, columns, width| {
         in_lanes!(
             level,
@@ -106,8 +120,8 @@ fn extrema_of<C: Sync>(
     columns: &[C],
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
-    block: impl Fn(&[f64], &[C], usize) -> [Extrema; 4] + Sync,
-) -> Result<Option<[Extrema; 4]>, Error> {
+    block: impl Fn(&[f64], &[C], usize) -> [Ends; 4] + Sync,
+) -> Result<Option<[Ends; 4]>, Error> {
     let count = blocks_of_map(theta, bodies).count();
     let (mut found, mut blocks) = (room(count)?, room(count)?);
     found.resize(count, [None; 4]);
@@ -137,7 +151,7 @@ fn extrema_of_block<T: Narrow, C: Stored>(
     columns: &[C],
     width: usize,
     wanted: [bool; 4],
-) -> [Extrema; 4] {
+) -> [Ends; 4] {
     let mut best = [ExtremaInLanes::nothing(like); 4];
     // The extrema of the rate are found from its square, without a root at every point.
     let [squared, rolling, smooth, energy] = wanted;

@@ -1,13 +1,13 @@
 //! The initial states of an ensemble and the arrays for its results, as columns.
 
-use super::Answer;
+use super::{Answer, Job};
 use crate::error::Error;
 use crate::laws::body::{Body, MOST_CIRCLES, beyond};
 use crate::laws::contact::Table;
 use crate::laws::loss::Losses;
 use crate::laws::state::State;
-use crate::many::columns::{LossColumns, Split, at, fit, rows};
-use crate::motions::{Ending, Start};
+use crate::many::columns::{BodyColumns, LossColumns, Split, StateColumns, at, fit, rows};
+use crate::motions::{AboveTable, Ending, Start};
 use crate::numbers::codes::coded;
 
 /// Bodies, initial states, slips, contacts and losses as columns of numbers: each column has the length n, or is a
@@ -16,27 +16,27 @@ use crate::numbers::codes::coded;
 #[non_exhaustive]
 pub struct MotionStarts<'a> {
     /// Columns of ell, i1, i3, fillet and theta_end (NaN for the default of the body).
-    pub bodies: [&'a [f64]; 5],
+    pub(crate) bodies: [&'a [f64]; 5],
     /// Columns of theta, w1, w2 and w3.
-    pub states: [&'a [f64]; 4],
+    pub(crate) states: [&'a [f64]; 4],
     /// The slope of the table and phi at the start; `None` on a level table.
-    pub slopes: Option<[&'a [f64]; 2]>,
+    pub(crate) slopes: Option<[&'a [f64]; 2]>,
     /// The slip along e_h and along e2, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
-    pub slips: Option<[&'a [f64]; 2]>,
+    pub(crate) slips: Option<[&'a [f64]; 2]>,
     /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
-    pub coefficients: Option<[&'a [f64]; 3]>,
+    pub(crate) coefficients: Option<[&'a [f64]; 3]>,
     /// The coefficients of the losses; `None` means no losses.
-    pub losses: Option<LossColumns<'a>>,
+    pub(crate) losses: Option<LossColumns<'a>>,
     /// Height and vertical velocity of the lowest point of motions that start in the air.
-    pub aloft: Option<[&'a [f64]; 2]>,
+    pub(crate) aloft: Option<[&'a [f64]; 2]>,
     /// The circles of bodies that have several, from the lower end up; of such a body `bodies` has only i1 and i3. There are
     /// n rows or a single one, or none if no body has several circles.
-    pub circles: &'a [CirclesOfRow],
+    pub(crate) circles: &'a [CirclesOfRow],
 }
 
 /// Radius, height above the centre of mass, and fillet of the circles of a body; a radius of NaN means no such circle.
-pub type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
+pub(crate) type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 
 /// The columns of bodies and initial states, collected from pairs of a body and its initial state.
 ///
@@ -86,14 +86,71 @@ impl MotionColumns {
     /// The initial conditions of these motions, without slip and without losses, with the contact of the job.
     pub fn starts(&self) -> MotionStarts<'_> {
         let (bodies, states) = (self.bodies.each_ref(), self.states.each_ref());
-        let starts = MotionStarts::new(bodies.map(Vec::as_slice), states.map(Vec::as_slice));
+        let starts = MotionStarts::of(bodies.map(Vec::as_slice), states.map(Vec::as_slice));
         MotionStarts { circles: &self.circles, ..starts }
     }
 }
 
 impl<'a> MotionStarts<'a> {
-    /// Bodies and states without slip and without losses, with the contact of the job.
-    pub fn new(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
+    /// Bodies and states without slip and without losses, with the contact of the job. The bores are not used.
+    ///
+    /// ```
+    /// use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, StateColumns, Summary, roll};
+    /// use spincyl::{contact::TableKind, motion::Ask};
+    ///
+    /// // Hoops that slide upright at unequal speeds roll after unequal times, u/(2 mu).
+    /// let bodies = BodyColumns::new(&[0.0], &[0.5], &[1.0]);
+    /// let states = StateColumns { theta: &[1.57][..], w1: &[0.0], w2: &[0.0], w3: &[0.0] };
+    /// let starts = MotionStarts::new(bodies, states)
+    ///     .with_slips(&[0.0], &[0.1, 0.2])
+    ///     .with_friction(&[0.3], &[0.3], &[0.0]);
+    /// let (mut error, mut method, mut status, mut slides) = ([0.0; 2], [0; 2], [0; 2], [0.0; 2]);
+    /// let out = MotionOutput::new(&mut error, &mut method, &mut status).with_summary(Summary::SlipTime, &mut slides);
+    /// let job = Job::new(&[0.6]).with_ask(Ask::on(TableKind::Coulomb));
+    /// assert!(roll(&starts, &job, out, 1, |_| true)?);
+    /// assert!((slides[1] / slides[0] - 2.0).abs() < 0.1, "{slides:?}");
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn new(bodies: BodyColumns<'a>, states: impl Into<StateColumns<&'a [f64]>>) -> Self {
+        let BodyColumns { ell, i1, i3, fillet, theta_end, .. } = bodies;
+        Self::of([ell, i1, i3, fillet, theta_end], states.into().into())
+    }
+
+    /// Returns these starts with the slopes of their tables, and phi at the start.
+    #[must_use]
+    pub fn with_slopes(self, slope: &'a [f64], phi: &'a [f64]) -> Self {
+        Self { slopes: Some([slope, phi]), ..self }
+    }
+
+    /// Returns these starts with slips along the lean and across it, in sqrt(g R). Without them there is no slip, and
+    /// the centre of a body on its face is at rest under friction.
+    #[must_use]
+    pub fn with_slips(self, along_lean: &'a [f64], across_lean: &'a [f64]) -> Self {
+        Self { slips: Some([along_lean, across_lean]), ..self }
+    }
+
+    /// Returns these starts with friction of their own, in place of that of the job: the coefficients of sliding and of
+    /// static friction, and the radius of the patch, as those of [`Friction::Coulomb`](crate::contact::Friction). Of
+    /// viscous friction `mu` is c, and of a table without a law of friction the largest mu of rolling; both leave the
+    /// other columns unused.
+    #[must_use]
+    pub fn with_friction(self, mu: &'a [f64], fixed: &'a [f64], patch: &'a [f64]) -> Self {
+        Self { coefficients: Some([mu, fixed, patch]), ..self }
+    }
+
+    /// Returns these starts with losses.
+    #[must_use]
+    pub fn with_losses(self, losses: LossColumns<'a>) -> Self {
+        Self { losses: Some(losses), ..self }
+    }
+
+    /// Returns these starts in the air, with the heights of the lowest points and their vertical velocities.
+    #[must_use]
+    pub fn with_aloft(self, height: &'a [f64], lift: &'a [f64]) -> Self {
+        Self { aloft: Some([height, lift]), ..self }
+    }
+
+    pub(crate) fn of(bodies: [&'a [f64]; 5], states: [&'a [f64]; 4]) -> Self {
         Self {
             bodies,
             states,
@@ -164,7 +221,7 @@ impl<'a> MotionStarts<'a> {
     }
 
     pub(super) fn start(&self, i: usize, body: &Body, table: &Table) -> Start {
-        let aloft = self.aloft.map(|all| all.map(|x| at(x, i)));
+        let aloft = self.aloft.map(|[height, lift]| AboveTable::new(at(height, i), at(lift, i)));
         let start = Start::from(self.state(i)).with_aloft(aloft).with_heading(self.slope(i)[1]);
         match self.slips {
             Some(slips) => start.with_slip(slips.map(|x| at(x, i))),
@@ -249,8 +306,23 @@ coded! {
 pub const SUMMARIES: usize = 23;
 
 impl Summary {
+    /// Its name in Python and in tables.
+    pub fn name(self) -> &'static str {
+        self.label()[0]
+    }
+
+    /// Its unit, such as "sqrt(R/g)"; "1" for a number without one.
+    pub fn unit(self) -> &'static str {
+        self.label()[1]
+    }
+
+    /// What it is, in words.
+    pub fn description(self) -> &'static str {
+        self.label()[2]
+    }
+
     /// Name, unit and description in words.
-    pub fn label(self) -> [&'static str; 3] {
+    pub(crate) fn label(self) -> [&'static str; 3] {
         match self {
             Self::ThetaMin => ["theta_min", "rad", "least inclination"],
             Self::ThetaMax => ["theta_max", "rad", "greatest inclination"],
@@ -282,9 +354,14 @@ impl Summary {
         }
     }
 
+    /// Whether the motions of a job from these starts have this number.
+    pub fn is_told_by(self, job: &Job<'_>, starts: &MotionStarts<'_>) -> bool {
+        self.is_of(job.ask.table.rubs(), starts.losses.is_some(), job.ask.restitution.is_some())
+    }
+
     /// Whether motions have this number; `rubs` means a law of friction, `loses` losses of energy, and `flies` motions
     /// that continue in the air and on both rims.
-    pub fn is_of(self, rubs: bool, loses: bool, flies: bool) -> bool {
+    pub(crate) fn is_of(self, rubs: bool, loses: bool, flies: bool) -> bool {
         match self {
             Self::End => true,
             Self::WorkLost => loses,
@@ -308,27 +385,27 @@ impl Summary {
 #[non_exhaustive]
 pub struct MotionOutput<'a> {
     /// theta, w1, w2, w3, row-major (motion, time); NaN after the end of a motion.
-    pub states: Option<[&'a mut [f64]; 4]>,
+    pub(crate) states: Option<[&'a mut [f64]; 4]>,
     /// The slips along e_h and along e2, in the same layout as `states`.
-    pub slips: Option<[&'a mut [f64]; 2]>,
+    pub(crate) slips: Option<[&'a mut [f64]; 2]>,
     /// The rim to which these states refer, 0 or 1, in the same layout; only for motions with a restitution.
-    pub rims: Option<&'a mut [f64]>,
+    pub(crate) rims: Option<&'a mut [f64]>,
     /// theta, w1, w2, w3 at the last time, or at the end of a motion that ends before the last time.
-    pub last: Option<[&'a mut [f64]; 4]>,
+    pub(crate) last: Option<[&'a mut [f64]; 4]>,
     /// The slips at the last time, or at the end of a motion that ends before the last time.
-    pub last_slip: Option<[&'a mut [f64]; 2]>,
+    pub(crate) last_slip: Option<[&'a mut [f64]; 2]>,
     /// The rims to which the last states refer.
-    pub last_rim: Option<&'a mut [f64]>,
+    pub(crate) last_rim: Option<&'a mut [f64]>,
     /// The summaries, indexed by [`Summary`].
-    pub summary: [Option<&'a mut [f64]>; SUMMARIES],
+    pub(crate) summary: [Option<&'a mut [f64]>; SUMMARIES],
     /// Estimated error of the states of a motion, the largest over all numbers and times, and over the period and the
     /// precession in a period, if these are wanted and exist; with friction or losses also over the slips, the phases
     /// and the end.
-    pub error: &'a mut [f64],
+    pub(crate) error: &'a mut [f64],
     /// Code of the [`Answer`].
-    pub method: &'a mut [u8],
+    pub(crate) method: &'a mut [u8],
     /// Code of the [`Ending`](crate::motions::Ending).
-    pub status: &'a mut [u8],
+    pub(crate) status: &'a mut [u8],
 }
 
 /// Columns of a block of motions, with the number of times of each.
@@ -384,6 +461,50 @@ impl<'a> MotionOutput<'a> {
             method,
             status,
         }
+    }
+
+    /// Returns these arrays with those of the states, row-major (motion, time); NaN after the end of a motion.
+    #[must_use]
+    pub fn with_states(self, states: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
+        Self { states: Some(states.into().into()), ..self }
+    }
+
+    /// Returns these arrays with those of the slips along the lean and across it, in the layout of the states.
+    #[must_use]
+    pub fn with_slips(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
+        Self { slips: Some([along_lean, across_lean]), ..self }
+    }
+
+    /// Returns these arrays with that of the rims from which the states are seen, 0 or 1, in their layout; only for
+    /// motions with a restitution.
+    #[must_use]
+    pub fn with_rims(self, rims: &'a mut [f64]) -> Self {
+        Self { rims: Some(rims), ..self }
+    }
+
+    /// Returns these arrays with those of the states at the last time, or at the end.
+    #[must_use]
+    pub fn with_last(self, last: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
+        Self { last: Some(last.into().into()), ..self }
+    }
+
+    /// Returns these arrays with those of the slips at the last time, or at the end, along the lean and across it.
+    #[must_use]
+    pub fn with_last_slip(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
+        Self { last_slip: Some([along_lean, across_lean]), ..self }
+    }
+
+    /// Returns these arrays with that of the rims from which the last states are seen.
+    #[must_use]
+    pub fn with_last_rim(self, last_rim: &'a mut [f64]) -> Self {
+        Self { last_rim: Some(last_rim), ..self }
+    }
+
+    /// Returns these arrays with that of this summary.
+    #[must_use]
+    pub fn with_summary(mut self, of: Summary, column: &'a mut [f64]) -> Self {
+        self.summary[of as usize] = Some(column);
+        self
     }
 
     pub(super) fn fits(&self, count: usize, times: usize) -> bool {

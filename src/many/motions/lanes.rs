@@ -407,7 +407,7 @@ mod tests {
             vec![0.6],
         ];
         let starts =
-            MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
+            MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
         let times = [1.0, 30.0];
         let exact = Job::new(&times).with_ask(Ask::on(table));
         let stepped = exact.with_ask(exact.ask.with_method(Method::Step(0.01)));

@@ -146,7 +146,7 @@ impl MotionBlock<'_> {
         let since = column(&|walk| walk.at[TIME]);
         let starts = MotionStarts {
             coefficients: Some([&grip, &grip, &[0.0]]),
-            ..MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice))
+            ..MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice))
         };
         let tol = (ROLLING_ERROR_SHARE * self.job.tol).clamp(1e-15, ROLLING_ERROR);
         let job = Job { tol, ..self.job.of_rolling() };

@@ -38,8 +38,7 @@ fn starts(kick: f64) -> Starts {
 /// The number of motions of 2,048 that one series does not compute, and of those that the lanes do not
 /// compute; None without lanes.
 fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]> {
-    let starts =
-        MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
+    let starts = MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     let times = [20.0];
     let job = Job { tol, ..Job::new(&times).with_ask(Ask::default().with_beyond(beyond)) };
     let work = MotionBlock { starts: &starts, job: &job, first: 0, since: None };
@@ -87,7 +86,7 @@ fn rubbing(since: Option<&[f64]>, times: &[f64]) -> Option<(Vec<u64>, Vec<usize>
     let states =
         states.map(|x| x.iter().map(|x| if *x < 0.0 { 0.4 * x } else { 0.6 * x }).collect::<Vec<_>>());
     let mut starts =
-        MotionStarts::new(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
+        MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     starts.coefficients = Some([&[0.3], &[0.4], &[0.0]]);
     let job = Job { tol: 1e-12, ..Job::new(times).with_ask(Ask::on(Friction::coulomb(0.3))) };
     let work = MotionBlock { starts: &starts, job: &job, first: 0, since };

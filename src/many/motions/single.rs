@@ -116,7 +116,7 @@ pub(super) fn roll(
     let swing = if body.has_row() {
         None
     } else if easily || extremes_wanted || turning || out.wants(Summary::Period) {
-        Swing::new(&body, &start, job.contact(), turning).ok()
+        Swing::of(&body, &start, job.contact(), turning).ok()
     } else {
         None
     };
@@ -134,7 +134,11 @@ pub(super) fn roll(
     out.put(Summary::End, i, end);
     if let Some(swing) = &swing {
         out.put(Summary::Period, i, swing.period());
-        out.put(Summary::PrecessionPerPeriod, i, swing.angles_per_period().map_or(f64::NAN, |[phi, _]| phi));
+        out.put(
+            Summary::PrecessionPerPeriod,
+            i,
+            swing.angles_per_period().map_or(f64::NAN, |angles| angles.precession),
+        );
         // The error of a motion includes those of period and precession.
         if swing.period().is_finite() {
             let timed = if out.wants(Summary::Period) { swing.period_error() } else { 0.0 };

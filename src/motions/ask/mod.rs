@@ -191,6 +191,41 @@ impl Ask {
     }
 }
 
+/// Where the lowest point of a body is above the table. In files it is the array of both numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "[f64; 2]", into = "[f64; 2]")
+)]
+#[non_exhaustive]
+pub struct AboveTable {
+    /// The height above the table, in R.
+    pub height: f64,
+    /// The vertical velocity, in sqrt(g R).
+    pub lift: f64,
+}
+
+impl AboveTable {
+    /// This height and this vertical velocity.
+    pub const fn new(height: f64, lift: f64) -> Self {
+        Self { height, lift }
+    }
+}
+
+impl From<[f64; 2]> for AboveTable {
+    /// The height and the vertical velocity.
+    fn from([height, lift]: [f64; 2]) -> Self {
+        Self { height, lift }
+    }
+}
+
+impl From<AboveTable> for [f64; 2] {
+    fn from(of: AboveTable) -> Self {
+        [of.height, of.lift]
+    }
+}
+
 /// The initial conditions of a motion: `Start::from` a state, then optionally slip, time and height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
@@ -208,7 +243,7 @@ pub struct Start<S = State> {
     pub time: f64,
     /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
     /// the air; this needs a restitution.
-    pub aloft: Option<[f64; 2]>,
+    pub aloft: Option<AboveTable>,
     /// The direction phi to which the axis leans at first, from the x axis.
     #[cfg_attr(feature = "serde", serde(default))]
     pub heading: f64,
@@ -239,7 +274,7 @@ impl<S> Start<S> {
 
     /// Returns this start in the air, with this height of the lowest point and its vertical velocity, or with `None`.
     #[must_use]
-    pub fn with_aloft(self, aloft: impl Into<Option<[f64; 2]>>) -> Self {
+    pub fn with_aloft(self, aloft: impl Into<Option<AboveTable>>) -> Self {
         Self { aloft: aloft.into(), ..self }
     }
 }
@@ -335,7 +370,7 @@ impl Start {
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
         let [along, across] = centre_velocity(body, &state, [0.0; 2]);
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
-        let aloft = height.map(|height| [height - rim.height(angle), rise]);
+        let aloft = height.map(|height| AboveTable::new(height - rim.height(angle), rise));
         Ok(Self::from(state).with_slip(slip).with_aloft(aloft))
     }
 }

@@ -1,9 +1,10 @@
 //! The result of a motion: times and states, the event that ended it, its phases, and the path of the
 //! contact point.
 
-use super::{Method, Start};
+use super::{AboveTable, Method, Start};
 use crate::error::{Error, room};
 use crate::laws::body::View;
+use crate::laws::contact::Force;
 pub use crate::laws::contact::impact::Hit;
 use crate::laws::pose::Angle;
 use crate::laws::state::State;
@@ -325,9 +326,63 @@ pub struct Phase<S = State> {
     /// The slip at the beginning of the phase, along e_h and along e2.
     pub slip: [f64; 2],
     /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
-    pub aloft: [f64; 2],
+    pub aloft: AboveTable,
     /// The rim to which the state refers, as in [`Path::rims`].
     pub rim: u8,
+}
+
+/// The rim that lands in an impact. In files it is whether this is another rim than the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "bool", into = "bool")
+)]
+#[non_exhaustive]
+pub enum Lands {
+    /// The rim from which the initial state was seen; of several circles the lowest one. A stone has no other.
+    First,
+    /// Another rim or circle.
+    Other,
+}
+
+impl From<bool> for Lands {
+    fn from(other: bool) -> Self {
+        if other { Self::Other } else { Self::First }
+    }
+}
+
+impl From<Lands> for bool {
+    fn from(lands: Lands) -> Self {
+        lands == Lands::Other
+    }
+}
+
+/// What a body does after an impact. In files it is whether the body stays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "bool", into = "bool")
+)]
+#[non_exhaustive]
+pub enum AfterImpact {
+    /// The contact point leaves the table again, or another point takes its place.
+    Leaves,
+    /// The body stays on the table: the impact is the last of a sequence of bounces.
+    Stays,
+}
+
+impl From<bool> for AfterImpact {
+    fn from(stays: bool) -> Self {
+        if stays { Self::Stays } else { Self::Leaves }
+    }
+}
+
+impl From<AfterImpact> for bool {
+    fn from(after: AfterImpact) -> Self {
+        after == AfterImpact::Stays
+    }
 }
 
 /// An impact of a rim or of a stone on the table. The components of a stone are along x and y of the laboratory, and
@@ -338,9 +393,9 @@ pub struct Phase<S = State> {
 pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the rim that lands is not the one to which the initial state refers; for a body of several circles, whether
-    /// the circle that lands is not the lowest one.
-    pub other: bool,
+    /// Whether the first rim lands or another one.
+    #[cfg_attr(feature = "serde", serde(rename = "other"))]
+    pub lands: Lands,
     /// The rim that lands, as in [`Path::rims`].
     pub rim: u8,
     /// The motion of the contact point in the impact.
@@ -357,8 +412,48 @@ pub struct Strike<S = State> {
     pub couple: f64,
     /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
     pub lost: f64,
-    /// Whether this is the last of a sequence of bounces, after which the body stays on the table.
-    pub stays: bool,
+    /// What the body does after the impact.
+    #[cfg_attr(feature = "serde", serde(rename = "stays"))]
+    pub after: AfterImpact,
+}
+
+/// The other rim of a body that lies on both. In files it is the array of the slip and of the force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "[f64; 5]", into = "[f64; 5]")
+)]
+#[non_exhaustive]
+pub struct OtherRim {
+    /// The slip of that rim, along the lean and across it.
+    pub slip: [f64; 2],
+    /// The force on that rim.
+    pub force: Force,
+}
+
+impl OtherRim {
+    /// No other rim.
+    pub(crate) const NONE: Self =
+        Self::of([f64::NAN; 2], Force { normal: f64::NAN, along: f64::NAN, across: f64::NAN });
+
+    /// A rim with this slip and this force.
+    pub(crate) const fn of(slip: [f64; 2], force: Force) -> Self {
+        Self { slip, force }
+    }
+}
+
+impl From<[f64; 5]> for OtherRim {
+    /// The slip along the lean and across it, and the normal, the along and the across component of the force.
+    fn from([u, v, normal, along, across]: [f64; 5]) -> Self {
+        Self::of([u, v], Force { normal, along, across })
+    }
+}
+
+impl From<OtherRim> for [f64; 5] {
+    fn from(OtherRim { slip: [u, v], force }: OtherRim) -> Self {
+        [u, v, force.normal, force.along, force.across]
+    }
 }
 
 /// The slip, the phases and the losses of a motion. The estimated error of the motion also covers the slips, and the
@@ -385,13 +480,13 @@ pub struct Path<S = State> {
     pub slipping: f64,
     /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
     /// the body leaves the table.
-    pub aloft: Vec<[f64; 2]>,
+    pub aloft: Vec<AboveTable>,
     /// The impacts.
     pub impacts: Vec<Strike<S>>,
-    /// Slip (along e_h, along e2) and force (N, along e2, along e_h) of the other rim at each time, NaN unless the body lies on both;
-    /// empty if the motion ends where the body comes to lie on its side.
+    /// Slip and force of the other rim at each time, NaN unless the body lies on both; empty if the motion ends where the
+    /// body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
-    pub other_rim: Vec<[f64; 5]>,
+    pub other_rim: Vec<OtherRim>,
     /// The rim to which state, slip, pose and force at each time refer: 0 is the rim to which the initial state refers, and
     /// 1 the other one. Empty if the motion ends where the body leaves the table: the rim is then always 0. For a body of
     /// several circles, the number of the circle on which it stands, from the lower end up; its states always refer to its

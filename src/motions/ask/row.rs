@@ -4,7 +4,7 @@
 use crate::error::{Error, room};
 use crate::laws::body::View;
 use crate::motions::walk::two_runs::Followed;
-use crate::motions::{Ask, Kind, Motion, Moving, Path};
+use crate::motions::{AboveTable, Ask, Kind, Motion, Moving, OtherRim, Path};
 use crate::numbers::larger_or_nan;
 
 /// The outputs at one time.
@@ -19,15 +19,24 @@ pub(crate) struct OutputRow<S: Moving> {
     /// The force and its error, if forces were requested.
     pub force: Option<(S::Force, f64)>,
     /// The height of the lowest point of the rim and its vertical velocity.
-    pub aloft: [f64; 2],
+    pub aloft: AboveTable,
     /// Slip and force of the other rim of a body that lies on both, which is seen from its first rim.
-    pub other_rim: Option<[f64; 5]>,
+    pub other_rim: Option<OtherRim>,
 }
 
 impl<S: Moving> OutputRow<S> {
     /// A row of a body on the table, without pose and force.
     pub fn on_table(state: S, slip: [f64; 2], spent: [f64; 2], kind: Kind) -> Self {
-        Self { state, slip, spent, kind, pose: None, force: None, aloft: [0.0; 2], other_rim: None }
+        Self {
+            state,
+            slip,
+            spent,
+            kind,
+            pose: None,
+            force: None,
+            aloft: AboveTable::default(),
+            other_rim: None,
+        }
     }
 
     /// A row that is seen from the upper end of the body, as told from its lower end.
@@ -64,7 +73,7 @@ impl<S: Moving> Followed<S> {
         }
         if path.goes_on {
             path.aloft.push(row.aloft);
-            path.other_rim.push(row.other_rim.unwrap_or([f64::NAN; 5]));
+            path.other_rim.push(row.other_rim.unwrap_or(OtherRim::NONE));
         }
         if path.goes_on || path.view.circles.is_some() {
             path.rims.push(path.rim(lies));

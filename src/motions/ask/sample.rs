@@ -6,11 +6,10 @@
 //! On a smooth table the centre moves only up and down. Error: that of the motion, and a few roundings.
 
 use crate::laws::body::Body;
-use crate::laws::contact::Force;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::pose::{Pose, axes};
 use crate::laws::state::State;
-use crate::motions::{Kind, Motion, Moving};
+use crate::motions::{AboveTable, Kind, Motion, Moving, OtherRim};
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -40,9 +39,9 @@ pub struct Sample<S: Moving = State> {
     /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point and its vertical velocity.
-    pub aloft: [f64; 2],
-    /// Slip (along e_h, along e2) and force (N, along e2, along e_h) of the other rim of a body that lies on both.
-    pub other_rim: Option<[f64; 5]>,
+    pub aloft: AboveTable,
+    /// Slip and force of the other rim of a body that lies on both.
+    pub other_rim: Option<OtherRim>,
     /// The rim to which state, slip, pose and force refer: 0 is that of the initial state, and 1 the other one. For a body
     /// of several circles, the number of the circle on which it stands; its state always refers to its lower end.
     pub rim: u8,
@@ -83,7 +82,8 @@ impl<S: Moving> Motion<S> {
             slip: path.and_then(|path| path.slip.get(i).copied()),
             kind: path.and_then(|path| path.kinds.get(i).copied()),
             aloft: path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default(),
-            other_rim: path.and_then(|path| path.other_rim.get(i).copied().filter(|x| !x[2].is_nan())),
+            other_rim: path
+                .and_then(|path| path.other_rim.get(i).copied().filter(|other| !other.force.normal.is_nan())),
             rim: path.and_then(|path| path.rims.get(i).copied()).or(self.circle).unwrap_or_default(),
             smooth: self.smooth,
             told: self.is_told(),
@@ -138,8 +138,8 @@ impl Sample {
 
     /// The part of that force on the other rim; None unless the body lies on both rims.
     pub fn force_on_other_rim(&self) -> Option<Vector3<f64>> {
-        let [_, _, normal, along, across] = self.force.and(self.other_rim)?;
-        self.pose.map(|pose| Force { normal, along, across }.in_laboratory(pose.phi.rest))
+        let other = self.force.and(self.other_rim)?;
+        self.pose.map(|pose| other.force.in_laboratory(pose.phi.rest))
     }
 
     /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested. It is
@@ -152,7 +152,7 @@ impl Sample {
         } else {
             centre_velocity(body, &self.state, self.slip.unwrap_or_default())
         };
-        let rise = centre_rise(body, &self.state) + self.aloft[1];
+        let rise = centre_rise(body, &self.state) + self.aloft.lift;
         self.pose.map(|pose| axes(pose.phi.rest, 0.0) * Vector3::new(along, across, rise))
     }
 

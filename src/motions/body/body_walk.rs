@@ -118,7 +118,7 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
             walk.made.path.rims = room(times.len())?;
         }
         walk.next = Some(match aloft {
-            Some(aloft) => walk.starts_in_air(aloft),
+            Some(aloft) => walk.starts_in_air(aloft.into()),
             None if on_face(&walk.of.body, &start.state) => walk.starts_on_face()?,
             None => walk.first_phase()?,
         });

@@ -45,8 +45,8 @@ mod tail;
 mod uniform;
 pub(crate) mod write;
 
-use super::{Ask, Motion, Start};
-pub use super::{Hit, Kind, Path, Phase, Strike};
+use super::{AboveTable, Ask, Motion, Start};
+pub use super::{AfterImpact, Hit, Kind, Lands, OtherRim, Path, Phase, Strike};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
@@ -178,7 +178,7 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
 /// Returns the tolerance of the steps, or an error for a body, an initial state or options out of range.
 pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, Error> {
     match start.aloft {
-        Some([height, _]) if height > 0.0 => exact::check_in_air(body, &start.state)?,
+        Some(AboveTable { height, .. }) if height > 0.0 => exact::check_in_air(body, &start.state)?,
         None if on_face(body, &start.state) => exact::check_on_face(body, &start.state)?,
         _ => exact::check(body, &start.state)?,
     }
@@ -197,7 +197,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }
-    if let Some([height, lift]) = start.aloft {
+    if let Some(AboveTable { height, lift }) = start.aloft {
         within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
         if ask.restitution.is_none() {

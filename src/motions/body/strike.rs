@@ -277,10 +277,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
                 (velocities, impulse) = (velocities.map(told), told(impulse));
             }
         }
-        let other = rim > 0;
         self.records_impact(Strike {
             time,
-            other,
+            lands: (rim > 0).into(),
             rim,
             hit,
             states,
@@ -288,7 +287,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             impulse,
             couple: 0.0,
             lost,
-            stays,
+            after: stays.into(),
         });
     }
 

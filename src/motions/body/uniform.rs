@@ -165,7 +165,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     pub(crate) fn creeps_uniformly(&mut self, creeping: Creeping) {
         let (inertia, law, still) = (self.of.body.i3(), &self.of.slide.law, is_still(&self.at));
         let k = if still { 0.0 } else { creeping.k };
-        let [force, couple] = patch::of(k).map(|share| law.strength * law.patch().unwrap_or(0.0) * share);
+        let of = patch::of(k);
+        let [force, couple] =
+            [of.force, of.couple].map(|share| law.strength * law.patch().unwrap_or(0.0) * share);
         let rates = if still { [0.0, couple / inertia] } else { creeping.rates };
         let arm = if still { 0.0 } else { self.ask.losses.coefficient(Law::RollingResistance) };
         let spun = Spun::slowing(&self.aloft(), rates);

@@ -73,7 +73,7 @@ impl RestingPatch {
     pub fn grips(&self, friction: f64, normal: f64) -> f64 {
         let mu = self.fixed.min(STICKY);
         let share = friction / (mu * normal.max(f64::MIN_POSITIVE));
-        mu * self.radius * patch::of(patch::slip_for(share.min(1.0)))[1]
+        mu * self.radius * patch::of(patch::slip_for(share.min(1.0))).couple
     }
 
     /// The slip with which the patch begins to creep under this horizontal force, if it drills. None if it would count as at
@@ -223,7 +223,7 @@ impl Creeping {
     pub fn under(inertia: f64, [mu, radius, arm]: [f64; 3]) -> Option<Self> {
         let mut k = 0.0;
         for _ in 0..APPROXIMATIONS {
-            let couple = mu * radius * patch::of(k)[1];
+            let couple = mu * radius * patch::of(k).couple;
             let force = (arm + radius * couple * k) / (1.0 + inertia);
             if force >= mu {
                 return None;

@@ -70,7 +70,7 @@ impl Swing {
 
     /// Estimated error of the precession in a period, in radians; NaN without a period or without prepared angles.
     pub(crate) fn precession_error(&self) -> f64 {
-        let Some([turn, _]) = self.angles_per_period() else { return f64::NAN };
+        let Some([turn, _]) = self.turns_per_period() else { return f64::NAN };
         let doubt = if self.is_steady() {
             self.start.precession().abs() * self.period_error()
         } else {

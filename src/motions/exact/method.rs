@@ -27,7 +27,7 @@ pub(crate) fn conserved(
 ) -> Result<Motion, Error> {
     exact::check(body, &start.state)?;
     let course = Course::of(body, start, times, ask.pose, check_conserving(ask, start.time, times)?);
-    let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
+    let swing = Swing::of(body, course.start, ask.table.contact(), ask.pose).ok();
     let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
     let found = match ask.method {
         Method::Exact => return by_first_integrals(body, start, times, ask, go_on),
@@ -50,7 +50,7 @@ pub(crate) fn by_first_integrals(
     if !SHORT_CODE && let Some(motion) = quickly(body, course.start, course.t0, times, ask, go_on)? {
         return Ok(motion);
     }
-    let swing = Swing::new(body, course.start, ask.table.contact(), ask.pose).ok();
+    let swing = Swing::of(body, course.start, ask.table.contact(), ask.pose).ok();
     let (limits, swing) = (Limits::new(body, &ask.table), swing.as_ref());
     let found = match swing.filter(|swing| swing.error(course.span).is_finite()) {
         Some(swing) => follow(swing, &course, &limits, ask.beyond, go_on)?,

@@ -21,7 +21,7 @@
 //!
 //! let body = Body::solid(2.5)?;
 //! let start = steady::state(&body, 1.3)?.kicked(0.05);
-//! let swing = Swing::new(&body, &start, Contact::Rolling, false)?;
+//! let swing = Swing::new(&body, &start, Contact::Rolling)?;
 //! let again = swing.state(swing.period());
 //! assert!((again.theta - start.theta).abs() < 1e-12 && (again.w2 - start.w2).abs() < 1e-12);
 //! # Ok::<(), spincyl::Error>(())
@@ -49,6 +49,7 @@ use crate::laws::state::State;
 use crate::methods::antiderivative::{Antiderivative, Sampled};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use lines::Lines;
+pub use place::{AnglesPerPeriod, ContactDrift};
 use stretch::{Stretch, StretchPoint};
 
 /// The whole motion between its turning points, which can be evaluated at any time.
@@ -213,13 +214,26 @@ fn check_speeds(y: &State) -> Result<(), Error> {
 }
 
 impl Swing {
-    /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
-    /// well.
+    /// The motion that passes through a state at time 0, without angles and contact path.
     ///
     /// # Errors
     /// `OutOfRange` for theta outside [1e-8, pi - 1e-8], for speeds above 1e6, and for bodies with ell above 1e6 or
     /// moments outside [1e-6, 1e12]; `Lost` where the integrals lose all their digits.
-    pub fn new(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
+    pub fn new(body: &Body, start: &State, contact: Contact) -> Result<Self, Error> {
+        Self::of(body, start, contact, false)
+    }
+
+    /// The motion that passes through a state at time 0, with angles and contact path ([`pose`](Self::pose)).
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn with_pose(body: &Body, start: &State, contact: Contact) -> Result<Self, Error> {
+        Self::of(body, start, contact, true)
+    }
+
+    /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
+    /// well.
+    pub(crate) fn of(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };
         let lines = Lines::new(body, contact, start).ok_or(lost)?;

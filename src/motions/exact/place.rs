@@ -14,9 +14,34 @@ use crate::laws::pose::{Angle, Pose};
 use crate::numbers::Sum;
 use nalgebra::{Complex, Point2};
 
+/// The angles by which a body turns in a whole nutation, in radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct AnglesPerPeriod {
+    /// The angle phi of precession.
+    pub precession: f64,
+    /// The angle psi of spin.
+    pub spin: f64,
+}
+
+/// How the contact point moves on from one nutation to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ContactDrift {
+    /// Displacement of the contact point over a whole nutation from the start, in R.
+    pub step: f64,
+    /// Radius of the circle through its places after whole nutations, infinite where these lie on a straight line.
+    pub radius: f64,
+}
+
 impl Swing {
-    /// Precession and spin angle of a whole nutation, in radians; None without a period or a pose.
-    pub fn angles_per_period(&self) -> Option<[f64; 2]> {
+    /// The angles of a whole nutation; None without a period or a pose.
+    pub fn angles_per_period(&self) -> Option<AnglesPerPeriod> {
+        self.turns_per_period().map(|[precession, spin]| AnglesPerPeriod { precession, spin })
+    }
+
+    /// Precession and spin angle of a whole nutation.
+    pub(super) fn turns_per_period(&self) -> Option<[f64; 2]> {
         if self.period().is_infinite() {
             return None;
         }
@@ -26,12 +51,11 @@ impl Swing {
         self.has_pose().then(|| self.half_nutation.turns.map(|half| 2.0 * half))
     }
 
-    /// Displacement of the contact point over a whole nutation from the start, in R; and the radius of the circle
-    /// through its places after whole nutations, infinite where these lie on a straight line.
-    pub fn drift(&self) -> Option<[f64; 2]> {
-        let [turn, _] = self.angles_per_period()?;
+    /// How the contact point moves on in a whole nutation; None without a period or a pose.
+    pub fn drift(&self) -> Option<ContactDrift> {
+        let [turn, _] = self.turns_per_period()?;
         let step = self.pose(self.period())?.contact_point.coords.norm();
-        Some([step, step / (2.0 * (0.5 * turn).sin().abs())])
+        Some(ContactDrift { step, radius: step / (2.0 * (0.5 * turn).sin().abs()) })
     }
 
     /// Whether the integrals of the angles have been prepared.
@@ -119,7 +143,7 @@ impl Swing {
         let rate = y.precession().abs().max(y.spin().abs());
         let [phi_doubt, psi_doubt] =
             if self.has_pose() { self.half_nutation.turns_doubt } else { [f64::NAN; 2] };
-        let angles = self.angles_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
+        let angles = self.turns_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let halves = 2.0 * (2.0 + phase.periods.abs());
         let turned = halves * (phi_doubt.max(psi_doubt) + 0.5 * f64::EPSILON * angles);
         let [x_doubt, y_doubt] = self.half_nutation.path_doubt;
@@ -127,7 +151,9 @@ impl Swing {
         let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());
         let path = self.lever()
             + there
-            + self.drift().map_or(0.0, |[step, radius]| radius.min(step * phase.periods.abs()));
+            + self
+                .drift()
+                .map_or(0.0, |ContactDrift { step, radius }| radius.min(step * phase.periods.abs()));
         (rate * self.time_doubt(&phase, t) + turned + 4.0 * f64::EPSILON) * path
             + halves * x_doubt.hypot(y_doubt)
             + self.error(t) * self.lever()

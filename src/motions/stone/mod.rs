@@ -15,7 +15,7 @@ pub(crate) mod turns;
 mod write;
 
 use super::ask::{check_flow, check_patch, check_times_after};
-use super::{Ask, Start};
+use super::{AboveTable, Ask, Start};
 use crate::error::{Error, within};
 use crate::laws::stone::StoneState;
 use crate::numbers::vector::dot;
@@ -51,7 +51,7 @@ pub(crate) fn check_stone(
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     check_patch(ask)?;
-    if let Some([height, lift]) = start.aloft {
+    if let Some(AboveTable { height, lift }) = start.aloft {
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g a)")?;
         if ask.restitution.is_none() {

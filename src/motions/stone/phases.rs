@@ -26,7 +26,7 @@ use crate::motions::walk::hops::Takeoff;
 use crate::motions::walk::numbers::{Halt, TIME, loses};
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, SlowSeries, Walk, WalkStep, after_rest, ending};
-use crate::motions::{Ask, Ending, Kind, Phase, Start};
+use crate::motions::{AboveTable, Ask, Ending, Kind, Phase, Start};
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Sum};
 use core::cell::RefCell;
@@ -103,7 +103,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         let of = StonePhases { flow, freed: false, known: None, still_centre: [x, y], least };
         let mut walk = Self::new(of, at, ask, fine, (time, times))?;
         walk.next = Some(match start.aloft {
-            Some(aloft) => walk.starts_in_air(aloft),
+            Some(aloft) => walk.starts_in_air(aloft.into()),
             None => walk.first_phase()?,
         });
         StonePhases::perturbs(&mut walk);
@@ -325,7 +325,7 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
     fn seen(walk: &StoneWalk<'_, 'n, N>, kind: Kind) -> Phase<StoneState> {
         let (time, at) = (walk.t0 + walk.at[TIME], &walk.at);
         let Takeoff { height, lift, .. } = walk.hops.takeoff;
-        let aloft = if kind == Kind::Flying { [height, lift] } else { [0.0; 2] };
+        let aloft = if kind == Kind::Flying { AboveTable { height, lift } } else { AboveTable::default() };
         Phase { time, kind, state: state(at), slip: output_slip(at), aloft, rim: 0 }
     }
 

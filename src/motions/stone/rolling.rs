@@ -26,6 +26,7 @@ const FREE_TIME: usize = 9;
 
 /// A rolling stone at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RollingStone {
     /// The time, in sqrt(a/g).
     pub time: f64,
@@ -34,8 +35,10 @@ pub struct RollingStone {
     pub orientation: [f64; 4],
     /// The position of the centre of mass, counted from the first contact point.
     pub centre: [f64; 2],
-    /// The derivatives of the orientation and of the centre of mass.
-    pub rates: ([f64; 4], [f64; 2]),
+    /// The derivative of the orientation.
+    pub orientation_rate: [f64; 4],
+    /// The derivative of the position of the centre of mass.
+    pub centre_velocity: [f64; 2],
     /// The vertical and the angular velocity.
     pub state: StoneState,
     /// The normal force per weight; a real stone would lift off when it becomes negative.
@@ -120,9 +123,18 @@ impl FreeRolling {
             let (mut rate, y) = (*y, &self.kept(*y));
             let (vertical, normal) = self.rates_of(y, &mut rate);
             let state = StoneState { vertical, w: y.omega() };
-            let rates = ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
+            let (orientation_rate, centre_velocity) =
+                ([rate[0], rate[1], rate[2], rate[3]], [rate[7], rate[8]]);
             let (orientation, centre) = (y.quaternion(), [y[7], y[8]]);
-            rows.push(RollingStone { time: y[FREE_TIME], orientation, centre, rates, state, normal });
+            rows.push(RollingStone {
+                time: y[FREE_TIME],
+                orientation,
+                centre,
+                orientation_rate,
+                centre_velocity,
+                state,
+                normal,
+            });
         };
         let flown = self.run_whole(self.place(y), steps, times, &mut write, go_on)?;
         Ok(flown.map(|_| rows))

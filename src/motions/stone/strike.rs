@@ -16,7 +16,7 @@ use crate::motions::ask::row::OutputRow;
 use crate::motions::walk::Next;
 use crate::motions::walk::hops::{Bounce, JAM_TAKES, ROUNDED, SHORT_BOUNCE, Takeoff};
 use crate::motions::walk::numbers::{TIME, lost};
-use crate::motions::{Ending, Kind, Strike};
+use crate::motions::{AboveTable, Ending, Kind, Lands, Strike};
 use crate::numbers::vector::{cross, dot, plus};
 
 /// Number of terms that a piece of a flight counts as, in units of the evaluations of a step.
@@ -271,7 +271,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         let states = [state(&from.y), state(&after.y)];
         self.records_impact(Strike {
             time,
-            other: false,
+            lands: Lands::First,
             rim: 0,
             hit,
             states,
@@ -279,7 +279,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
             impulse,
             couple,
             lost,
-            stays,
+            after: stays.into(),
         });
         after
     }
@@ -320,6 +320,6 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
             StonePose::new(y.quaternion(), point, [point[0] - a, point[1] - b, height - c])
         });
         let row = OutputRow::on_table(state(y), output_slip(y), [y[STONE_HEAT], lost(y)], kind);
-        self.made.push(OutputRow { pose, force, aloft: [*height, *lift], ..row });
+        self.made.push(OutputRow { pose, force, aloft: AboveTable::new(*height, *lift), ..row });
     }
 }

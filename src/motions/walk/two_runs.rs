@@ -6,7 +6,7 @@
 
 use crate::error::{Error, copied, grow, room};
 use crate::laws::state::State;
-use crate::motions::{Ending, Kind, Limit, Motion, Moving, Path, Phase};
+use crate::motions::{AboveTable, Ending, Kind, Limit, Motion, Moving, Path, Phase};
 use crate::numbers::larger_or_nan;
 
 /// A motion and its path, before the path becomes a part of the motion.
@@ -327,7 +327,14 @@ mod tests {
         times
             .iter()
             .enumerate()
-            .map(|(i, &time)| Phase { time, kind: kind(i), state, slip: [0.0; 2], aloft: [0.0; 2], rim: 0 })
+            .map(|(i, &time)| Phase {
+                time,
+                kind: kind(i),
+                state,
+                slip: [0.0; 2],
+                aloft: AboveTable::default(),
+                rim: 0,
+            })
             .collect()
     }
 

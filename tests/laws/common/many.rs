@@ -1,7 +1,9 @@
 //! Many motions at once: their starts as columns, and the results.
 
 use super::numbers;
-use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
+use spincyl::ensemble::{
+    BodyColumns, Job, LossColumns, MotionOutput, MotionStarts, SUMMARIES, Summary, roll,
+};
 use spincyl::loss::Law;
 use spincyl::{Body, State};
 
@@ -26,6 +28,17 @@ pub struct Many {
     pub status: Vec<u8>,
 }
 
+/// The columns ell, i1, i3, fillet and theta_end of bodies.
+pub fn body_columns([ell, i1, i3, fillet, theta_end]: [&[f64]; 5]) -> BodyColumns<'_> {
+    BodyColumns::new(ell, i1, i3).with_fillet(fillet).with_theta_end(theta_end)
+}
+
+/// These arrays with one for each summary.
+pub fn with_summaries<'a>(out: MotionOutput<'a>, sums: &'a mut [Vec<f64>]) -> MotionOutput<'a> {
+    assert_eq!(sums.len(), SUMMARIES);
+    Summary::ALL.iter().zip(sums).fold(out, |out, (kind, column)| out.with_summary(*kind, column))
+}
+
 impl Many {
     pub fn of(all: &[(Body, State)]) -> Self {
         let mut many = Self::default();
@@ -48,15 +61,12 @@ impl Many {
         self.last = core::array::from_fn(|_| vec![7.0; count]);
         self.sums = core::array::from_fn(|_| vec![7.0; count]);
         (self.error, self.method, self.status) = (vec![7.0; count], vec![77; count], vec![77; count]);
-        let starts = MotionStarts::new(
-            self.body.each_ref().map(Vec::as_slice),
-            self.state.each_ref().map(Vec::as_slice),
-        );
-        let mut out = MotionOutput::new(&mut self.error, &mut self.method, &mut self.status);
-        out.states = Some(self.states.each_mut().map(Vec::as_mut_slice));
-        out.last = Some(self.last.each_mut().map(Vec::as_mut_slice));
-        out.summary = self.sums.each_mut().map(|x| Some(x.as_mut_slice()));
-        assert!(roll(&starts, job, out, threads, |_| true).unwrap());
+        let bodies = body_columns(self.body.each_ref().map(Vec::as_slice));
+        let starts = MotionStarts::new(bodies, self.state.each_ref().map(Vec::as_slice));
+        let out = MotionOutput::new(&mut self.error, &mut self.method, &mut self.status)
+            .with_states(self.states.each_mut().map(Vec::as_mut_slice))
+            .with_last(self.last.each_mut().map(Vec::as_mut_slice));
+        assert!(roll(&starts, job, with_summaries(out, &mut self.sums), threads, |_| true).unwrap());
         self
     }
 

@@ -3,7 +3,7 @@
 use super::apart;
 use crate::common;
 use crate::common::many::{LAWS, loss_columns};
-use spincyl::drift::{Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
+use spincyl::drift::{BodyColumns, Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH};
 use spincyl::{Body, State, steady};
 
 /// Columns of random starts; one in fifty has a negative coefficient.
@@ -61,13 +61,10 @@ impl Many {
 
     fn starts(&self) -> DriftStarts<'_> {
         let Self { centre, bodies, states, losses } = self;
-        let columns = core::array::from_fn(|i| bodies[i].as_slice());
-        DriftStarts::new(
-            *centre,
-            columns,
-            core::array::from_fn(|i| states[i].as_slice()),
-            loss_columns(losses),
-        )
+        let [ell, i1, i3, bore, fillet, theta_end] = core::array::from_fn(|i| bodies[i].as_slice());
+        let columns = BodyColumns::new(ell, i1, i3).with_bore(bore).with_fillet(fillet);
+        let states = core::array::from_fn(|i| states[i].as_slice());
+        DriftStarts::new(*centre, columns.with_theta_end(theta_end), states, loss_columns(losses))
     }
 
     /// Every `step`th start from `from` on.

@@ -21,7 +21,7 @@ use crate::motions::body::strike::RATTLED;
 use crate::motions::walk::hops::{LONGER, ROUNDED, SHORT_BOUNCE, Takeoff};
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, SIN, TIME, W2, loses, lost, poses};
 use crate::motions::walk::{Next, Phases};
-use crate::motions::{Ending, Kind};
+use crate::motions::{AboveTable, Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
@@ -330,6 +330,6 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let force = self.ask.force.then_some((Force { normal: force, along: force, across: force }, 0.0));
         let pose = poses(N).then(|| at.pose());
         let row = OutputRow::on_table(at.state(), at.slip, [self.at[HEAT], lost(&self.at)], kind);
-        self.made.push(OutputRow { pose, force, aloft: [at.height, at.lift], ..row });
+        self.made.push(OutputRow { pose, force, aloft: AboveTable::new(at.height, at.lift), ..row });
     }
 }

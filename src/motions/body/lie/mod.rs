@@ -38,7 +38,7 @@ use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, Halt, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses,
 };
 use crate::motions::walk::{Next, Pause, Phases, WalkStep, after_rest, ending};
-use crate::motions::{Ask, Ending, Kind, Moving, Phase};
+use crate::motions::{AboveTable, Ask, Ending, Kind, Moving, OtherRim, Phase};
 use core::f64::consts::PI;
 use flow::{LyingFlow, LyingPhase, Stance, flat};
 
@@ -693,7 +693,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             () => (y, slip),
         };
         let flies = kind == Kind::Flying;
-        let aloft = if flies { [self.hops.takeoff.height, self.hops.takeoff.lift] } else { [0.0; 2] };
+        let aloft = if flies {
+            AboveTable::new(self.hops.takeoff.height, self.hops.takeoff.lift)
+        } else {
+            AboveTable::default()
+        };
         let (time, rim) = (self.t0 + self.at[TIME], path.rim(lies));
         Phase { time, kind, state, slip, aloft, rim }
     }
@@ -759,14 +763,13 @@ fn row_of<G: Own, const N: usize>(
     }
     let force = |[normal, along, across]: [f64; 3]| Force { normal, along, across };
     let doubt = flow.tol * (1.0 + y[W1].abs().max(y[W3].abs()));
-    let ([u, v], [normal, across, along]) = (slips[1], forces[1]);
     let theta = body.theta_end();
     let theta = if over.is_some() && body.has_row() { body.view().tells(theta) } else { theta };
     let state = State { theta, w1: y[W1], w2: 0.0, w3 };
     OutputRow {
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),
-        other_rim: Some([u, v, normal, across, along]),
+        other_rim: Some(OtherRim::of(slips[1], force(forces[1]))),
         ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.kind())
     }
 }
