@@ -71,6 +71,7 @@ mod twists;
 mod uniform;
 mod units;
 mod upright;
+mod while_rolling;
 mod whirrs;
 mod worlds;
 
