@@ -59,6 +59,8 @@ rust:
 	nice -n 10 cargo clippy --workspace --exclude spincyl-benches --all-targets --features python,scene -- -D warnings
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(SLOW) nice -n 10 cargo test --lib --no-run
 	CARGO_PROFILE_TEST_OPT_LEVEL=1 $(AWAKE) nice -n 10 cargo test --lib
+	SPINCYL_COMPILED_LANES=none $(SLOW) nice -n 10 cargo test --profile checked --lib --no-run
+	SPINCYL_COMPILED_LANES=none $(AWAKE) nice -n 10 cargo test --profile checked --lib
 	$(SLOW) nice -n 10 cargo test --features scene --test '*' --no-run
 	$(AWAKE) nice -n 10 cargo test --features scene --test '*'
 	$(SLOW) nice -n 10 cargo test --features scene --doc
@@ -148,6 +150,7 @@ long: $(VENV)/.tested wheel core
 	python3 tests/fresh.py --runs 10
 	nice -n 10 python3 tests/thresholds.py
 	cargo clippy -p spincyl-benches --all-targets -- -D warnings
+	SPINCYL_COMPILED_LANES=none cargo test --profile checked --features serde --test laws
 	SPINCYL_LONG=1 cargo test --release --tests
 	SPINCYL_LONG=1 cargo test --release --tests -- --ignored --nocapture --test-threads 1
 	$(BIN)/python -m pip install --quiet --group release

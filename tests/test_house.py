@@ -564,6 +564,35 @@ def test_only_numbers_and_methods_know_what_they_are_compiled_for():
     assert {place.split("/")[0] for place in places("short_code")} == {"numbers", "methods"}
 
 
+# An estimated error that becomes the larger of itself and another one.
+RAISED = re.compile(r"\b\w*error(?:\[\w+\])? = [\w.]*error(?:\[\w+\])?\.max\(")
+
+
+@pytest.mark.parametrize(
+    ("line", "hides"),
+    [
+        ("motion.error = motion.error.max(swing.error(t));", True),
+        ("out.error[i] = out.error[i].max(there.error);", True),
+        ("motion.pose_error = motion.pose_error.max(f64::NAN);", True),
+        ("motion.error = larger_or_nan(motion.error, off);", False),
+        ("let root = error.max(one(1e-40)).sqrt();", False),
+    ],
+)
+def test_an_error_that_is_raised_by_max_is_seen(line, hides):
+    assert bool(RAISED.search(line)) == hides
+
+
+def test_no_estimated_error_is_raised_by_a_maximum_that_drops_a_nan():
+    # f64::max(NaN, x) is x: an error that cannot be computed would count as small. numbers::larger_or_nan keeps it.
+    found = [
+        f"{name(path)}:{i}"
+        for path in SOURCES
+        for i, line in path_lines(path)
+        if not line.lstrip().startswith("//") and RAISED.search(line)
+    ]
+    assert not found
+
+
 def path_lines(path):
     return enumerate(path.read_text("utf-8").splitlines(), 1)
 

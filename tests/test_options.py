@@ -78,8 +78,8 @@ BESIDES = {
     "roll": {"body", "state", "t"},
     "stone": {"body", "state", "t"},
     "sweep": {"bodies", "states", "t", "threads", "progress"},
-    "core": {"circles"},  # of the body
-    "rust": {"times"},
+    "core": {"circles", "while_slipping"},  # of the body and of a law
+    "rust": {"times", "resistance"},
     "command": {"--t", "--points"},
     "page": {"body", "theta", "state", "kick", "t", "slow", "friction", "title"},
 }
@@ -167,7 +167,7 @@ def test_the_arguments_are_kept_and_checked_under_these_names():
     kept, checked = {*_asked.Asked._fields}, parameters(_asked.ask)
     of_roll = {name for name, row in OPTIONS.items() if not row.roll.startswith("none: ")}
     assert checked - {"state", "t"} == of_roll
-    assert kept - {"times", "spread"} == of_roll | {"stop_at", "errors"}
+    assert kept - {"times", "spread", "while_slipping"} == of_roll | {"stop_at", "errors"}
 
 
 def test_the_arguments_are_kept_in_the_order_of_their_names():

@@ -54,6 +54,7 @@ class Asked(NamedTuple):
     spread: bool = False  # whether many motions return their states at all times
     errors: bool = True  # whether the errors of many motions that are integrated are estimated
     table: "Table | None" = None
+    while_slipping: bool = True  # whether rolling resistance acts while the contact point slips
 
     @property
     def slope(self) -> float:
@@ -108,6 +109,8 @@ def options_for_core(
             options["drive"] = own
         elif own is not None:
             options["couple"] = own
+    if not asked.while_slipping:
+        options["while_slipping"] = False
     if asked.restitution is not None:
         options["restitution"] = coefficient_of(asked.restitution)
         if (law := law_for_core(asked.restitution)) is not None:
@@ -220,11 +223,14 @@ def ask(
 
             _lossy.check_losses(losses, times, t0, given)
             _lossy.warn_of_long_arm(losses, contact)
+            _lossy.check_resistance(losses, contact)
         check_contact(state, contact, restitution, given)
     # the default `want` is an empty tuple: `outputs_wanted` would take longer than this test
     want = NO_OUTPUTS if type(want) is tuple and not want else outputs_wanted(want)
     # by position, since names would take as long as all checks; a test compares the order
     asked = Asked(times, t0, step, tol, method, contact, mu, beyond, want, restitution, losses)
+    if losses is not None and not losses._acts_in_slip:
+        asked = asked._replace(while_slipping=False)
     if table is not None:
         asked = on_table(asked, table)
     return asked if max_nfev is None else asked._replace(max_nfev=checked_max_nfev(max_nfev))

@@ -2,8 +2,9 @@
 
 import re
 import warnings
-from dataclasses import dataclass, fields
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from collections.abc import Hashable
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -45,6 +46,8 @@ class LossRow(NamedTuple):
 #: The loss laws by the names of their coefficients, in the order of the core.
 LAWS = {row["parameter"]: LossRow(**row) for row in _core.loss_laws()}
 _MOST = 1e6
+#: In the representation of a law that does not act while the contact point slips.
+_ONLY_ROLLING = ", while_slipping=False"
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
 
@@ -72,6 +75,12 @@ class Loss(Hinting):
         """The coefficient of each law in the order of the core; 0 for absent laws."""
         own = {law._parameter: law.coefficient for law in self.laws}
         return [own.get(name, 0.0) for name in LAWS]
+
+    @property
+    def _acts_in_slip(self) -> bool:
+        """Whether all of the laws act while the contact point slips, too."""
+        laws = self._built_in
+        return laws is None or all(law._acts_in_slip for law in laws.laws)
 
     def _natural(self, scale: Scale | None) -> "Loss":
         """The law in natural units, of a body with this scale."""
@@ -134,10 +143,14 @@ class Loss(Hinting):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Loss) or other._function is not None:  # `custom.Couple` compares functions
             return NotImplemented
-        return equality_key(self._coefficients) == equality_key(other._coefficients)
+        return self._compared_by == other._compared_by
 
     def __hash__(self) -> int:
-        return hash(equality_key(self._coefficients))
+        return hash(self._compared_by)
+
+    @property
+    def _compared_by(self) -> tuple[Hashable, bool]:
+        return equality_key(self._coefficients), self._acts_in_slip
 
 
 class Law(Loss):
@@ -168,6 +181,14 @@ class Law(Loss):
     def _parameter(self) -> str:
         """The name of the coefficient."""
         return fields(self)[0].name  # type: ignore[arg-type]
+
+    @property
+    def _acts_in_slip(self) -> bool:
+        return True
+
+    def _with(self, coefficient: Reals) -> Self:
+        """The same law with another coefficient, in natural units."""
+        return replace(self, **{self._parameter: coefficient})  # type: ignore[type-var]
 
     @property
     def _row(self) -> LossRow:
@@ -206,7 +227,8 @@ class Law(Loss):
         return (self,)
 
     def __repr__(self) -> str:
-        return repr_of_call(type(self).__name__, self.coefficient)
+        found = repr_of_call(type(self).__name__, self.coefficient)
+        return found if self._acts_in_slip else f"{found[:-1]}{_ONLY_ROLLING})"
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -247,8 +269,11 @@ class Sum(Loss):
                 if before is not None:
                     if isinstance(before._sized, Scale):
                         refuse_other_scale(f"laws: {law!r}", law._sized, before._sized)
+                    if before._acts_in_slip != law._acts_in_slip:
+                        why = "expected the same while_slipping of both, whose coefficients are added"
+                        raise ValueError(f"laws: {before!r}, {law!r}: {why}")
                     both = before._sized and law._sized
-                    law = kind(before.coefficient + law.coefficient)
+                    law = law._with(before.coefficient + law.coefficient)
                     law = marked_as_si(law, before._sized) if both else law
                 found[kind] = law
         if not found:
@@ -274,8 +299,12 @@ def losses_in_words(losses: Loss, scale: Scale | None = None) -> str:
     """Laws with their coefficients to four digits; with a scale, in the units that `from_si` reads."""
     if losses._function is not None:
         return repr(losses)
-    scaled = [(law, *law._printed(scale or law._sized)) for law in losses.laws]
-    return " + ".join(f"{type(law).__name__}({float(law.coefficient) * k:.4g}{of})" for law, k, of in scaled)
+    found = []
+    for law in losses.laws:
+        k, of = law._printed(scale or law._sized)
+        when = "" if law._acts_in_slip else _ONLY_ROLLING
+        found.append(f"{type(law).__name__}({float(law.coefficient) * k:.4g}{of}{when})")
+    return " + ".join(found)
 
 
 def positive_coefficient(name: str, value: Reals, unit: str = "") -> Reals:

@@ -40,11 +40,24 @@ def losses_of_stone(losses: object, body: Any) -> Loss:
     if found._function is not None:
         why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution"
         raise TypeError(f"losses = {losses!r}: {why}, and a stone has no axis")
+    if not found._acts_in_slip:
+        raise ValueError(f"losses = {losses!r}: while_slipping=False is for bodies of revolution, not stones")
     for law in found.laws:
         if law._parameter not in _core.stone_losses():
             why = "acts along a rim, which a stone lacks; take air, rolling resistance or drilling"
             raise ValueError(f"losses = {law!r}: {why}")
     return found
+
+
+def check_resistance(losses: Loss, contact: AnyContact) -> None:
+    """Raise ValueError for a resistance only while the body rolls on a table on which it never does."""
+    if losses._acts_in_slip:
+        return
+    patch = contact.patch if isinstance(contact, Coulomb) else 0.0
+    never = contact != "rolling" if isinstance(contact, str) else not isinstance(contact, Coulomb)
+    if never or (not is_lazy(patch) and np.any(np.asarray(patch) > 0)):
+        why = "needs contact=sc.Coulomb(mu) without a patch, or 'rolling': on other tables no body rolls"
+        raise ValueError(f"losses = {losses!r}: while_slipping=False {why}")
 
 
 def warn_of_long_arm(losses: Loss, contact: AnyContact) -> None:

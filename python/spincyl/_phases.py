@@ -239,10 +239,14 @@ def has_two_rims(body: "Body") -> bool:
 
 
 def lowest_point_height(body: "Body", theta: Floats, rim: Floats, told: Any) -> Floats:
-    """(n,) height of the lowest point of a body, from that of one rim; in the air another may be lower."""
+    """(n,) height of the lowest point of a body, from that of one rim; in the air another may be lower.
+
+    A height that is negative by rounding is 0; any other negative one is told as it is.
+    """
     if body.rims is not None:
         lower = lowest_point_of(body, theta, told)
     else:
         lower = _core.lower_rim(theta, *body._numbers)
-    found: Floats = np.maximum(rim + lower, 0.0)
-    return found
+    found: Floats = rim + lower
+    rounded = 16 * np.finfo(float).eps * (1 + np.abs(rim) + np.abs(lower))
+    return np.where((found < 0) & (found >= -rounded), 0.0, found)

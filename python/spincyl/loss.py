@@ -26,14 +26,14 @@ takes, and its `exponent` n: theta of a thin disk falls as (remaining time)^n::
 0.030647
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Self, TypeVar
 
 import numpy as np
 
 from spincyl._body import Body
 from spincyl._contact import CODES
-from spincyl._input.numbers import Reals, Result, common_shape
+from spincyl._input.numbers import Reals, Result, common_shape, flag
 from spincyl._loss import (
     LAWS,
     Law,
@@ -143,21 +143,39 @@ class RollingResistance(Law):
     w_h along e_h of `State` and w2 along e2; the rest of it, about the vertical, is not resisted. The normal
     force acts ahead of the contact point by the arm delta. The couple along e1, e2, e3 is
     m = -delta N (cos(theta) w_h, w2, -sin(theta) w_h)/sqrt(w_h^2 + w2^2). It acts whether the contact point
-    slips or not. This law alone stops a coin in a finite time, but after infinitely many turns.
+    slips or not, unless `while_slipping` is false. This law alone stops a coin in a finite time, but after
+    infinitely many turns.
 
     Parameters
     ----------
     delta : array_like
         Arm of the normal force, in R, positive.
+    while_slipping : bool
+        If false, the law acts only while the contact point does not slip, as in most programs for billiards.
+        Such a motion needs ``contact=sc.Coulomb(mu)`` without a patch, or "rolling", and is that of a body of
+        revolution, not of a stone. It ends where the body lies on two rims (`Ending.SIDE`), and where
+        friction cannot hold the contact point of the rolling body, and could without the law
+        (`Ending.PAINLEVE`); a start in such a state is an error. `power`, `couple` and a drift are those of
+        a body that rolls.
     """
 
     delta: Reals
+    while_slipping: bool = field(default=True, kw_only=True)
     _example = "1e-3", "0.04mm", "rolling resistance: distance of the normal force ahead of the contact"
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        flag("while_slipping", self.while_slipping)
+
     @classmethod
-    def from_si(cls, delta: Reals, *, scale: Scale | Body) -> Self:
+    def from_si(cls, delta: Reals, *, scale: Scale | Body, while_slipping: bool = True) -> Self:
         """Law with `delta` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
-        return marked_as_si(cls(arm_in_radii("delta", delta, scale)), scale)
+        arm = arm_in_radii("delta", delta, scale)
+        return marked_as_si(cls(arm, while_slipping=while_slipping), scale)
+
+    @property
+    def _acts_in_slip(self) -> bool:
+        return self.while_slipping
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -295,6 +295,9 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
                 w3: between(w3, y.w3, x),
             };
             let found = jump_between(|x| law.couple(body, &along(x), normal), JUMP_SHARE * magnitude(m));
+            if found.is_nan() {
+                return refuse(found, FINITE);
+            }
             jump = f64::max(jump, found / magnitude(m).max(f64::MIN_POSITIVE));
         }
         if jump > JUMP_SHARE {

@@ -34,6 +34,7 @@ use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity};
 use crate::laws::state::State;
 use crate::laws::stone::{Ellipsoid, StoneState};
+use crate::numbers::larger_or_nan;
 use crate::numbers::vector::Symmetric;
 use core::f64::consts::PI;
 
@@ -270,7 +271,7 @@ fn decide_whether_positive<S: Moving>(
     for tol in DECISION_TOLERANCES {
         let ask = Ask { method: Method::Tolerance(tol), restitution: Some(0.0), ..Ask::on(friction) };
         let Some(whole) = roll(times, &ask)?.filter(|m| !m.is_interrupted()) else { return Ok(None) };
-        let most = whole.states.iter().map(&room).fold(f64::NEG_INFINITY, f64::max);
+        let most = whole.states.iter().map(&room).fold(f64::NEG_INFINITY, larger_or_nan);
         error = whole.error;
         if error < most.abs() && (most > 0.0 || whole.limit.is_none()) {
             return Ok(Some(most > 0.0));

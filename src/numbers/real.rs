@@ -67,6 +67,13 @@ pub(crate) trait Real:
         self.select_lt(self.splat(0.0), -self, self)
     }
 
+    /// This number where it is positive or NaN, else zero.
+    #[inline(always)]
+    fn positive_part(self) -> Self {
+        let zero = self.splat(0.0);
+        self.select_lt(zero, zero, self)
+    }
+
     /// The smaller of the two; `other` if `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {

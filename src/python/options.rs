@@ -2,7 +2,7 @@
 
 use super::pointer::{GivenLaw, PointedLaws};
 use crate::laws::contact::{Contact, Face, ImpactLaw, TableKind};
-use crate::laws::loss::{COUNT, Losses};
+use crate::laws::loss::{COUNT, Losses, Resistance};
 use crate::motions::{Ask, Method};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -63,6 +63,8 @@ options! {
         coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],
         face: u8 = Face::Ring as u8,
         losses: Option<[f64; COUNT]> = None,
+        /// Whether rolling resistance acts while the contact point slips, too.
+        while_slipping: bool = true,
         step: Option<f64> = None,
         tol: Option<f64> = None,
         beyond: bool = false,
@@ -130,6 +132,7 @@ impl MotionAsked {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),
             losses: self.losses.map_or(Losses::NONE, |coefficients| Losses { coefficients }),
+            resistance: if self.while_slipping { Resistance::Always } else { Resistance::WhileRolling },
             method: match (self.step, self.tol) {
                 (Some(step), _) => Method::Step(step),
                 (_, Some(tol)) => Method::Tolerance(tol),

@@ -6,6 +6,7 @@ use super::outline::shape_of;
 use super::words::shortest;
 use super::{SceneError, VERSION};
 use crate::laws::contact::{Friction, ImpactLaw, Table};
+use crate::laws::loss::Law;
 use crate::laws::scale::Scale;
 use crate::motions::Ending;
 use crate::numbers::larger_or_nan;
@@ -157,7 +158,10 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
         coefficient: law.parameter().into(),
         value: scale.coefficient_in_si(law, value),
         unit: law.unit().texts()[2].into(),
-        couple: law.couple_in_si().into(),
+        couple: {
+            let only = law == Law::RollingResistance && ask.resists_only_rolling();
+            format!("{}{}", law.couple_in_si(), if only { ", 0 while the body slips" } else { "" })
+        },
     });
     Ok(SceneTable {
         point: Point3::origin(),

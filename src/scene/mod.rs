@@ -38,6 +38,7 @@ mod urdf;
 mod words;
 
 use crate::error::Error;
+use crate::laws::loss::Losses;
 use crate::laws::pose::axes;
 use crate::laws::scale::Scale;
 use crate::laws::state::State;
@@ -258,15 +259,40 @@ impl Scene {
         angular_velocity: Vector3<f64>,
         normal_force: f64,
     ) -> Result<Vector3<f64>, SceneError> {
+        self.couple_of(|ask| ask.losses, orientation, angular_velocity, normal_force)
+    }
+
+    /// The same while the contact point slips, without a rolling resistance that acts only while it does not
+    /// ([`Resistance::WhileRolling`](crate::loss::Resistance::WhileRolling)).
+    ///
+    /// # Errors
+    /// Those of [`couple`](Self::couple).
+    pub fn couple_while_slipping(
+        &self,
+        orientation: &UnitQuaternion<f64>,
+        angular_velocity: Vector3<f64>,
+        normal_force: f64,
+    ) -> Result<Vector3<f64>, SceneError> {
+        self.couple_of(Ask::losses_in_slip, orientation, angular_velocity, normal_force)
+    }
+
+    fn couple_of(
+        &self,
+        losses: impl Fn(&Ask) -> Losses,
+        orientation: &UnitQuaternion<f64>,
+        angular_velocity: Vector3<f64>,
+        normal_force: f64,
+    ) -> Result<Vector3<f64>, SceneError> {
         let scale = self.scale()?;
         let Natural::Body { body, ask, .. } = self.natural()? else {
             return Err(SceneError::Motion("couple: expected a body of revolution, not a stone"));
         };
         let w = angular_velocity.map(|w| scale.angular_velocity(w));
         let y = State::from_twist(orientation, w);
-        let mut losses = ask.losses;
+        let acting = losses(ask);
+        let mut losses = acting;
         if normal_force <= 0.0 {
-            for (law, _) in ask.losses.iter().filter(|(law, _)| !law.acts_in_air()) {
+            for (law, _) in acting.iter().filter(|(law, _)| !law.acts_in_air()) {
                 losses = losses.with(law, 0.0);
             }
         }

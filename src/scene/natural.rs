@@ -20,6 +20,9 @@ use serde::{Deserialize, Serialize};
 
 const UNTOLD: SceneError = SceneError::Motion("motion: its poses or forces are unknown at one of its times");
 
+/// The roundings of a height, in ulp of the numbers from which it is computed.
+const HEIGHT_ROUNDINGS: f64 = 16.0;
+
 /// The body or stone of a scene with its start and options, all in natural units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -232,6 +235,15 @@ fn fall(ask: &Ask, time: f64) -> Option<f64> {
     (ask.table == Table::Smooth && ask.restitution.is_none()).then(|| ask.slope.sin() * time)
 }
 
+/// The height of the lowest point, from that of the rim and from the centre and how far the body reaches below it. One that is
+/// negative by rounding is 0; any other negative one, or NaN, is told as it is.
+fn lowest(rim: f64, centre: f64, extent: f64) -> f64 {
+    let other = centre - extent;
+    let found = if rim < other { rim } else { other };
+    let rounded = HEIGHT_ROUNDINGS * f64::EPSILON * (1.0 + centre.abs() + extent.abs());
+    if found < 0.0 && found >= -rounded { 0.0 } else { found }
+}
+
 fn body_at(m: &Motion<State>, body: &Body, ask: &Ask, i: usize) -> Option<Known> {
     let now = m.sample(i);
     let (pose, touch, force) = (now.pose?, TouchNow::of(&now), now.force?);
@@ -242,8 +254,7 @@ fn body_at(m: &Motion<State>, body: &Body, ask: &Ask, i: usize) -> Option<Known>
     let theta = axis.x.hypot(axis.y).atan2(axis.z);
     let circles = body.standing_on(0).circles();
     let extent = circles.iter().map(|circle| circle.height(theta)).fold(f64::NEG_INFINITY, f64::max);
-    let height =
-        if touch.flies { now.aloft.height.min(position.z - extent).max(0.0) } else { now.aloft.height };
+    let height = if touch.flies { lowest(now.aloft.height, position.z, extent) } else { now.aloft.height };
     let beside = if ask.is_level() { 0.0 } else { energy_beside(body, ask, m, i)? };
     Some(Known {
         time: now.time,

@@ -1,7 +1,7 @@
 //! What a motion of a body of several circles tells: its axis, centre, velocity and energy, whichever circle carries it,
 //! and what it rests on.
 
-use crate::common::wander;
+use crate::common::{larger, wander};
 use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
@@ -97,7 +97,7 @@ fn centre_axis_and_velocity_are_those_of_the_body_whichever_circle_carries_it() 
                 path.dissipated[i] + path.work_lost.get(i).copied().unwrap_or_default() + hits.sum::<f64>()
             };
             let whole = |i: usize| all[i].energy(&body).unwrap() + spent(i);
-            let most = (0..all.len()).map(|i| (whole(i) - whole(0)).abs()).fold(0.0, f64::max);
+            let most = (0..all.len()).map(|i| (whole(i) - whole(0)).abs()).fold(0.0, larger);
             assert!(most <= 1e-11 + 20.0 * m.error, "{most}, {}, {body:?}", m.error);
         }
     }

@@ -1,6 +1,6 @@
 //! Bodies with several circles of contact: the unit of length, the view from either end, and what lies on two circles.
 
-use crate::common::wander;
+use crate::common::{larger, wander};
 use spincyl::body::Circle;
 use spincyl::contact::Contact;
 use spincyl::contact::slip::Friction;
@@ -154,7 +154,7 @@ fn a_cap_that_swings_over_its_pole_comes_to_its_edge_on_the_other_side() {
         let over = m.states.iter().filter(|y| y.theta > joint).count();
         assert_eq!(m.ending(), Ending::Done);
         assert!(over > 10 && m.states.iter().zip(rims).all(|(y, rim)| (y.theta > joint) == (*rim == 1)));
-        let turns = m.states.iter().map(|y| y.theta).fold(0.0, f64::max);
+        let turns = m.states.iter().map(|y| y.theta).fold(0.0, larger);
         assert!(turns <= joint + 0.2 + 1e-12);
     }
 }

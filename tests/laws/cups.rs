@@ -2,7 +2,7 @@
 //! along their side, pivot on one end and stop.
 
 use crate::circles::frustum;
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
@@ -338,7 +338,7 @@ fn a_cup_that_is_all_but_a_cylinder_moves_as_the_cylinder_does() {
                         let off = [a.theta - b.theta, a.w1 - b.w1, a.w2 - b.w2, a.w3 - b.w3];
                         off.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
                     };
-                    (pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max), m.error)
+                    (pairs.map(|(a, b)| apart(a, b)).fold(0.0, larger), m.error)
                 };
                 let [(far, _), (near, error)] = [off(1e-5), off(1e-8)];
                 // Impacts amplify a difference.

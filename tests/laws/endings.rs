@@ -1,6 +1,6 @@
 //! How motions end, and starts that are refused: rows D8, D9, D10, D12 of docs/hard-cases.md.
 
-use crate::common::{by, distance, motions, moved, numbers, state, wander, wild};
+use crate::common::{by, distance, larger, motions, moved, numbers, state, wander, wild};
 use spincyl::contact::Table;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ask, Ending, Method, Start, roll, roll_with};
@@ -249,7 +249,7 @@ fn d10_without_friction_coefficient_rolling_never_slips_and_with_none_at_once() 
         .map(|i| {
             contact::force(Contact::Rolling, &body, &swing.state(0.02 * f64::from(i))).friction_coefficient()
         })
-        .fold(0.0, f64::max);
+        .fold(0.0, larger);
     assert!(most > 3.5 && most < 4.5, "{most}");
 }
 

@@ -1,5 +1,6 @@
 //! Guards of speed: the cost of a motion in evaluations of its equations, which is the same on every machine.
 
+use crate::common::larger;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
@@ -185,7 +186,7 @@ fn a_coin_leaves_the_table_where_its_normal_force_has_just_vanished() {
     let (coarse, fine) = (at(1e-8), at(1e-11));
     assert_eq!([coarse.ending(), fine.ending()], [Ending::Done; 2]);
     let [a, b] = [&coarse, &fine].map(|m| <[f64; 4]>::from(m.states[0]));
-    let off = a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let off = a.iter().zip(b).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
     assert!(off <= coarse.error + fine.error, "{off:e} {:e}", coarse.error);
 }
 

@@ -1,7 +1,7 @@
 //! Bodies of all profiles that hop, with and without air: their energy and lowest point, landings of an independent
 //! model, and landings of both rims at once.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use crate::flight::{centre, coulomb, dropped, energy, impacts};
 use nalgebra::Vector3;
 use spincyl::contact::Table;
@@ -422,13 +422,13 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
 /// The largest difference of two motions of one start at the times that both reach and at their end, as seen from the
 /// same rim.
 fn apart(a: &Motion, b: &Motion) -> f64 {
-    let far = |x: [f64; 4], y: [f64; 4]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+    let far = |x: [f64; 4], y: [f64; 4]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, larger);
     let of = |x: &State, y: &State| {
         let there = State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y };
         far((*x).into(), (*y).into()).min(far((*x).into(), there.into()))
     };
     let ends = a.event.zip(b.event).map(|(a, b)| of(&a.state, &b.state).max((a.time - b.time).abs()));
-    a.states.iter().zip(&b.states).map(|(x, y)| of(x, y)).fold(ends.unwrap_or(0.0), f64::max)
+    a.states.iter().zip(&b.states).map(|(x, y)| of(x, y)).fold(ends.unwrap_or(0.0), larger)
 }
 
 /// A start at theta, w1, w2, w3 with a slip, moved within two tolerances; the motions, and their difference.

@@ -1,6 +1,6 @@
 //! Impact and restitution: balls, hoops, sticks and coins with known bounces, slips that jam, and laws of every impact.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use crate::flight::{any_drop, centre, coulomb, dropped, energy, hops, impacts, rim};
 use nalgebra::{Matrix3, Vector3};
 use spincyl::contact::slip::Friction;
@@ -156,7 +156,7 @@ fn friction_without_limit_tends_to_a_rough_table_and_the_difference_as_one_over_
             let film = impacts(&of(Friction::Viscous { c: big }.into())).first().copied().unwrap();
             let scale = hit.impulse.iter().fold(1.0, |most: f64, p| most.max(p.abs()));
             for other in [near, film] {
-                let off = (0..3).map(|i| (hit.impulse[i] - other.impulse[i]).abs()).fold(0.0, f64::max);
+                let off = (0..3).map(|i| (hit.impulse[i] - other.impulse[i]).abs()).fold(0.0, larger);
                 worst = worst.max(off * big / scale);
                 assert!(off * big < 2e3 * scale, "{body:?} {start:?} {e}: {off:e} at {big:e}");
             }
@@ -285,7 +285,7 @@ fn a_jam_is_the_limit_of_landings_ever_slower_and_where_the_rim_may_leave_as_wel
         for fall in [1e-3, 1e-6] {
             let slow = dropped(state, [u, v], 0.0, -fall);
             let near = impacts(&hops(&body, &slow, table, e, &[1e-9]))[0];
-            let off = (0..3).map(|i| (hit.impulse[i] - near.impulse[i]).abs()).fold(0.0, f64::max);
+            let off = (0..3).map(|i| (hit.impulse[i] - near.impulse[i]).abs()).fold(0.0, larger);
             assert!(off < 1e3 * fall, "{body:?} {start:?} {e}: {off:e} at {fall:e}");
         }
         let of = |k: usize| energy(&body, &hit.states[k], hit.velocities[k], 0.0);

@@ -1,6 +1,6 @@
 //! Slips of a body that also loses energy by other laws.
 
-use crate::common::{drawn, numbers, path_of};
+use crate::common::{drawn, larger, numbers, path_of};
 use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
@@ -51,7 +51,7 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
         let d = rates(&moved(&y, h, &c));
         y = core::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
     }
-    let off = y.iter().zip(of(4)).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let off = y.iter().zip(of(4)).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
     assert!(off < 1e-5, "{off:e}");
 }
 
@@ -73,7 +73,7 @@ fn a_contact_that_has_settled_while_it_slips_wins_no_energy_beyond_its_claim() {
     let ask = Ask::on(Table::Rubs(Friction::coulomb(0.12973621726937773))).with_losses(losses);
     let motion = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
     let off = (0..motion.states.len()).map(|i| (total(&body, &motion, i) - total(&body, &motion, 0)).abs());
-    let most = off.fold(0.0, f64::max);
+    let most = off.fold(0.0, larger);
     assert!(most > 1e-10 && most <= motion.error && motion.error < 1e-8, "{most:e} {:e}", motion.error);
 }
 

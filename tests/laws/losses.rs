@@ -1,6 +1,6 @@
 //! Losses: their power in every state, their effect on a motion, and its end.
 
-use crate::common::{any_rounded, any_state, numbers, ordinary_tube, path_of};
+use crate::common::{any_rounded, any_state, larger, numbers, ordinary_tube, path_of};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table, lossy, slip};
 use spincyl::loss::{Law, Losses};
@@ -77,6 +77,20 @@ pub(crate) fn quarters() -> Vec<f64> {
 }
 
 pub const ROLLS: Table = Table::Rolling { mu: f64::INFINITY };
+
+#[test]
+fn under_a_normal_force_that_is_unknown_the_power_of_a_dry_law_is_unknown() {
+    let coin = Body::solid(0.1704).unwrap();
+    let y = steady::state(&coin, 0.1).unwrap();
+    for law in Law::ALL.iter().copied() {
+        let losses = Losses::of(law, 1e-3);
+        let [unknown, lifted, none] = [f64::NAN, -1.0, 0.0].map(|normal| losses.power(&coin, &y, normal));
+        let presses = losses.power(&coin, &y, 2.0) != losses.power(&coin, &y, 1.0);
+        assert_eq!(unknown.is_nan(), presses, "{law:?}");
+        assert_eq!(lifted.to_bits(), none.to_bits(), "{law:?}");
+        assert!(losses.couple(&coin, &y, f64::NAN).iter().any(|m| m.is_nan()) == presses, "{law:?}");
+    }
+}
 
 #[test]
 fn a_rolling_ball_whose_drilling_stops_wins_no_energy() {
@@ -344,7 +358,7 @@ fn a_contact_that_has_settled_loses_what_it_loses() {
             (0..=300).map(|i| (end.time - 10f64.powf(-1.0 - 0.02 * f64::from(i))).max(0.0)).collect();
         let path = follow(&disk, &start, losses, &times, table);
         let sum = |i: usize| total(&disk, &path, i);
-        let off = (0..times.len()).fold(0f64, |most, i| most.max((sum(i) - sum(0)).abs()));
+        let off = (0..times.len()).fold(0f64, |most, i| larger(most, (sum(i) - sum(0)).abs()));
         assert!(off < 1e-13, "{law:?} {coefficient} {table:?}: {off}");
     }
 }

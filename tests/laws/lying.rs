@@ -1,6 +1,6 @@
 //! A body on both rims: what slides, spins down, pivots, rises again, rocks and rolls straight, with known answers.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind, OtherRim};
@@ -130,7 +130,7 @@ fn dry_losses_resist_what_rolls_from_rest_where_a_rim_slips_off_as_what_rolls_sl
                     [m.states[0].w3, m.states[1].w3]
                 };
                 let (rest, slow) = (rolling(0.0), rolling(1e-9));
-                let off = (0..2).map(|i| (rest[i] - slow[i]).abs()).fold(0.0, f64::max);
+                let off = (0..2).map(|i| (rest[i] - slow[i]).abs()).fold(0.0, larger);
                 assert!(off < 1e-8, "{ell} {law:?} {size}: {rest:?} {slow:?}");
                 // Friction on both rims turns the body unless the loss is strong.
                 assert_eq!(rest == [0.0; 2], size == 0.5, "{rest:?}");

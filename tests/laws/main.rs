@@ -72,6 +72,7 @@ mod twists;
 mod uniform;
 mod units;
 mod upright;
+mod while_rolling;
 mod whirrs;
 mod worlds;
 

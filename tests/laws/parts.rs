@@ -1,6 +1,6 @@
 //! Bodies put together from coaxial parts.
 
-use crate::common::cases;
+use crate::common::{cases, larger};
 use proptest::prelude::*;
 use spincyl::Body;
 use spincyl::body::parts::{Amount, Assembled, BodyPart, Form, assembled};
@@ -345,7 +345,7 @@ fn a_body_of_parts_stands_on_its_lowest_points_at_every_inclination() {
             low * found.radius - found.centre * theta.cos()
         };
         let deepest =
-            |theta: f64| parts.iter().map(|part| depth(&part.form, theta)).fold(f64::NEG_INFINITY, f64::max);
+            |theta: f64| parts.iter().map(|part| depth(&part.form, theta)).fold(f64::NEG_INFINITY, larger);
         for k in 0..400 {
             let share = f64::from(k) / 400.0;
             let all = [

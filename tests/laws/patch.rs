@@ -1,6 +1,6 @@
 //! Friction of a round patch: balls that drill, slip and creep, the limits of small patches, and laws of every motion.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use spincyl::contact::slip::{Friction, derivative};
 use spincyl::contact::{Table, patch};
 use spincyl::loss::{Law, Losses};
@@ -139,7 +139,7 @@ fn energy_and_heat_have_a_constant_sum_and_friction_acts_against_the_slip() {
         let times: Vec<f64> = (1..30).map(|k| 0.2 * f64::from(k)).collect();
         let m = rolled(&body, start, on(mu, eps), &times);
         let sums = sums(&body, &m);
-        let spread = sums.iter().fold(0.0, |most: f64, e| most.max((e - sums[0]).abs()));
+        let spread = sums.iter().fold(0.0, |most: f64, e| larger(most, (e - sums[0]).abs()));
         assert!(spread < 1e-11 + m.error, "{body:?} {start:?} {mu} {eps}: {spread:e}, claims {:e}", m.error);
         let path = m.path.as_ref().unwrap();
         for (i, (y, [u, v])) in m.states.iter().zip(&path.slip).enumerate() {
@@ -407,7 +407,7 @@ fn static_friction_holds_the_drilling_of_a_ball_as_a_body_and_as_a_stone_alike()
         for (y, z) in a.states.iter().zip(&b.states) {
             let (s, c) = y.theta.sin_cos();
             let pairs = [(c, z.vertical[2]), (y.w3, z.w[2]), (s * y.w1 + c * y.w3, z.spin())];
-            let off = pairs.iter().fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let off = pairs.iter().fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
             assert!(off <= 10.0 * claimed, "{told}: {off:e} of {claimed:e}");
         }
         held += usize::from(kinds[0][0] == Kind::Rolling);

@@ -1,7 +1,7 @@
 //! Random bodies of two circles: whatever the start, they are followed to the end, and keep their energy.
 
 use crate::circles::frustum;
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use crate::cups::balls;
 use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
@@ -73,7 +73,7 @@ impl Scene {
             let has = self.energy(&m.states[i], path.slip[i], path.aloft[i].into(), path.rims[i]);
             (has + path.dissipated[i] + struck.sum::<f64>() - whole).abs() / whole.max(1.0)
         };
-        (0..m.states.len()).map(at).fold(0.0, f64::max)
+        (0..m.states.len()).map(at).fold(0.0, larger)
     }
 
     /// Whether friction is near that with which no contact force is unique, on one circle or on both.

@@ -1,5 +1,6 @@
 //! Scenes for contact engines: the files of Python and of this crate are held to each other, and engines to the answer.
 
+use crate::common::larger;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use serde_json::{Value, from_str, to_value};
@@ -60,7 +61,7 @@ fn apart(a: &Value, b: &Value) -> f64 {
     match (a, b) {
         (Value::Null, Value::Null) => 0.0,
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
-            a.iter().zip(b).map(|(a, b)| apart(a, b)).fold(0.0, f64::max)
+            a.iter().zip(b).map(|(a, b)| apart(a, b)).fold(0.0, larger)
         }
         _ => a.as_f64().zip(b.as_f64()).map_or(f64::INFINITY, |(a, b)| (a - b).abs()),
     }
@@ -107,7 +108,7 @@ fn python_and_this_crate_write_the_same_file() {
         let [radius, mass, gravity] = ["R", "M", "g"].map(|key| told["scale"][key].as_f64().unwrap());
         let second = told["scale"]["second"].as_f64().unwrap();
         let joule = mass * gravity * radius;
-        let fast = scene.contents().expected.angular_velocity.iter().map(|w| w.norm()).fold(0.0, f64::max);
+        let fast = scene.contents().expected.angular_velocity.iter().map(|w| w.norm()).fold(0.0, larger);
         let quick = (1.0 + fast * second) * 1e-13;
         let allowed = |path: &str| {
             let key = path.rsplit('.').next().unwrap();

@@ -2,7 +2,7 @@
 //!
 //! The sum of energy, heat and work lost is constant; and a body is at rest where its motion ends with `STOPS`.
 
-use crate::common::{drawn, path_of, wander};
+use crate::common::{drawn, larger, path_of, wander};
 use nalgebra::{UnitQuaternion, Vector3};
 use spincyl::contact::{Friction, slip};
 use spincyl::loss::{Law, Losses};
@@ -123,7 +123,7 @@ fn sums_of_stone(stone: &Ellipsoid, motion: &Motion<StoneState>) -> Vec<f64> {
 
 /// How far the sums are out of balance, beyond what the motion claims.
 fn out<S: Moving>(sums: &[f64], motion: &Motion<S>) -> bool {
-    let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, f64::max);
+    let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, larger);
     off.is_nan() || off > 3.0 * motion.error + 1e-12
 }
 
@@ -153,7 +153,7 @@ fn judged<S: Moving>(k: u64, sums: &[f64], motion: &Motion<S>, moves: impl Fn(&S
     let stops = motion.event.as_ref().is_some_and(|end| end.ending == Ending::Stops && moves(&end.state));
     let gives_up = ended.is_some_and(|(ending, _)| ending == Ending::Bounded);
     (out(sums, motion) || stops || gives_up).then(|| {
-        let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, f64::max);
+        let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, larger);
         format!("{k}: out by {off:e} of {:e}, {ended:?}", motion.error)
     })
 }

@@ -1,7 +1,7 @@
 //! Friction: laws that hold in every state, exact motions, and many slips side by side.
 
 use crate::common::many::with_summaries;
-use crate::common::path_of;
+use crate::common::{larger, path_of};
 use proptest::prelude::*;
 use spincyl::contact::{self, Friction, TableKind, slip};
 use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
@@ -141,7 +141,7 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
             roll_with(&top, Start::from(start).with_slip([0.5, -1.0]), &times, &Ask::on(friction), || true);
         let path = path.unwrap().unwrap();
         let off = path.states.iter().map(|y| (jellett(y) / jellett(&start) - 1.0).abs());
-        assert!(off.fold(0f64, f64::max) < 1e-13, "{friction:?}");
+        assert!(off.fold(0f64, larger) < 1e-13, "{friction:?}");
         assert_eq!(path.event, None);
     }
     // static friction without limit is rolling
@@ -353,7 +353,7 @@ fn runs_of_a_state_that_rounding_pushes_over_agree_within_what_they_claim() {
         let all = [1e-14, 2e-14, 5e-14, 1e-13, 1e-12].map(|tol| at(t, tol));
         for (a, b) in all.iter().flat_map(|a| all.iter().map(move |b| (a, b))) {
             let (claim, [x, y]) = (a.error + b.error, [a, b].map(|m| <[f64; 4]>::from(m.states[0])));
-            let apart = x.iter().zip(y).fold(0.0, |most: f64, (x, y)| most.max((x - y).abs()));
+            let apart = x.iter().zip(y).fold(0.0, |most: f64, (x, y)| larger(most, (x - y).abs()));
             assert!(apart <= claim, "{t}: {apart:e} where {claim:e} is claimed");
         }
     }

@@ -1,6 +1,6 @@
 //! A body that lies on two rims of a slope: references, laws with exact answers, its energy, and its mirror image.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use spincyl::body::Circle;
 use spincyl::contact::Force;
 use spincyl::contact::slip::Friction;
@@ -55,7 +55,7 @@ fn whole(body: &Body, slope: f64, m: &Motion) -> Vec<f64> {
 fn off(body: &Body, slope: f64, m: &Motion) -> f64 {
     let (all, speeds) = (whole(body, slope, m), m.states.iter().flat_map(|y| [y.w1, y.w2, y.w3]));
     let fastest = speeds.fold(1.0, |most: f64, w| most.max(w.abs()));
-    all.iter().map(|e| (e - all[0]).abs()).fold(0.0, f64::max) / fastest
+    all.iter().map(|e| (e - all[0]).abs()).fold(0.0, larger) / fastest
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Stones on a slope: the energy, a stone that is a ball, mirror images, and what rests.
 
-use crate::common::cases;
+use crate::common::{cases, larger};
 use crate::stone::{any_start, any_stone};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -292,7 +292,7 @@ fn a_pebble_rolls_and_slips_as_the_reference_of_25_digits_says() {
     let off = |m: &Motion<StoneState>, state: [f64; 6], force: [f64; 3]| {
         let (y, f) = (m.states[0], m.forces.as_ref().unwrap()[0]);
         let found = [&y.vertical[..], &y.w[..], f.as_slice()].concat();
-        found.iter().zip(state.iter().chain(&force)).fold(0f64, |most, (a, b)| most.max((a - b).abs()))
+        found.iter().zip(state.iter().chain(&force)).fold(0f64, |most, (a, b)| larger(most, (a - b).abs()))
     };
     let ask = Ask::on(Contact::Rolling).with_slope(0.2);
     let m = rolled(&stone, from([0.3, -0.2, 0.9], [0.2, 0.1, 0.5]), &[6.0], &ask);

@@ -1,7 +1,7 @@
 //! Many motions at a time under dry friction, some of which never slip, slip for a while, or hop.
 
 use crate::common::many::{body_columns, with_summaries};
-use crate::common::{numbers, path_of, wander};
+use crate::common::{larger, numbers, path_of, wander};
 use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, Table, TableKind};
 use spincyl::ensemble::{Answer, Job, MotionOutput, MotionStarts, SUMMARIES, Summary, roll};
@@ -158,7 +158,7 @@ fn side_by_side_under_dry_friction_a_motion_is_what_it_is_alone() {
                     there.push((numbers(&event.state), found.last.each_ref().map(|x| x[i])));
                 }
                 for (right, seen) in there {
-                    let off = right.iter().zip(seen).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                    let off = right.iter().zip(seen).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
                     assert!(off <= 2.0 * claim, "{i}: {off:e} of {claim:e}, {scene:?}");
                 }
             }
@@ -201,7 +201,7 @@ fn rolling_between_slips_takes_steps_and_rolling_for_ever_none() {
         let [looser, finer] = [3.1e-10, 2.9e-10].map(|tol| run(tol, 300.0).unwrap().evaluations);
         stepped += usize::from(looser > finer);
         let off = numbers(&m.states[0]).into_iter().zip(numbers(&fine.states[0])).map(|(a, b)| (a - b).abs());
-        let off = off.fold(0.0, f64::max);
+        let off = off.fold(0.0, larger);
         assert!(off <= m.error + fine.error, "{off:e} of {:e}, {scene:?}", m.error);
         count += 1;
     }

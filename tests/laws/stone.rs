@@ -1,6 +1,6 @@
 //! Stones: laws that hold for every ellipsoid, the exact motion of a ball, and the rocking of an upright spin.
 
-use crate::common::cases;
+use crate::common::{cases, larger};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 use spincyl::contact::Friction;
@@ -58,7 +58,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// The largest difference between the numbers of two states.
 pub(crate) fn apart(a: &StoneState, b: &StoneState) -> f64 {
     let pairs = a.vertical.iter().zip(b.vertical).chain(a.w.iter().zip(b.w));
-    pairs.fold(0.0, |most, (a, b)| most.max((a - b).abs()))
+    pairs.fold(0.0, |most, (a, b)| larger(most, (a - b).abs()))
 }
 
 pub(crate) const TIMES: [f64; 5] = [0.0, 1.0, 2.5, 4.0, 5.0];
@@ -354,7 +354,7 @@ fn a_stone_that_only_rocks_does_so_at_its_frequencies() {
             rolled(&stone, stone.spinning(0.0, pitch, roll), &[0.0, 0.5 * whole, whole], &Ask::default());
         let start = motion.states[0].vertical;
         let off = |i: usize, sign: f64| {
-            (0..2).map(|k| (motion.states[i].vertical[k] - sign * start[k]).abs()).fold(0.0, f64::max)
+            (0..2).map(|k| (motion.states[i].vertical[k] - sign * start[k]).abs()).fold(0.0, larger)
         };
         assert!(off(1, -1.0) < 1e-10 && off(2, 1.0) < 1e-10, "{mode}: {:e} {:e}", off(1, -1.0), off(2, 1.0));
     }

@@ -1,6 +1,6 @@
 //! The claimed errors of motions of stones.
 
-use crate::common::cases;
+use crate::common::{cases, larger};
 use crate::stone::{TIMES, any_start, any_stone, apart};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table};
@@ -19,7 +19,7 @@ fn beyond_claims(&(ref stone, start, mu, slips, tol): &Asked) -> f64 {
     let (Ok(Some(a)), Ok(Some(b))) = (roll(&ask), roll(&rough)) else { return 0.0 };
     let states = a.states.iter().zip(&b.states).map(|(x, y)| apart(x, y));
     let events = a.event.iter().zip(&b.event).map(|(x, y)| (x.time - y.time).abs());
-    states.chain(events).fold(0.0, f64::max) / (a.error + b.error)
+    states.chain(events).fold(0.0, larger) / (a.error + b.error)
 }
 
 proptest! {

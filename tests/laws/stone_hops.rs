@@ -1,6 +1,6 @@
 //! Stones that fly, land and bounce: what is kept, a stone that is a ball, mirror images, and the way back.
 
-use crate::common::{drawn, wander};
+use crate::common::{drawn, larger, wander};
 use crate::flight::other_law;
 use crate::stone::{apart, turned};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -237,7 +237,7 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
                 a.poses.as_ref().unwrap()[i].centre,
                 b.samples().nth(i).unwrap().centre(&body).unwrap().into(),
             ];
-            let moved = (0..3).fold(0.0, |most: f64, k| most.max((at[k] - there[k]).abs()));
+            let moved = (0..3).fold(0.0, |most: f64, k| larger(most, (at[k] - there[k]).abs()));
             let places = 1e-11 + 10.0 * (a.pose_error + b.pose_error);
             assert!(moved < places, "{k} {ask:?}: centre off by {moved:e}, {places:e} at {}", a.times[i]);
             assert!(off < claim, "{k} {body:?} {there:?} {ask:?}: {off:e}, {claim:e} at {}", a.times[i]);
@@ -388,7 +388,7 @@ fn friction_without_limit_tends_to_a_table_on_which_a_stone_rolls() {
         for mu in [1e4, 1e6] {
             let found = landed(Friction::coulomb(mu).into()).unwrap();
             let off = (0..3).map(|i| (found.states[1].w[i] - rough.states[1].w[i]).abs());
-            let off = off.fold((found.velocities[1][2] - rough.velocities[1][2]).abs(), f64::max);
+            let off = off.fold((found.velocities[1][2] - rough.velocities[1][2]).abs(), larger);
             assert!(off < 100.0 / mu && found.hit == Hit::Sticks, "{k} {mu}: {off:e}");
         }
         both += 1;

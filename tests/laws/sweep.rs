@@ -2,7 +2,7 @@
 //! surveys with maps.
 
 use crate::common::rim::{condition, sharp, steady_end};
-use crate::common::{any_rounded, ordinary_tube, tube_or_rounded};
+use crate::common::{any_rounded, larger, ordinary_tube, tube_or_rounded};
 use proptest::prelude::*;
 use spincyl::stability::{at_rest, region};
 use spincyl::sweep::{Extrema, MapPoint, MapQuantity, TubePoints};
@@ -133,7 +133,7 @@ fn near_folds_and_edges_and_at_any_scale_the_single_rate_is_that_of_doubles_what
     let out = sweep::Portrait::default().with_rate(&mut double[..]);
     assert!(sweep::portrait(&theta, &bodies, out, 1, |_| true).unwrap());
     let found = single.iter().zip(&double).map(|(x, y)| off(*x, *y));
-    let worst = found.fold(0.0, f64::max);
+    let worst = found.fold(0.0, larger);
     let known = double.iter().filter(|x| !x.is_nan()).count();
     assert!(
         worst <= 1.51 && worst > 1.2 && size > 1_000_000 && known > size / 4,

@@ -1,6 +1,6 @@
 //! States from rates, from a pose and a twist, and back: samples of a motion against rigid bodies in three dimensions.
 
-use crate::common::{any_rim, any_state, rounded_starts, starts, state, wander};
+use crate::common::{any_rim, any_state, larger, rounded_starts, starts, state, wander};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use spincyl::contact::{Friction, Table};
@@ -99,7 +99,7 @@ proptest! {
         let Some(now) = motion.samples().next() else { return Ok(()) };
         let twist = (now.orientation().unwrap(), now.angular_velocity().unwrap(), now.velocity(&body).unwrap());
         let again = Start::from_twist(&body, &twist.0, twist.1, twist.2, None).unwrap();
-        let off = [0, 1].map(|i| (again.slip[i] - slip[i]).abs()).into_iter().fold(0.0, f64::max);
+        let off = [0, 1].map(|i| (again.slip[i] - slip[i]).abs()).into_iter().fold(0.0, larger);
         prop_assert!(off < 1e-12 * (1.0 + body.ell()), "{:?}", again);
     }
 }

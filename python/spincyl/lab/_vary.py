@@ -119,7 +119,7 @@ def _with_coefficients(losses: Loss, values: Mapping[str, float]) -> Loss:
     total: Any = None
     for law in losses.laws:
         name = type(law).__name__
-        one = marked_as_si(type(law)(values[name])) if name in values else law
+        one = marked_as_si(law._with(values[name])) if name in values else law
         total = one if total is None else total + one
     found: Loss = total
     return found

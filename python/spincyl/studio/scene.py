@@ -284,6 +284,7 @@ class Scene:
         normal_force: float,
         *,
         scalar_first: bool = False,
+        slips: bool = False,
     ) -> Floats:
         """Compute the couple with which the losses act on the body, for an engine without these losses.
 
@@ -298,6 +299,9 @@ class Scene:
             acts.
         scalar_first : bool
             If true, the quaternion is w, x, y, z.
+        slips : bool
+            Whether the contact point slips. Then a rolling resistance with ``while_slipping=False`` is
+            absent.
 
         Returns
         -------
@@ -314,7 +318,9 @@ class Scene:
         w = _checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
         pressed = number("normal_force", normal_force) / self.scale.newtons(1.0)
         laws = () if self.motion.losses is None else self.motion.losses.laws
-        couples = [law.couple for law in laws if pressed > 0 or law._parameter in _IN_AIR]
+        slips = flag("slips", slips)
+        acts = [law for law in laws if law._acts_in_slip or not slips]
+        couples = [law.couple for law in acts if pressed > 0 or law._parameter in _IN_AIR]
         axis = rotations(q)[:, 2]
         across = np.array([0.0, 0.0, 1.0]) - axis[2] * axis
         first = across / np.linalg.norm(across)

@@ -41,6 +41,8 @@ def natural_data(m: Motion) -> dict[str, Any]:
         "restitution": None if asked.restitution is None else coefficient_of(asked.restitution),
         "slope": asked.slope,
     }
+    if not asked.while_slipping:
+        ask["resistance"] = "WhileRolling"
     if asked.step is not None or asked.tol is not None:
         ask["method"] = {"Tolerance": asked.tol} if asked.step is None else {"Step": asked.step}
     if (law := law_for_core(asked.restitution)) is not None:
@@ -118,7 +120,8 @@ def motion_of(data: dict[str, Any]) -> tuple[Motion, Scale]:
     method = ask.get("method", "Exact")
     by = {} if method == "Exact" else {"Tolerance": "tol", "Step": "step"}
     how = {by[name]: value for name, value in method.items()} if by else {}
-    laws = [_law(name, value) for name, value in ask.get("losses", {}).items()]
+    resists = ask.get("resistance", "Always") == "Always"
+    laws = [_law(name, value, resists) for name, value in ask.get("losses", {}).items()]
     body, known = _natural_body(natural), data["expected"]
     times, ending = known["time"], known["ending"]
     if ending["kind"] != "DONE":  # a time after the end, which the motion does not reach
@@ -162,10 +165,11 @@ def _natural_contact(ask: dict[str, Any]) -> tuple[AnyContact, float]:
     return Coulomb(own["mu"], static=float(own["fixed"]), patch=own["patch"], face=face), math.inf
 
 
-def _law(name: str, coefficient: float) -> Law:
+def _law(name: str, coefficient: float, while_slipping: bool) -> Law:
     import spincyl.loss
 
-    law: Law = getattr(spincyl.loss, name)(coefficient)
+    options = {} if while_slipping or name != "RollingResistance" else {"while_slipping": False}
+    law: Law = getattr(spincyl.loss, name)(coefficient, **options)
     assert law._parameter in LAWS
     return law
 

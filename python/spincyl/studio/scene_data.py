@@ -234,7 +234,8 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
         for x, power in zip((metre, second, joule), law._row.exponents, strict=True):
             value *= x**power
         told = {"law": type(law).__name__, "coefficient": law._parameter, "value": value}
-        losses.append(told | {"unit": law._row.si, "couple": law._row.couple})
+        couple = law._row.couple if law._acts_in_slip else f"{law._row.couple}, 0 while the body slips"
+        losses.append(told | {"unit": law._row.si, "couple": couple})
     return {
         "point": [0.0, 0.0, 0.0],
         "normal": [0.0, 0.0, 1.0],

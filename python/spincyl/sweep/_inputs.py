@@ -210,8 +210,9 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
         found["contact"] = at["contact"]
     if "table_slope" in given:
         found["table"] = Table(given["table_slope"], phi0=given["table_phi0"])
+    options: Any = {"delta": {"while_slipping": bool(at.get("while_slipping", True))}}
     laws = [
-        marked_as_si(law(given[f"loss_{name}"]), known)
+        marked_as_si(law(given[f"loss_{name}"], **options.get(name, {})), known)
         for name, law in KINDS.items()
         if f"loss_{name}" in given
     ]

@@ -38,7 +38,7 @@ from spincyl._input.numbers import (
 from spincyl._input.progress import Progress
 from spincyl._input.threads import has_large_stack
 from spincyl._loss import LAWS, Loss, checked_law
-from spincyl._lossy import warn_of_long_arm
+from spincyl._lossy import check_resistance, warn_of_long_arm
 from spincyl._measured import errors_in_seconds, natural_time
 from spincyl._phases import has_friction
 from spincyl._restitution import Restitution, check_restitution
@@ -353,6 +353,8 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
     if losses is not None:
         checked_law(losses)
         warn_of_long_arm(losses, contact)
+        check_resistance(losses, contact)
+        asked = asked._replace(while_slipping=losses._acts_in_slip)
     if not has_friction(contact) and asked.stop_at is not None:
         raise ValueError("stop_at: needs contact=sc.Coulomb(...) or contact=sc.Viscous(...)")
     if asked.restitution is not None:

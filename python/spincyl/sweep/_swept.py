@@ -70,6 +70,7 @@ def swept(
         attrs["face"] = asked.contact.face
     attrs |= {"beyond": 1} if asked.beyond else {}  # numbers, since netCDF has no booleans
     attrs |= {} if asked.errors else {"errors": 0}
+    attrs |= {} if asked.while_slipping else {"while_slipping": 0}
     attrs |= restitution_as_words(asked.restitution)
     more = {"stop_at": asked.stop_at, "max_nfev": asked.max_nfev}
     attrs |= {name: x for name, x in more.items() if x is not None}

@@ -46,6 +46,7 @@ use crate::laws::body::{Body, Border, CircleDown};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
 use crate::laws::state::{State, drilling_of};
+use crate::numbers::larger_or_nan;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body after its other rim has landed.
@@ -468,7 +469,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
                     false => most / (most + step),
                 };
                 let next = tried.map(|x| x * share);
-                moved = moved.max((next[0] - q[k][0]).abs()).max((next[1] - q[k][1]).abs());
+                moved = (0..2).fold(moved, |moved, i| larger_or_nan(moved, (next[i] - q[k][i]).abs()));
                 q[k] = next;
             }
             let size = q.iter().flatten().fold(velocity, |m, x| m.max(x.abs()));

@@ -166,7 +166,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         );
         let normal = Self::normal(&couple, tilts, [lever, per_inertia, d2, carried]);
         // After a lift-off no force presses the body on the table, and the laws have no normal force.
-        let pressing = normal.max(s.splat(0.0));
+        let pressing = normal.positive_part();
         let [mut m1, m2, mut m3] = couple.under(pressing);
         let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
         let [mut r1, mut r3] = Self::add_couple(&of, [d1, d3], m1, m3);

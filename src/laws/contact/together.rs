@@ -16,6 +16,7 @@ use super::slip::Slipping;
 use crate::laws::body::Shape;
 use crate::laws::loss::{Couples, Law, OwnCouple, Ways, rounded};
 use crate::laws::state::{drilling_of, rolling_of, spin_of};
+use crate::numbers::larger_or_nan;
 use nalgebra::{SMatrix, SVector};
 
 /// Number of components of the reactions.
@@ -210,7 +211,7 @@ impl Together {
                 let (nearest, _) = self.nearest(part, self.before_projection(part, r));
                 let (first, count) = part.place();
                 for k in 0..count {
-                    moved = moved.max((nearest[k] - r[first + k]).abs());
+                    moved = larger_or_nan(moved, (nearest[k] - r[first + k]).abs());
                     r[first + k] = nearest[k];
                 }
             }

@@ -11,6 +11,7 @@
 
 use super::lying::{Lain, Lying};
 use crate::laws::body::{Border, Shape};
+use crate::numbers::larger_or_nan;
 
 /// The largest number of steps of the search.
 const SEARCH_STEPS: usize = 100_000;
@@ -62,7 +63,7 @@ impl Lying<f64> {
                 let size = tried[0].hypot(tried[1]);
                 moves[k] = size > limit;
                 let next = tried.map(|x| if moves[k] { x * (limit / size) } else { x });
-                moved = moved.max((next[0] - q[k][0]).abs()).max((next[1] - q[k][1]).abs());
+                moved = (0..2).fold(moved, |moved, i| larger_or_nan(moved, (next[i] - q[k][i]).abs()));
                 q[k] = next;
             }
             let size = q.iter().flatten().fold(velocity, |most: f64, x| most.max(x.abs()));

@@ -278,6 +278,18 @@ pub struct Losses {
     pub(crate) coefficients: [f64; COUNT],
 }
 
+/// When rolling resistance acts on a body whose contact point may slip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Resistance {
+    /// Whether the contact point slips or not.
+    #[default]
+    Always,
+    /// Only while the contact point does not slip, as in most programs for billiards.
+    WhileRolling,
+}
+
 impl Losses {
     /// All coefficients are 0, and nothing is lost.
     pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
@@ -386,16 +398,17 @@ impl Losses {
     }
 
     /// The power that is lost in a state under a normal force N, in M g R sqrt(g/R). N is in units of the weight, 1 in
-    /// a steady state; a negative N counts as 0.
+    /// a steady state; a negative N counts as 0, and a power under an N that is NaN is NaN if a law is dry.
     pub fn power(&self, body: &Body, y: &State, normal: f64) -> f64 {
         let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
-        of.power(&seen, normal.max(0.0))
+        of.power(&seen, normal.positive_part())
     }
 
     /// The couple on the body along e1, e2, e3, in M g R.
     pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
         let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
-        of.at(&seen).under(normal.max(0.0))
+        let pressed = if self.any(Law::presses) { normal.positive_part() } else { 0.0 };
+        of.at(&seen).under(pressed)
     }
 }
 

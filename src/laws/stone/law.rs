@@ -232,7 +232,7 @@ impl<T: Real> StoneLaw<T> {
             }
             let factor = one + dot(cross(turned, r), n);
             // After a lift-off the normal force is zero.
-            let normal = ((one - dot(plus(carried, one, cross(dw, r)), n)) / factor).max(one.splat(0.0));
+            let normal = ((one - dot(plus(carried, one, cross(dw, r)), n)) / factor).positive_part();
             (dw, kept) = (plus(dw, normal, turned), normal.mac(twist, kept));
             room = factor - one.splat(JAMMED);
         }

@@ -437,8 +437,11 @@ mod tests {
     #[test]
     fn every_width_gives_the_same_bits() {
         let kinds = [(Contact::Rolling, 0.0), (Contact::Smooth, 0.0), (Contact::Rolling, 0.4)];
+        let level = crate::numbers::level();
+        if level.is_none() {
+            return; // A program without lanes has nothing to compare.
+        }
         for kind in kinds {
-            let level = crate::numbers::level();
             let best =
                 bits(|work, count, out| work.run(level, (0..count).collect(), out, &mut || true), kind);
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

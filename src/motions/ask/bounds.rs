@@ -14,6 +14,7 @@
 
 use crate::laws::body::Body;
 use crate::motions::Motion;
+use crate::numbers::larger_or_nan;
 
 /// Upper bounds of the errors at any time of a motion, in natural units, or in SI for a measured body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +63,7 @@ impl Motion {
             let force = now.force_in_laboratory().map_or(0.0, |force| force.norm());
             let speed = now.velocity(body).map_or(0.0, |v| v.norm());
             for (most, x) in most.iter_mut().zip([now.state.angular_velocity().norm(), speed, force]) {
-                *most = most.max(x);
+                *most = larger_or_nan(*most, x);
             }
         }
         let size = [body.reach(), body.i1().max(body.i3())];

@@ -9,9 +9,10 @@ pub(crate) mod sample;
 
 use crate::error::{Error, within};
 use crate::laws::body::Body;
+use crate::laws::contact::slip::Friction;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::contact::{Face, ImpactLaw, Table};
-use crate::laws::loss::{Law, Losses};
+use crate::laws::loss::{Law, Losses, Resistance};
 use crate::laws::pose::{axes, euler_angles};
 use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
@@ -61,6 +62,11 @@ pub struct Ask {
     pub table: Table,
     /// The loss laws, in addition to the friction of a slip.
     pub losses: Losses,
+    /// When rolling resistance acts. Only while the body rolls, it needs a table on which a body can roll: no smooth one, no
+    /// viscous friction, and no patch of contact, which creeps. Then a motion ends where the body lies on two rims, and
+    /// where it can neither roll under the resistance nor slip without it. Stones always resist.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub resistance: Resistance,
     /// The method that computes the motion.
     pub method: Method,
     /// Whether the motion continues past events other than a landing of the face; with a law of friction it never does.
@@ -111,6 +117,27 @@ impl Ask {
     #[must_use]
     pub fn with_losses(self, losses: Losses) -> Self {
         Self { losses, ..self }
+    }
+
+    /// Returns these options with rolling resistance at these times.
+    ///
+    /// ```
+    /// use spincyl::contact::Friction;
+    /// use spincyl::loss::{Law, Losses, Resistance};
+    /// use spincyl::motion::{Ask, Start, roll_with};
+    /// use spincyl::{Body, State};
+    ///
+    /// // A ball that is struck through its centre, with mu = 0.2, rolls after 2 v/(7 mu), whatever resists its rolling.
+    /// let (ball, still) = (Body::ball(0.0, 0.4, 0.4)?, State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 });
+    /// let losses = Losses::of(Law::RollingResistance, 0.01);
+    /// let ask = Ask::on(Friction::coulomb(0.2)).with_losses(losses).with_resistance(Resistance::WhileRolling);
+    /// let motion = roll_with(&ball, Start::from(still).with_slip([0.0, 3.0]), &[10.0], &ask, || true)?.unwrap();
+    /// assert!((motion.path.unwrap().phases[1].time - 2.0 * 3.0 / (7.0 * 0.2)).abs() < 1e-12);
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_resistance(self, resistance: Resistance) -> Self {
+        Self { resistance, ..self }
     }
 
     /// Returns these options with this method.
@@ -177,6 +204,18 @@ impl Ask {
     #[must_use]
     pub fn with_force(self, force: bool) -> Self {
         Self { force, ..self }
+    }
+
+    /// Whether some rolling resistance acts only while the contact point does not slip.
+    pub(crate) fn resists_only_rolling(&self) -> bool {
+        self.resistance == Resistance::WhileRolling
+            && self.losses.coefficient(Law::RollingResistance) != 0.0
+            && self.table.rubs()
+    }
+
+    /// The losses that act while the contact point slips.
+    pub(crate) fn losses_in_slip(&self) -> Losses {
+        if self.resists_only_rolling() { self.losses.with(Law::RollingResistance, 0.0) } else { self.losses }
     }
 
     /// Whether the table is level and at rest.
@@ -449,6 +488,22 @@ pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
     if SHORT_CODE && patch > 0.0 && ask.restitution.is_some() {
         let expected = "0 together with a restitution on a page";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
+    }
+    Ok(())
+}
+
+/// Returns an error for rolling resistance only while a body rolls, on a table on which it never does.
+pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
+    let value = ask.losses.coefficient(Law::RollingResistance);
+    let never = match ask.table {
+        Table::Rolling { .. } => false,
+        Table::Rubs(Friction::Coulomb { patch, .. }) => patch > 0.0,
+        _ => true,
+    };
+    if ask.resistance == Resistance::WhileRolling && value != 0.0 && never {
+        let expected =
+            "0, or a table without a patch and with dry friction, for a resistance only while the body rolls";
+        return Err(Error::OutOfRange { name: "delta", value, expected });
     }
     Ok(())
 }

@@ -159,8 +159,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The losses, the couple of the user beside them, and the pull of a slope and of a drive; None if there is none of these.
     pub(super) fn couples(&self) -> Option<Couples<f64, G>> {
+        self.couples_of(&self.ask.losses)
+    }
+
+    /// The same with other losses.
+    pub(super) fn couples_of(&self, losses: &Losses) -> Option<Couples<f64, G>> {
         self.of.slide.asks_drive(&self.at);
-        let lost = Couples::with_own(&self.ask.losses, self.of.own);
+        let lost = Couples::with_own(losses, self.of.own);
         if self.ask.is_level() && !self.of.own.drives() {
             return lost;
         }
@@ -201,7 +206,7 @@ impl<G: Own> BodyPhases<G> {
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
-        let slide = Slide::new(body, &friction, &ask.losses, tol, own);
+        let slide = Slide::new(body, &friction, &ask.losses_in_slip(), tol, own);
         let slide = slide.on_table([ask.slope.tan(), ask.turning]);
         let loses = !ask.losses.is_none() || friction.patch() > 0.0 || own.has_couple();
         let known_ends = !G::IS && !body.is_ball() && ask.is_level();
@@ -232,7 +237,7 @@ impl<G: Own> BodyPhases<G> {
                 && (ask.slope == 0.0 || start.heading == PI * (start.heading / PI).round())
                 && ask.turning == 0.0,
             lately: [0.0; 2],
-            tail: (known_ends && ask.losses.turn_endlessly()).then(LastTurns::default),
+            tail: (known_ends && ask.losses_in_slip().turn_endlessly()).then(LastTurns::default),
             nods: (known_ends && !ask.losses.stop_the_contour()).then(Box::default),
         }
     }
@@ -245,7 +250,8 @@ impl<G: Own> BodyPhases<G> {
                 self.tail = self.tail.map(|_| LastTurns::default());
                 self.nods = self.nods.take().map(|_| Box::default());
             }
-            let slide = Slide::new(&body, &ask.table.friction(), &ask.losses, self.slide.tol, self.own);
+            let slide =
+                Slide::new(&body, &ask.table.friction(), &ask.losses_in_slip(), self.slide.tol, self.own);
             self.slide = slide.on_table([self.tilt, self.turning]);
             self.body = body;
         }

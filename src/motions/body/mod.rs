@@ -55,7 +55,7 @@ use crate::laws::loss::Law;
 use crate::laws::state::State;
 use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
-use crate::motions::ask::{check_flow, check_patch, check_times_after};
+use crate::motions::ask::{check_flow, check_patch, check_resistance, check_times_after};
 use crate::motions::exact;
 use crate::motions::slope::on_slope;
 use crate::motions::walk::two_runs::{Followed, judged};
@@ -186,6 +186,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     ask.table.check()?;
     ask.losses.check_for(body)?;
     check_patch(ask)?;
+    check_resistance(ask)?;
     ask.impact_law.check(body.is_uniform_ball(), &ask.table)?;
     let fine = check_flow(ask)?;
     let drills = ask.losses.coefficient(Law::Drilling) != 0.0 && ask.restitution.is_some();

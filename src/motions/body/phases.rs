@@ -6,10 +6,10 @@ use super::slide::slow::{BodySlips, Slippery};
 use super::write::{self, state};
 use crate::error::Error;
 use crate::laws::contact::lossy::{Acted, Lossy};
-use crate::laws::contact::slip::painleve;
+use crate::laws::contact::slip::{Friction, painleve};
 use crate::laws::contact::standstill::{Standstill, let_go, standstill, towards};
 use crate::laws::contact::{Contact, Force, force};
-use crate::laws::loss::{Couples, Holds, Losses};
+use crate::laws::loss::{Couples, Holds, Law, Losses};
 use crate::laws::state::{State, rolling_of};
 use crate::methods::flow::{Flow, FlowPlace, Steps};
 use crate::motions::ask::row::OutputRow;
@@ -116,6 +116,20 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         self.claims(left);
         self.of.state = state(&self.at);
+    }
+
+    /// The behaviour of a contact point at rest that friction does not hold under a rolling resistance, if that resistance
+    /// acts only while the body rolls: it slips without it. Where friction then holds it, no behaviour is consistent.
+    fn slips_unresisted(&self) -> Standstill {
+        let (of, losses) = (&self.of, self.ask.losses_in_slip());
+        let friction = match self.friction() {
+            Friction::Coulomb { mu, patch, .. } => Friction::Coulomb { mu, fixed: mu, patch },
+            viscous => viscous,
+        };
+        match standstill(&of.body, &of.state, &friction, self.couples_of(&losses)) {
+            Standstill::Sticks => Standstill::Undefined,
+            found => found,
+        }
     }
 
     /// Whether a body at theta_end, whose contact point rests, rises under the contact force.
@@ -230,14 +244,27 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
 
     fn rests(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let of = &walk.of;
-        standstill(&of.body, &of.state, &walk.friction(), walk.couples())
+        let found = standstill(&of.body, &of.state, &walk.friction(), walk.couples());
+        if found != Standstill::Sticks && walk.ask.resists_only_rolling() {
+            return walk.slips_unresisted();
+        }
+        found
     }
     fn lets_go(walk: &BodyWalk<'_, N, G>) -> Standstill {
         let of = &walk.of;
+        if walk.ask.resists_only_rolling() {
+            return walk.slips_unresisted();
+        }
         let_go(&of.body, &of.state, &walk.friction(), walk.couples())
     }
 
     fn no_unique_force(walk: &BodyWalk<'_, N, G>) -> Error {
+        if walk.ask.resists_only_rolling() && walk.at.slip() == [0.0; 2] {
+            let value = walk.ask.losses.coefficient(Law::RollingResistance);
+            let expected = "less, or one that acts while the body slips, too: friction cannot hold the contact point of \
+                            this body as it rolls under the resistance, and holds it without";
+            return walk.of.own.takes_fault().unwrap_or(Error::OutOfRange { name: "delta", value, expected });
+        }
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);
         let limit = painleve(&walk.of.body, theta);
         walk.of.own.takes_fault().unwrap_or(Error::Painleve { mu, theta, limit })

@@ -16,6 +16,8 @@
 //! Error: of slips from rest, twice the spread of the last estimates, divided by the share of the rest of the motion
 //! over which they spread; else twice the sum of all further changes of the estimate, extrapolated from the last three.
 
+use crate::numbers::larger_or_nan;
+
 /// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin here; at
 /// larger inclinations they would be wrong.
 const SELF_SIMILAR_SINE: f64 = 1e-4;
@@ -102,7 +104,7 @@ impl Nods {
             let [heat, lost] = [now.heat - before.heat, now.lost - before.lost];
             // A body that goes on to spin about the vertical does not come to rest.
             let spins = now.w3 - (before.w3 - now.w3) / (before.root / now.root - 1.0);
-            let doubt = (2.0 * (high - low) / falls).max(spins.abs());
+            let doubt = larger_or_nan(2.0 * (high - low) / falls, spins.abs());
             NodsEnd { time: estimate(0), doubt, heats: heat / (heat + lost) }
         };
         let ends = (1..=SLIPS).map(by).filter(|end| {

@@ -25,6 +25,7 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ending, Kind, Limit};
+use crate::numbers::larger_or_nan;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// The ball after a time of a phase, with its error among the claims.
@@ -245,6 +246,6 @@ impl Followed {
         let fastest = |y: &State| y.w1.abs().max(y.w2.abs()).max(y.w3.abs());
         let fastest = phases.fold(1.0, |most: f64, phase| most.max(fastest(&phase.state)));
         self.motion.error += 8.0 * f64::EPSILON * fastest;
-        self.motion.force_error *= (self.motion.error / tol).max(1.0);
+        self.motion.force_error *= larger_or_nan(1.0, self.motion.error / tol);
     }
 }

@@ -12,6 +12,7 @@ use crate::motions::walk::errors::doubted;
 use crate::motions::walk::numbers::{COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, X, Y, lost, poses};
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ask, Kind, Start};
+use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
@@ -61,7 +62,7 @@ impl Followed {
             let turns = if L::IS && speed > 0.0 { slide.tol * <Slide>::fastest(y) / speed } else { 0.0 };
             let doubt = doubt + turns.min(1.0) * force.along.hypot(force.across);
             // No table pulls: such a force is an error.
-            (force, doubt.max(-force.normal))
+            (force, larger_or_nan(doubt, -force.normal))
         });
         self.push(OutputRow {
             pose,

@@ -134,7 +134,7 @@ impl<'a> OwnLaws<'a> {
         if law.has_failed() {
             return [f64::NAN; 3];
         }
-        let ((seen, side), normal) = (self.seen_from_lower_rim(y), normal.max(0.0));
+        let ((seen, side), normal) = (self.seen_from_lower_rim(y), normal.positive_part());
         let [m1, m2, m3] = law.couple(self.body, &seen, normal);
         if (m1 + m2 + m3).is_nan() && [y.theta, y.w1, y.w2, y.w3].iter().all(|x| x.is_finite()) {
             self.fault.set(fault_of_couple([m1, m2, m3], &seen, normal));
@@ -308,7 +308,8 @@ impl Own for OwnLaws<'_> {
                 speeds.iter().find_map(|&speed| fault_of_friction(law.coefficient(speed), speed))
             };
             let turns = |(law, (y, normal)): (&dyn CoupleLaw, ([f64; 5], f64))| {
-                let (seen, normal) = (self.seen_from_lower_rim(&upright_state(y).1).0, normal.max(0.0));
+                let (seen, normal) =
+                    (self.seen_from_lower_rim(&upright_state(y).1).0, normal.positive_part());
                 fault_of_couple(law.couple(self.body, &seen, normal), &seen, normal)
             };
             let drives = self.driven.get().and_then(|driven| fault_of_drive(&driven.push, &driven.now));

@@ -10,6 +10,7 @@
 //! possible difference of states.
 
 use super::{LegPoint, Swing, SwingPhase};
+use crate::numbers::larger_or_nan;
 
 /// A panel at a smaller sine of the inclination does not count in the growth of errors if the motion reaches
 /// a pole or a face.
@@ -32,8 +33,8 @@ impl Swing {
         let y = self.state_at(phase.spot, phase.time >= 0.0);
         let dy = self.contact.derivative(&self.body, &y);
         let doubt = self.time_doubt(&phase, t);
-        let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| a.max(x.abs()));
-        let rate = rate.max(self.largest_difference(phase.spot, doubt));
+        let rate = [dy.theta, dy.w1, dy.w2, dy.w3].iter().fold(0f64, |a, x| larger_or_nan(a, x.abs()));
+        let rate = larger_or_nan(rate, self.largest_difference(phase.spot, doubt));
         // The uncertainty of the ends moves the state along x.
         let [low, high] = self.lines.range();
         let part = ((at.x - low) / (high - low)).clamp(0.0, 1.0);
@@ -131,9 +132,9 @@ impl Swing {
             if s < NEAR_POLE && self.lines.reaches_pole() != [false; 2] {
                 return most;
             }
-            most.max(panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))
+            larger_or_nan(most, panel.g[2] / (s.powi(4) * self.lines.law.inertia(|| (s, c))))
         });
-        let growth = growth.max(0.0).sqrt() + 1.0 / self.half_nutation.time;
+        let growth = growth.sqrt() + 1.0 / self.half_nutation.time;
         if doubt * growth <= 0.05 {
             return 0.0;
         }
@@ -143,7 +144,7 @@ impl Swing {
             let there = self.rising_state(place);
             let tilts = there.w2.abs() + here.w2.abs();
             let off = [there.theta - here.theta, there.w1 - here.w1, tilts, there.w3 - here.w3];
-            most = off.iter().fold(most, |a, x| a.max(x.abs()));
+            most = off.iter().fold(most, |a, x| larger_or_nan(a, x.abs()));
         }
         most * (20.0 * growth).min(1.0 / doubt)
     }

@@ -9,6 +9,7 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::motions::walk::errors::with_contact_forces;
 use crate::motions::{Ask, Event, Method, Motion};
+use crate::numbers::larger_or_nan;
 
 /// Largest estimated errors of a state and of a pose for which the quick method is as good as the other.
 const QUICK: f64 = 2e-12;
@@ -106,19 +107,21 @@ pub(crate) fn follow(
             (fastest, swiftest) = (turning, t);
         }
         if looked_at {
-            motion.error = motion.error.max(swing.error(t));
+            motion.error = larger_or_nan(motion.error, swing.error(t));
         }
         if let Some(poses) = &mut motion.poses {
             poses.extend(swing.pose(t));
             if looked_at {
-                motion.pose_error = motion.pose_error.max(swing.pose_error(t));
+                motion.pose_error = larger_or_nan(motion.pose_error, swing.pose_error(t));
             }
         }
     }
     let met = event.map(|e| (e.time, limits.doubt(&e) + swing.time_error(e.time)));
     for (t, doubt) in met.into_iter().chain((count > 0).then_some((swiftest, 0.0))) {
-        motion.error = motion.error.max(swing.error(t) + doubt);
-        motion.pose_error = motion.pose_error.max(if course.pose { swing.pose_error(t) } else { f64::NAN });
+        motion.error = larger_or_nan(motion.error, swing.error(t) + doubt);
+        if course.pose {
+            motion.pose_error = larger_or_nan(motion.pose_error, swing.pose_error(t));
+        }
     }
     motion.times = copied(&course.times[..count])?;
     Ok(motion)

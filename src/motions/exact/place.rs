@@ -11,7 +11,7 @@
 use super::{LegPoint, Swing};
 use crate::laws::contact::Contact;
 use crate::laws::pose::{Angle, Pose};
-use crate::numbers::Sum;
+use crate::numbers::{Sum, larger_or_nan};
 use nalgebra::{Complex, Point2};
 
 /// The angles by which a body turns in a whole nutation, in radians.
@@ -145,7 +145,7 @@ impl Swing {
             if self.has_pose() { self.half_nutation.turns_doubt } else { [f64::NAN; 2] };
         let angles = self.turns_per_period().map_or(0.0, |[phi, psi]| phi.abs().max(psi.abs()));
         let halves = 2.0 * (2.0 + phase.periods.abs());
-        let turned = halves * (phi_doubt.max(psi_doubt) + 0.5 * f64::EPSILON * angles);
+        let turned = halves * (larger_or_nan(phi_doubt, psi_doubt) + 0.5 * f64::EPSILON * angles);
         let [x_doubt, y_doubt] = self.half_nutation.path_doubt;
         // An error of the angle moves the contact point in proportion to its distance from the centre of its path.
         let there = self.pose(t).map_or(0.0, |pose| pose.contact_point.coords.norm());

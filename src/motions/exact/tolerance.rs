@@ -20,6 +20,7 @@ use crate::motions::body::walked;
 use crate::motions::walk::errors::{judge, same_end};
 use crate::motions::walk::two_runs::{Followed, judged};
 use crate::motions::{Ask, Event, Method, Motion, Start};
+use crate::numbers::{Real, larger_or_nan};
 use crate::states::stability::stiffness;
 
 /// Largest error of an exact solution from which the error of another solution is computed.
@@ -122,7 +123,9 @@ pub(crate) fn within(
     }
     motion.error = 0.0;
     judge(&mut motion, swing, known.event, course.t0);
-    motion.error = motion.error.max(if motion.event.is_some() { known.doubt } else { 0.0 });
+    if motion.event.is_some() {
+        motion.error = larger_or_nan(motion.error, known.doubt);
+    }
     motion.method = Method::Tolerance(tol);
     Ok(motion)
 }
@@ -197,11 +200,11 @@ fn judged_by_rougher_run(
     motion.method = Method::Tolerance(tol);
     // In an unstable steady state rounding may keep both runs at the initial state, so that they agree, although any
     // disturbance would grow.
-    let growth =
-        (-stiffness(ask.table.contact(), course.body, course.start)).max(0.0).sqrt() * course.span.abs();
-    motion.error = motion.error.max(4.0 * f64::EPSILON * growth.exp());
+    let growth = (-stiffness(ask.table.contact(), course.body, course.start)).positive_part().sqrt()
+        * course.span.abs();
+    motion.error = larger_or_nan(motion.error, 4.0 * f64::EPSILON * growth.exp());
     if ask.pose {
-        motion.pose_error = motion.pose_error.max(motion.error * (1.0 + course.span.abs()));
+        motion.pose_error = larger_or_nan(motion.pose_error, motion.error * (1.0 + course.span.abs()));
     }
     Ok(motion)
 }

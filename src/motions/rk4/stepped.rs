@@ -9,6 +9,7 @@ use crate::motions::exact::event::Limits;
 use crate::motions::exact::tolerance::{ExactEnd, within};
 use crate::motions::walk::errors::{compare, judge};
 use crate::motions::{Ask, Motion};
+use crate::numbers::larger_or_nan;
 
 /// Tolerance of the run with which a fixed step is compared where no exact solution is accurate enough. The error of
 /// that run is added to the estimated error.
@@ -49,7 +50,7 @@ pub(crate) fn stepped(
     motion.event = event;
     if let Some(swing) = known.swing {
         judge(&mut motion, swing, event, course.t0);
-        motion.error = motion.error.max(known.doubt);
+        motion.error = larger_or_nan(motion.error, known.doubt);
     }
     if let Some(reference) = reference {
         compare(&mut motion, &reference);

@@ -261,7 +261,7 @@ impl<'a> StoneFlow<'a> {
             rates[STONE_X + i] = u[i] + dot(lab[i], at.r_rate);
         }
         if let Some(lost) = at.lost.filter(|_| loses(N)) {
-            rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).max(0.0)), w);
+            rates[N - 1] = -dot(lost.under(dot(pulled.force, at.n).positive_part()), w);
         }
         rates
     }
@@ -360,7 +360,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
             }
         }
         if let Some(lost) = at.lost.filter(|_| loses(N)) {
-            all[N - 1] = -dot(lost.under(dot(to.force, at.n).max(0.0)), w);
+            all[N - 1] = -dot(lost.under(dot(to.force, at.n).positive_part()), w);
         }
         if loses(N) || self.touch == Touch::Slips {
             all.iter_mut().for_each(|x| *x *= pace);

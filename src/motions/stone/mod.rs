@@ -17,6 +17,7 @@ mod write;
 use super::ask::{check_flow, check_patch, check_times_after};
 use super::{AboveTable, Ask, Start};
 use crate::error::{Error, within};
+use crate::laws::loss::{Law, Resistance};
 use crate::laws::stone::StoneState;
 use crate::numbers::vector::dot;
 pub(crate) use roll::followed;
@@ -50,6 +51,11 @@ pub(crate) fn check_stone(
     start.check_place()?;
     ask.table.check()?;
     ask.losses.check_for_stone()?;
+    if ask.resistance == Resistance::WhileRolling && ask.losses.coefficient(Law::RollingResistance) != 0.0 {
+        let value = ask.losses.coefficient(Law::RollingResistance);
+        let expected = "0 for a stone, with a resistance only while the body rolls";
+        return Err(Error::OutOfRange { name: "delta", value, expected });
+    }
     check_patch(ask)?;
     if let Some(AboveTable { height, lift }) = start.aloft {
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;

@@ -17,8 +17,8 @@ use crate::methods::flow::{Flow, FlowPlace, PATIENCE, Steps, toil_of};
 use crate::methods::rk8;
 use crate::motions::Moving;
 use crate::motions::walk::two_runs::rougher;
-use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot};
+use crate::numbers::{Dual, larger_or_nan};
 
 /// Length of y; its last number is the time.
 pub(super) const N: usize = 10;
@@ -86,9 +86,9 @@ pub fn rolling(
     let mut apart = 0f64;
     for (a, b) in rows.iter().zip(&others) {
         let turned = (0..4).map(|i| (a.orientation[i] - b.orientation[i]).abs());
-        apart = turned.fold(apart.max(a.state.distance(&b.state)), f64::max);
+        apart = turned.fold(larger_or_nan(apart, a.state.distance(&b.state)), larger_or_nan);
     }
-    Ok(Some((rows, tol.max(StoneState::SAFETY * tol / rough * apart))))
+    Ok(Some((rows, larger_or_nan(tol, StoneState::SAFETY * tol / rough * apart))))
 }
 
 /// A stone that rolls, as a flow without margins.

@@ -76,20 +76,22 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
         if swing.landing(t).is_some_and(|(limit, _)| t.abs() >= limit) {
             continue;
         }
-        motion.error = motion.error.max(motion.states[i].distance(&swing.state(t)) + swing.error(t));
+        let off = motion.states[i].distance(&swing.state(t)) + swing.error(t);
+        motion.error = larger_or_nan(motion.error, off);
         if let Some(poses) = &motion.poses
             && let Some(pose) = swing.pose(t)
         {
-            motion.pose_error = motion.pose_error.max(pose_distance(&poses[i], &pose) + swing.pose_error(t));
+            let off = pose_distance(&poses[i], &pose) + swing.pose_error(t);
+            motion.pose_error = larger_or_nan(motion.pose_error, off);
         }
     }
     if let Some(event) = motion.event {
         let t = event.time - t0;
         let off = match exact.filter(|e| e.ending == event.ending) {
-            Some(exact) => event.state.distance(&exact.state).max((event.time - exact.time).abs()),
+            Some(exact) => larger_or_nan(event.state.distance(&exact.state), (event.time - exact.time).abs()),
             None => event.state.distance(&swing.state(t)),
         };
-        motion.error = motion.error.max(off + swing.error(t));
+        motion.error = larger_or_nan(motion.error, off + swing.error(t));
     }
     if every > 1 {
         // Errors at the other times may be larger.

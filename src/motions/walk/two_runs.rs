@@ -304,7 +304,7 @@ impl<S: Moving> Followed<S> {
         // The errors of the forces were computed for states with errors of one tolerance; the states have
         // larger errors.
         let larger = (grown(off) + least) / tol;
-        motion.force_error = settled(motion.force_error * larger.max(1.0), grown(pressed));
+        motion.force_error = settled(motion.force_error * larger_or_nan(1.0, larger), grown(pressed));
         // Rounding errors of the angles of a pose are proportional to these angles.
         let turning = motion.poses.iter().flatten().last().map_or(0.0, S::turning);
         // After an impact the errors of its time and of its sum are also those of the pose.

@@ -199,8 +199,14 @@ pub fn numbers(y: &State) -> [f64; 4] {
     (*y).into()
 }
 
+/// The larger of two numbers; NaN if one of them is NaN, which `f64::max` would drop.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b <= a { a } else { b }
+}
+
+/// The largest difference of two states; NaN if a number of them is NaN.
 pub fn distance(a: &State, b: &[f64]) -> f64 {
-    numbers(a).iter().zip(b).fold(0.0, |d, (a, b)| d.max((a - b).abs()))
+    numbers(a).iter().zip(b).fold(0.0, |d, (a, b)| larger(d, (a - b).abs()))
 }
 
 pub fn state(theta: f64, w1: f64, w2: f64, w3: f64) -> State {

@@ -143,6 +143,8 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
             f"losses = {losses!r}: expected one loss with a single coefficient, since a page has only one"
         )
     (law,) = losses.laws
+    if not law._acts_in_slip:
+        raise ValueError(f"losses = {losses!r}: expected while_slipping=True, as on the page")
     return {"law": command_line_name(type(law)), "loss": float(law.coefficient)}
 
 

@@ -18,6 +18,7 @@ use crate::motions::Ending;
 use crate::motions::exact;
 use crate::motions::exact::lanes::march::{Knot, PanelEvent, Rule, Sought};
 use crate::motions::motion::{InitialData, begun};
+use crate::numbers::larger_or_nan;
 use crate::numbers::side_by_side::SideBySide;
 use core::cell::Cell;
 use core::f64::consts::FRAC_PI_2;
@@ -251,7 +252,7 @@ impl Marches<'_, '_> {
                 }
                 let start = self.work.starts.state(self.work.first + i);
                 let y = if time == 0.0 { start } else { in_march_time(there.state, way) };
-                out.error[i] = out.error[i].max(there.error);
+                out.error[i] = larger_or_nan(out.error[i], there.error);
                 out.put_state(i * times.len() + j, &y, [0.0; 2]);
                 if j + 1 == times.len() && of.end.is_none() {
                     of.note_inclination(y.theta, time);

@@ -71,8 +71,12 @@ const ROLLS_ON: [f64; 2] = [1e-3, 1e-4];
 const SLIPS_FASTER: f64 = 1e-11;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn.
+    /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn, and for a rolling
+    /// resistance only while the body rolls, since one rim may roll while the other one slips.
     fn flat(&self) -> Option<LyingFlow<G>> {
+        if self.ask.resists_only_rolling() {
+            return None;
+        }
         let (friction, rolls) = match self.ask.table {
             Table::Rubs(friction) => (friction, false),
             Table::Rolling { mu } => (Friction::coulomb(mu.min(1e100)), true),
