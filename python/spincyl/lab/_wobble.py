@@ -87,7 +87,7 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     Warns
     -----
     UserWarning
-        If the recording is as loud before or after the whirr, for longer than eight of its turns: one whirr
+        If the recording is as loud before or after the whirr, for longer than 16 of its turns: one whirr
         is followed, the longest without a jump of its rate, and other sound is left out.
 
     Notes
@@ -116,7 +116,7 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     # errors that remain in sounds without noise: 1e-3, and the cube of the relative change within a window
     quickens = np.abs(np.gradient(np.log(turns)))
     half = 0.5 * _TURNS_PER_WINDOW / turns
-    missed = _left_out(level, pace, (time[0] - half[0], time[-1] + half[-1]), 2 * half[[0, -1]])
+    missed = _left_out(level, pace, (time[0] - half[0], time[-1] + half[-1]), 4 * half[[0, -1]])
     if missed:
         parts = " and ".join(f"from {begin + a:.3g} to {begin + b:.3g} s" for a, b in missed)
         found = f"{begin + max(time[0] - half[0], 0.0):.3g} to {begin + time[-1] + half[-1]:.3g} s"
@@ -130,17 +130,17 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
 def _left_out(
     level: Floats, pace: float, heard: tuple[float, float], least: Floats
 ) -> list[tuple[float, float]]:
-    """Stretches before and after a whirr, in seconds, that are as loud and last as long as a window."""
+    """Stretches before and after a whirr, in seconds, that are as loud and last as long as two windows."""
     block = max(int(0.5 * _LASTS * pace), 1)
     row = level[: level.size // block * block].reshape(-1, block)
     loud, at = np.median(row, axis=1), (np.arange(len(row)) + 0.5) * block / pace  # a knock is no sound
     within = (at >= heard[0]) & (at <= heard[1])
     if not within.any():
         return []
-    loud = loud > _LOUD * np.median(loud[within])
+    is_loud = loud > _LOUD * np.median(loud[within])
     found = []
     for side, shortest in zip((at < heard[0], at > heard[1]), least, strict=True):
-        there = np.flatnonzero(loud & side)
+        there = np.flatnonzero(is_loud & side)
         if there.size * block / pace > max(shortest, _LASTS):
             half = 0.5 * block / pace
             found.append((float(at[there[0]] - half), float(at[there[-1]] + half)))

@@ -178,6 +178,9 @@ class Scene:
             raise ValueError(f"path = {str(path)!r}: {why}")
         return found
 
+    def _body(self) -> str:
+        return self.urdf
+
     def save(self, path: str | PathLike[str]) -> list[Path]:
         """Write the scene as JSON, as MJCF or both, or its body as URDF, and return the paths.
 
@@ -202,7 +205,7 @@ class Scene:
         path = path_of("path", path)
         if not path.name:
             raise ValueError(f"path = {str(path)!r}: expected the name of a file")
-        known = {".json": self._json, ".xml": self._model, ".urdf": lambda: self.urdf}
+        known = {".json": self._json, ".xml": self._model, ".urdf": self._body}
         only = path.suffix.lower() in known
         if not only and path.suffix[1:].isalpha():
             told = f"path = {str(path)!r}: expected a name without ending, or one that ends in"
