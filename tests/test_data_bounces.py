@@ -162,3 +162,11 @@ def test_noise_has_no_bounces():
     rng = np.random.default_rng(2)
     with pytest.raises(ValueError, match="clicks in the recording|have intervals that shrink"):
         sc.data.fit_bounces(np.arange(16000) / 8000, rng.normal(size=16000))
+
+
+def test_times_in_milliseconds_are_warned_of():
+    t = 0.5 + np.cumsum([0.0, *0.6 * 0.85 ** np.arange(7)])
+    t += np.random.default_rng(3).normal(0, 2e-4, t.size)
+    assert 0.4 < sc.data.fit_bounces(t).height < 0.8
+    with pytest.warns(UserWarning, match=r"^t: such bounces follow a drop from .* m; .* milliseconds\?$"):
+        sc.data.fit_bounces(1e3 * t)

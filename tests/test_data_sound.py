@@ -68,6 +68,22 @@ def test_a_hum_and_a_silent_beginning_do_no_harm():
     assert heard.sum() > 12 and np.abs(found.turns / true(found.t - 2.0) - 1)[heard].max() < 0.01
 
 
+def test_a_second_whirr_is_left_out_and_a_warning_says_from_when_to_when():
+    _, spins, _ = whirr(9.0, 60.0, 6.0, tone=2500.0)
+    _, falls, _ = whirr(40.0, 2.5, 2.3, seed=2, tone=2500.0)
+    rng = np.random.default_rng(4)
+    quiet = 0.5 * rng.normal(size=2 * HERTZ)
+    sound = np.r_[quiet, spins, falls, quiet]
+    time = np.arange(sound.size) / HERTZ
+    said = r"there is sound from (2|1\.9\d*) to 8[.01]\d* s as well, .* left out: .* from 8\.\d+ to 10"
+    with pytest.warns(UserWarning, match=said):
+        found = sc.data.wobble(time, sound)
+    assert found.t[0] > 8 and found.turns.min() > 30
+    # the other part alone is heard without a warning
+    part = time < 8.0
+    assert sc.data.wobble(time[part], sound[part]).turns.max() < 12
+
+
 def test_a_wobble_that_slows_down_is_followed_too():
     t, sound, true = whirr(20.0, 8.5, 8.0)
     found = sc.data.wobble(t, sound[::-1])

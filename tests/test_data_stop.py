@@ -346,6 +346,33 @@ def read_class(tmp_path, *args, **more):
     return sc.data.read_table(tmp_path / "9b.csv")
 
 
+def test_a_column_of_times_is_called_by_its_inclination_however_a_class_writes_it(tmp_path):
+    good = [7.0, 7.3, 7.1, 7.4]
+    alone = sc.data.fit_stop(COIN, sc.loss.DryContour, "20deg", good)
+    (tmp_path / "9a.csv").write_text("Name;Zeit bei 20 Grad (s)\nAnna;7\nBen;8", "utf-8")
+    assert list(sc.data.read_table(tmp_path / "9a.csv")) == ["Zeit bei 20 Grad"]
+    headers = "20° (s)", "20 Grad", "20 deg (s)", "20 degrés", "Zeit bei 20° [s]", "t20deg / s", "20 (deg)"
+    for header in headers:
+        lines = [f"Name;{header}", *(f"{name};{t:.1f}" for name, t in zip(NAMES, good, strict=False))]
+        (tmp_path / "9c.csv").write_text("\n".join(lines).replace(".", ","), "utf-8")
+        found = sc.data.fit_stop(COIN, sc.loss.DryContour, sc.data.read_table(tmp_path / "9c.csv"))
+        assert found.best.coefficient == alone.best.coefficient, header
+    in_ms = sc.data.Columns([("20,0° (ms)", 1e3 * np.array(good))])
+    assert sc.data.fit_stop(COIN, sc.loss.DryContour, in_ms).best.coefficient == pytest.approx(
+        alone.best.coefficient, rel=1e-12
+    )
+    for header, why in {
+        "von 20° bis 5°": "is called by two inclinations",
+        "20°C": "is not called by an",
+        "t20 (s)": "t20' is not called by an inclination with its unit",
+        "-20°": "positive",
+    }.items():
+        with pytest.raises(
+            ValueError, match=f"^from_: the column '.*{why}" if why != "positive" else "^from_: "
+        ):
+            sc.data.fit_stop(COIN, sc.loss.DryContour, sc.data.Columns([(header, np.array(good))]))
+
+
 def test_a_class_finds_the_law_that_stops_its_coin_and_names_the_watch_that_ran_on(tmp_path):
     true = sc.loss.DryContour.from_si("0.02mm", scale=COIN)
     table = read_class(tmp_path, true, 1)

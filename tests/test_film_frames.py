@@ -1,5 +1,6 @@
 """A film from above frame by frame: inclination, precession and centre with errors, beside a motion."""
 
+import pickle
 import warnings
 
 import numpy as np
@@ -124,6 +125,54 @@ def test_frames_give_the_friction_of_a_film_by_fit_motion():
     seen = lost.frames | {"precession": np.nan_to_num(lost.frames["precession"])}
     with pytest.raises(ValueError, match=r"errors\['precession'\]: expected positive"):
         sc.data.fit_motion(guess, dict(seen), free=["DryContour"], errors=lost.errors)
+
+
+def test_the_precession_of_a_tube_that_nods_is_fitted_as_a_slope_over_the_same_frames():
+    # a nod lasts nine frames, and the slope over five of them is far from the value of the moment
+    true = {"w2": TUBE.steady(1.25).kicked(0.05).in_si(TUBE)["w2"], "DryContour": 0.5}
+    seen = nodding(FRAMES, kick=0.05)
+    free = ["theta", "w1", "w2", "DryContour"]
+    for seed in range(4):
+        film = read(seen, seed=seed, mark_err=PIXEL, gap=seed < 2)
+        # a dict of some columns, of some rows, in any order
+        rows = np.random.default_rng(seed).permutation(film.t.size)[: None if seed % 2 else 45]
+        table = {name: film.frames[name][rows] for name in ("t", "theta", "precession")}
+        errors = {name: film.errors[name][rows] for name in ("theta", "precession")}
+        found = sc.data.fit_motion(seen, table, free=free, errors=errors)
+        assert 0.6 < found.chi2 < 1.6
+        for name, value in true.items():
+            assert abs(found.values[name] - value) < 3 * found.errors[name] < 0.2 * abs(value), (seed, name)
+    # the same numbers taken for values of the moment
+    plain = table | {"precession": np.asarray(table["precession"])}
+    wrong = sc.data.fit_motion(seen, plain, free=free, errors=errors)
+    assert abs(wrong.values["w2"] - true["w2"]) > 8 * wrong.errors["w2"]
+
+
+def test_errors_of_slopes_that_share_frames_are_those_of_many_films():
+    seen, pulls = nodding(FRAMES, rolls=None, kick=0.05), []
+    w2 = seen.start.in_si(TUBE)["w2"]
+    for seed in range(30):
+        film = read(seen, seed=seed, mark_err=PIXEL, gap=False)
+        table = {name: film.frames[name] for name in ("t", "precession")}
+        found = sc.data.fit_motion(seen, table, free=["w2"], errors={"precession": film.errors["precession"]})
+        pulls.append((found.values["w2"] - w2) / found.errors["w2"])
+    # the error of the root of the mean square of 30 numbers is 0.13; without the correlation it is 0.46
+    assert np.sqrt(np.mean(np.square(pulls))) == pytest.approx(1, abs=0.35)
+
+
+def test_slopes_know_their_frames_and_refuse_other_times():
+    film = read(nodding(FRAMES), mark_err=PIXEL)
+    table = {name: film.frames[name] for name in ("t", "precession")}
+    guess, free = nodding(FRAMES, rolls="0.3mm"), ["DryContour"]
+    errors = {"precession": film.errors["precession"]}
+    found = sc.data.fit_motion(guess, table, free=free, errors=errors)
+    kept = table | {"precession": pickle.loads(pickle.dumps(table["precession"]))}
+    assert sc.data.fit_motion(guess, kept, free=free, errors=errors).values == found.values
+    late = nodding(FRAMES + 0.25, rolls="0.3mm")  # the same film by another clock
+    moved = sc.data.fit_motion(late, table | {"t": table["t"] + 0.25}, free=free, errors=errors)
+    assert moved.values["DryContour"] == pytest.approx(found.values["DryContour"], rel=1e-6)
+    with pytest.raises(ValueError, match="measured: 'precession' is a slope over several frames"):
+        sc.data.fit_motion(guess, table | {"t": table["t"] ** 1.1}, free=free, errors=errors)
 
 
 def test_a_long_gap_has_no_precession_and_a_wild_mark_does_not_change_the_errors():

@@ -8,6 +8,7 @@ import pickle
 import pkgutil
 import re
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -288,3 +289,36 @@ def test_a_motion_of_which_nothing_is_known_warns():
     with pytest.warns(sc.ErrorWarning, match=r"estimated error of the motion is 1\.3"):
         m = sc.roll(tube, tube.steady(1.4).kicked(0.05), 1e15)
     assert m.error > 1
+
+
+def test_a_body_that_hops_until_its_motion_is_unknown_warns_once():
+    coin = sc.measured(outer_diameter="24mm", length="2mm", mass="8g")
+    start, how = sc.flicked(coin, hertz=8, launch=1.3), {"contact": sc.Coulomb(0.3), "restitution": 0.3}
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        m = sc.roll(coin, start, np.linspace(0, 10, 101), **how)
+    (one,) = said
+    assert one.category is sc.ErrorWarning and m.status.name == "DONE"
+    assert f"is {m.natural.error:.2g}, in natural units: impacts multiply errors" in str(one.message)
+    # as the message says, an earlier end has a smaller error, here without a warning
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        early = sc.roll(coin, start, np.linspace(0, 0.05, 101), **how)
+    assert early.natural.error < 0.1 and len(early.impacts) > 20
+
+
+def test_names_of_laws_of_restitution_lead_to_what_exists():
+    coin = sc.measured(outer_diameter="24mm", length="2mm")
+    for call in (sc.roll, sc.sweep.roll):
+        with pytest.raises(TypeError, match=r"^restitution: expected a number \(Stronge's law\), sc.Newton"):
+            call(coin, coin.steady(0.5), 1.0, contact=sc.Coulomb(0.3), restitution="stronge")
+    with pytest.raises(AttributeError, match="'Stronge': restitution= takes the number"):
+        sc.Stronge
+    with pytest.raises(AttributeError, match=r"'Garwin': sc.Walton\(e, tangential\)"):
+        sc.Garwin
+
+
+def test_a_film_at_another_speed_is_made_by_view(tmp_path):
+    m = sc.roll(BODY, STATE, 1.0)
+    with pytest.raises(TypeError, match=r"film\(\) got an unexpected .* 'slow': sc.view\(m, slow=1\).save"):
+        m.film(tmp_path / "x.mp4", slow=1)

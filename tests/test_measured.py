@@ -476,6 +476,11 @@ def test_the_mass_of_a_tube_is_its_density_times_its_volume(size):
     ("given", "error", "why"),
     [
         ({"density": "wood"}, ValueError, "^density = 'wood': expected 'oak' or 'fir', or a number in kg/m"),
+        (
+            {"density": "beech"},
+            ValueError,
+            "^density = 'beech': expected 'oak' or 'fir', or a number in kg/m",
+        ),
         ({"density": "stel"}, ValueError, "^density = 'stel': expected 'steel'"),
         ({"density": "mithril"}, ValueError, "^density = 'mithril': expected one of 'steel', "),
         ({"density": "7.85"}, TypeError, "^density: expected real numbers, or .* '7.85g/cm3'"),
@@ -490,6 +495,29 @@ def test_the_mass_of_a_tube_is_its_density_times_its_volume(size):
 def test_a_density_that_is_none_is_refused_by_its_name(given, error, why):
     with pytest.raises(error, match=why):
         sc.measured(outer_diameter=0.022, length=0.066, **given)
+
+
+def test_a_body_of_known_volume_has_the_mass_of_its_density():
+    egg = sc.Ellipsoid.egg("22mm", "28mm").in_metres(density="oak")
+    assert egg.scale.mass == pytest.approx(640 * 4 / 3 * math.pi * 0.022**2 * 0.028, rel=1e-12)
+    ball = sc.Body.ball(0.0, 0.4, 0.4).in_metres(radius="28.6mm", density="1.7g/cm3")
+    assert ball.scale.mass == pytest.approx(1700 * 4 / 3 * math.pi * 0.0286**3, rel=1e-12)
+    rod = sc.Body.solid(3.0).in_metres(radius="5mm", density="steel", gravity=1.62)
+    assert rod.scale.mass == pytest.approx(7850 * math.pi * 0.005**3 * 6.0, rel=1e-12)
+    half = sc.Ellipsoid.rattleback(("8cm", "2cm", "2cm"), twist=0.1)  # its edge cuts the ellipsoid
+    for body in (half, sc.Body(0.5, 0.3, 0.5), sc.Ellipsoid.egg([1.0, 2.0], 3.0)):
+        with pytest.raises(ValueError, match="^density: expected a single body whose volume is known"):
+            body.in_metres(radius="1cm", density="oak")
+    with pytest.raises(TypeError, match="^mass, density: give only one"):
+        egg.in_metres(0.1, density="oak")
+
+
+def test_a_drill_turns_in_rpm():
+    egg = sc.Ellipsoid.egg("22mm", "28mm").in_metres(density="oak")
+    assert egg.spinning(hertz="1500rpm") == egg.spinning(hertz=25.0)
+    tube = sc.measured(outer_diameter="16mm", wall="1mm", length="95mm")
+    given = [sc.State.from_si(1.3, w, 0.0, 0.0, scale=tube).w1 for w in ("60rpm", 2 * math.pi)]
+    assert given[0] == pytest.approx(given[1], rel=1e-15)
 
 
 def test_a_part_of_a_material_has_its_density_and_the_page_lists_each_material():

@@ -57,6 +57,13 @@ def test_the_suffix_says_which_file_is_written(tmp_path):
     assert (tmp_path / "b.xml").read_text() == (tmp_path / "c.XML").read_text() == scene.mjcf
     with pytest.raises(OSError, match="nowhere"):
         scene.save(tmp_path / "nowhere" / "x")
+    for name in ("d.urdf", "e.URDF"):
+        (path,) = scene.save(tmp_path / name)
+        assert path.name == name and path.read_text("utf-8") == scene.urdf
+    for name in ("x.sdf", "x.usd", "x.mjcf"):
+        with pytest.raises(ValueError, match=r"^path = .*: expected a name without ending, or .*\.urdf"):
+            scene.save(tmp_path / name)
+    assert not [*tmp_path.glob("x.*")]
 
 
 def test_a_body_is_told_as_what_it_touches_with():

@@ -36,6 +36,25 @@ def test_a_stone_and_its_state_are_values():
         STONE.semi_axes[0] = 2.0
 
 
+def test_moments_in_kg_m2_are_refused_as_those_of_no_stone():
+    axes, mass = (0.0225, 0.0225, 0.03), 0.04
+    of_cad = np.array((7e-6, 7e-6, 5e-6))  # kg m^2
+    stone = sc.Ellipsoid(axes, of_cad / mass).in_metres(mass)
+    assert stone.moments == pytest.approx(np.sort(of_cad) / mass / 0.03**2)
+    with pytest.raises(
+        ValueError, match=r"^inertia: 0\.025 of the moments of a uniform .* kg m\^2: divide by"
+    ):
+        sc.Ellipsoid(axes, of_cad)
+    with pytest.warns(UserWarning, match=r"^inertia: 0\.025 of the moments"):
+        sc.Ellipsoid(axes, np.array([of_cad, of_cad / mass]))
+    # lead in foam of a hundredth of its density has the least moments with a core of 0.4 of the size
+    core = 0.406
+    least = (100 * core**5 + 1 - core**5) / (100 * core**3 + 1 - core**3)
+    assert least > 0.27 and sc.Ellipsoid((1, 1, 1), np.full(3, 0.4 * least)).moments[0] > 0.1
+    # a cap is a small part of its ellipsoid
+    sc.Ellipsoid((1, 1, 1), (1e-3, 1e-3, 2e-3), (0, 0, -0.95), theta_end=0.2)
+
+
 def test_an_axisymmetric_inertia_may_be_three_numbers():
     assert sc.Ellipsoid((1, 0.8, 0.6), (0.2, 0.25, 0.3)) == sc.Ellipsoid(
         (1, 0.8, 0.6), np.diag((0.2, 0.25, 0.3))

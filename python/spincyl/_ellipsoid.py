@@ -33,6 +33,10 @@ from spincyl._scale import Scale
 from spincyl._slip import rise_of_stone
 from spincyl._weights import weighted
 
+#: Least moments of a stone without an edge, in those of a uniform one. Lead in foam of a hundredth of its
+#: density has at least a quarter of them.
+_LEAST = 0.05
+
 
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,7 +56,9 @@ class Ellipsoid(StoneStarts):
     inertia : array_like, (..., 3, 3) or (..., 3)
         Tensor of inertia about the centre of mass, along the axes of the ellipsoid, divided by the mass; its
         unit is the unit of the semi-axes squared. Three numbers are the diagonal of the tensor. An array of
-        shape (3, 3) is one tensor. Each principal moment is at most the sum of the two others.
+        shape (3, 3) is one tensor. Each principal moment is at most the sum of the two others. The sum of the
+        moments of a stone without an edge (`theta_end`) is at least a twentieth of that of a uniform
+        ellipsoid; moments in kg m^2 have to be divided by the mass.
     offset : array_like, (..., 3), optional
         Vector from the centre of the ellipsoid to the centre of mass, which lies inside, in the unit of the
         semi-axes. Default: zero.
@@ -72,7 +78,8 @@ class Ellipsoid(StoneStarts):
     Warns
     -----
     UserWarning
-        If the moments of inertia are so large that part of the mass must lie outside the ellipsoid.
+        If the moments of inertia are so large that part of the mass must lie outside the ellipsoid. If some
+        of a family are too small for an ellipsoid of any materials.
 
     Notes
     -----
@@ -119,9 +126,28 @@ class Ellipsoid(StoneStarts):
             object.__setattr__(self, "_doubted", True)
             most = f"{float(np.nanmax(reach)):.3g} times the largest inertia of a mass inside the ellipsoid"
             warn(f"inertia: {most}; expected inertia per mass, in the unit of the semi-axes squared")
+        self._refuse_small(*fields)
         for name, value in zip(("semi_axes", "inertia", "offset", "theta_end"), fields, strict=True):
             object.__setattr__(self, name, read_only_copy(value))
         object.__setattr__(self, "_unit", self._unit * unit)
+
+    def _refuse_small(self, axes: Any, inertia: Any, offset: Any, theta_end: Any) -> None:
+        """Raise ValueError for moments that no whole ellipsoid has; a family gets a warning.
+
+        A stone with an edge may be a small part of its ellipsoid.
+        """
+        if self._doubted or any(map(is_lazy, (axes, inertia, theta_end))):
+            return
+        uniform = 0.4 * np.sum(np.square(axes), axis=-1)
+        share = np.where(np.isnan(theta_end), np.trace(inertia, axis1=-2, axis2=-1) / uniform, np.nan)
+        if np.any(share < _LEAST):
+            least = f"{float(np.nanmin(share)):.2g} of the moments of a uniform ellipsoid"
+            why = f"inertia: {least}; expected at least {_LEAST:g} of them (per mass, in the unit of the"
+            why += " semi-axes squared, not in kg m^2: divide by the mass in kg)"
+            if not share.ndim:
+                raise ValueError(why)
+            object.__setattr__(self, "_doubted", True)
+            warn(why)
 
     @classmethod
     def _of(cls, make: Callable[..., Any], **given: Any) -> Self:

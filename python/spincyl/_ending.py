@@ -106,7 +106,8 @@ LARGE_ERROR = 0.1
 class ErrorWarning(UserWarning):
     """The estimated error of a motion is too large.
 
-    For a stone, the message gives the time at which the estimated error becomes too large.
+    For a stone, the message gives the time at which the estimated error becomes too large. A body that hops
+    multiplies its errors in each impact; a motion to an earlier time has a smaller error.
     """
 
 

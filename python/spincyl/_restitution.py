@@ -130,6 +130,11 @@ Restitution: TypeAlias = float | Newton | Poisson | Walton
 
 def check_restitution(restitution: object) -> None:
     """Raise TypeError for what is neither a number nor a law; the range of a number is known to the core."""
+    if isinstance(restitution, str):
+        known = (
+            "a number (Stronge's law), sc.Newton(e), sc.Poisson(e) or, for a ball, sc.Walton(e, tangential)"
+        )
+        raise TypeError(f"restitution: expected {known}, not {restitution!r}")
     if not isinstance(restitution, _ImpactLaw):
         number("restitution", restitution)
 

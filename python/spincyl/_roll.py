@@ -198,9 +198,10 @@ def roll(
         If RK4 damps the nutation by more than a thousandth of its amplitude, or if the precession advances by
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
-        If the estimated error of a motion without `step` and `restitution` exceeds 0.1 in natural units. With
-        `restitution`, look at `Motion.error`. For a stone, if it becomes too large before the motion ends;
-        the message gives the time until which the motion is known (`EllipsoidMotion.known_until`).
+        If the estimated error of a motion without `step` exceeds 0.1 in natural units; impacts multiply
+        errors, and a body that hops often reaches this. For a stone, if it becomes too large before the
+        motion ends; the message gives the time until which the motion is known
+        (`EllipsoidMotion.known_until`).
 
     Notes
     -----
@@ -282,8 +283,15 @@ def roll(
         )
         of = one if scale is None else one.natural
         m: Motion = stones.rolled_stone(of, given, asked) if stone else rolled(of, start, asked, numbers)
-    if not stone and step is None and restitution is None and not m.error <= LARGE_ERROR:
+    hops = restitution is not None
+    given_up_too = hops and m.status == Ending.BOUNDED  # which has a warning of its own
+    if not stone and step is None and not given_up_too and not m.error <= LARGE_ERROR:
         why = "in natural units: its last states are not known"
+        if hops:
+            why = (
+                "in natural units: impacts multiply errors, and after some of them its states are not known;"
+            )
+            why += " a motion to an earlier t has a smaller error"
         warn(f"the estimated error of the motion is {m.error:.2g}, {why}", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))

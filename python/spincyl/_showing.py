@@ -4,6 +4,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from spincyl._input.hints import with_hints
 from spincyl._scale import Scale
 from spincyl._upward import function_of_method
 
@@ -62,10 +63,13 @@ class Showing:
         written: Path = function_of_method("Motion.sound")(self, path, seconds, scale, rate, compression)
         return written
 
+    @with_hints
     def film(
         self, path: str | PathLike[str], seconds: float | None = None, *, sound: bool | None = None
     ) -> Path:
-        """Write a film of the motion with its sound, in slow motion. `view` and `View.save` have all options.
+        """Write a film of the motion with its sound, in slow motion.
+
+        `view` and `View.save` have all options: ``sc.view(m, slow=1).save(path)`` is a film at real speed.
 
         Parameters
         ----------

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
-from spincyl._input.numbers import number, si, warn
+from spincyl._input.materials import density_in_si
+from spincyl._input.numbers import in_range, number, si, warn
 from spincyl._input.units import suspicion_of_units
 from spincyl._scale import Scale
 
@@ -23,7 +24,12 @@ class Sized:
     _with_scale: Callable[[Scale | None], Self]
 
     def in_metres(
-        self, mass: float | None = None, *, radius: float | None = None, gravity: float | None = None
+        self,
+        mass: float | None = None,
+        *,
+        radius: float | None = None,
+        gravity: float | None = None,
+        density: float | str | None = None,
     ) -> Self:
         """Return this body as a measured body, whose motions are in SI.
 
@@ -38,6 +44,9 @@ class Sized:
             `Body.from_metres` or as an `Ellipsoid`, the default takes these lengths as metres.
         gravity : float, optional
             Acceleration of gravity, in m/s^2. Default: the gravity that the body already has, else 9.80665.
+        density : float or str, optional
+            Mean density in kg/m^3, in place of `mass`, or the name of a material as for `measured`: of a
+            ball, an egg or another whole ellipsoid, and a tube or cylinder, whose volume is known.
 
         Returns
         -------
@@ -73,11 +82,26 @@ class Sized:
             weight = number("mass", si("mass", mass, "kilogram"))
             if math.isnan(weight):
                 raise ValueError("mass = nan: expected kilograms, or no mass= if the mass is unknown")
+        if density is not None:
+            if mass is not None:
+                raise TypeError("mass, density: give only one of them")
+            dense = in_range("density", density_in_si(density), 1e-100, 1e100, "kg/m^3")
+            weight = dense * self._volume() * size**3
         scale = Scale(size, weight, own.gravity if gravity is None else gravity)
         why = self._doubt_of(scale)
         if why:
             warn(why)
         return self._with_scale(scale)
+
+    def _volume(self) -> float:
+        """Volume in natural units; ValueError if it is not known exactly."""
+        what, _, volume = self._bulk()
+        family = getattr(self, "shape", ()) != ()
+        if family or not volume or (what == "stone" and not math.isnan(getattr(self, "theta_end", math.nan))):
+            raise ValueError(
+                "density: expected a single body whose volume is known; for any other give mass="
+            )
+        return volume
 
     @property
     def natural(self) -> Self:

@@ -255,6 +255,8 @@ def flicked(
     """Initial state of a body that a finger has launched on its side, from the rates of its rotation.
 
     Give `hertz` or `w1`, and `launch` or `spin_hertz`. To give the impulse of the finger, see `pressed`.
+    This is for tubes, which a press on one end launches. A coin that is flicked on its edge turns about the
+    vertical, with its centre almost at rest: its `State` is in docs/slip.md.
 
     Parameters
     ----------

@@ -96,6 +96,9 @@ _INSTEAD = {
         ("cylinder", "disk", "disc", "coin"), "sc.Body.solid(ell), or sc.measured(...) in metres"
     ),
     **dict.fromkeys(("ring", "hoop"), "sc.Body.tube(ell, bore), or sc.measured(...) in metres"),
+    "slow": "sc.view(m, slow=1).save('film.mp4') shows a motion at its own speed, slow=10 ten times slower",
+    **dict.fromkeys(("Stronge", "stronge"), "restitution= takes the number of Stronge's law, as in 0.5"),
+    **dict.fromkeys(("Garwin", "garwin", "superball"), "sc.Walton(e, tangential) also turns a slip back"),
     "sphere": "sc.Body.ball(...), or sc.parts.ball in sc.assembled([...])",
     **dict.fromkeys(("ellipsoid", "stone", "egg", "rattleback"), "sc.Ellipsoid is a class of its own"),
     **dict.fromkeys(("cube", "box", "top"), "bodies of revolution and ellipsoids are modelled, see sc.parts"),

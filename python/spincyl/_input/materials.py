@@ -34,7 +34,9 @@ _SAME = {
     "teflon": "PTFE",
 }
 _KNOWN = {name.lower(): name for name in MATERIALS} | _SAME
-_SORTS = {"wood": ("oak", "fir"), "plastic": ("acrylic", "polypropylene", "polystyrene", "PET", "PVC")}
+_WOODS = "wood", "beech", "birch", "maple", "ash", "pine", "spruce", "larch"
+_SORTS: dict[str, tuple[str, ...]] = dict.fromkeys(_WOODS, ("oak", "fir"))
+_SORTS |= {"plastic": ("acrylic", "polypropylene", "polystyrene", "PET", "PVC")}
 
 
 def density_in_si(value: object) -> float:

@@ -18,8 +18,9 @@ from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats
 from spincyl._motion import Motion
 from spincyl._upward import function_of_method
-from spincyl.lab._filmed import Filmed, slope, slopes
+from spincyl.lab._filmed import Filmed
 from spincyl.lab._report import section
+from spincyl.lab._slopes import slope, slopes
 from spincyl.lab._vary import in_units_of, with_numbers
 
 if TYPE_CHECKING:

@@ -30,7 +30,8 @@ _SHORTEST = 2e-3  #: Seconds; bounces are not followed below this interval.
 _ODD = 0.01  #: Relative deviation of the first or last interval that is never odd, and scatter that is none.
 _MISSED = 2.0  #: What a missed bounce weighs; one more that is heard weighs 3 to 5 where the ratio is steady.
 _TREND = 3.0  #: Standard errors beyond which a trend of the ratios is used and warned of.
-_LOST = 1 / 3  #: Share of clicks that may be left out, or missed, without a warning.
+#: Share of clicks that may be left out, or missed, without a warning, and height of a drop in metres.
+_LOST, _HIGHEST = 1 / 3, 100.0
 
 
 @compared_by_value
@@ -181,7 +182,7 @@ def fit_bounces(
     -----
     UserWarning
         If the ratio of the intervals changes along the bounces, as it does for a ball that air slows down.
-        If more than a third of the clicks are no bounces, or of the bounces are missed.
+        If more than a third of the clicks are no bounces, or of the bounces are missed, or at over 100 m.
 
     Notes
     -----
@@ -265,7 +266,8 @@ def fit_bounces(
 
 def _doubts(found: Bounces, bends: bool, shape: "_Line") -> list[str]:
     """Warnings about bounces."""
-    said = []
+    high = found.height > _HIGHEST
+    said = [f"t: such bounces follow a drop from {found.height:.3g} m; are these milliseconds?"] * high
     if bends:
         last = float(found.bounce[-1])
         ends = [math.exp(shape.at(x)[0] - shape.at(x - 1)[0]) for x in (0.0, last - 1)]

@@ -135,7 +135,8 @@ def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset
 
     def joined(cells: list[str]) -> str:
         kept = [(cells[k] if k < len(cells) else "") or "NA" for k in numbers]
-        return delimiter.join(f'"{x}"' if delimiter in x else x for x in kept)
+        line = delimiter.join(f'"{x}"' if delimiter in x else x for x in kept)
+        return line + delimiter if len(kept) == 1 else line  # a space within the name separates no columns
 
     found = [(at, joined(cells)) for at, cells in [*rows[top:below], *body]]
     texts = [

@@ -24,12 +24,12 @@ from spincyl._scale import Scale
 from spincyl._upward import function_of_method
 from spincyl.lab._columns import Camera, Columns
 from spincyl.lab._report import section, variables, with_error
+from spincyl.lab._slopes import Slopes, has_gap, slope, slopes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ROWS = 4  # frames of a third difference
-_WIDEST = 2.0  # times the usual duration of neighbouring frames: a wider row of frames has a gap
 _WILD = 4.0  # standard errors from which on a difference is left out, since a mark is wrong
 
 
@@ -94,7 +94,9 @@ class Filmed(NamedTuple):
     frames : Columns
         Measured values in each frame: t in seconds; theta in radians, NaN if the line is longer than the
         tube; precession in rad/s, positive if the tube turns counterclockwise in the film, NaN beside a gap;
-        x and y of the centre of the tube, in metres.
+        x and y of the centre of the tube, in metres. The column of the precession knows that it is a slope
+        over `window` frames, and `fit_motion` compares it with the same slope of a motion; np.asarray makes
+        it an array of numbers that does not.
     errors : dict of ndarray, (n,)
         Standard errors of the columns of `frames`: theta, precession, x and y. Together with `frames` they
         can be passed to `fit_motion`.
@@ -144,7 +146,7 @@ class Filmed(NamedTuple):
             theta = np.arcsin(share)
         x, y = self.marks.mean(axis=1).T
         rows, weights = slopes(self.t, self.window)
-        precession = slope(self.direction, rows, weights)
+        precession = Slopes.of(slope(self.direction, rows, weights), self.t, self.window)
         columns = {"t (s)": self.t, "theta (rad)": theta, "precession (rad/s)": precession}
         return Columns((columns | {"x (m)": x, "y (m)": y}).items())
 
@@ -281,7 +283,7 @@ def differences(t: Floats) -> tuple[Any, Floats]:
     if t.size < _ROWS:
         return np.empty((0, _ROWS), int), np.empty((0, _ROWS))
     rows = np.arange(t.size - _ROWS + 1)[:, np.newaxis] + np.arange(_ROWS)
-    rows = rows[~_has_gap(t, rows)]
+    rows = rows[~has_gap(t, rows)]
     apart = t[rows][:, :, np.newaxis] - t[rows][:, np.newaxis]
     weights = 1 / np.prod(apart / np.median(np.diff(t)) + np.eye(_ROWS), axis=2)
     return rows, weights / np.linalg.norm(weights, axis=1, keepdims=True)
@@ -294,28 +296,3 @@ def error_of_scatter(off: Floats) -> float:
     middle = 1.4826 * float(np.median(np.abs(off)))
     near = off[np.abs(off) <= _WILD * middle] if middle > 0 else off
     return math.sqrt(float(np.mean(near**2)))
-
-
-def slopes(t: Floats, window: int) -> tuple[Any, Floats]:
-    """Rows of the frames near each frame, and weights whose sum is the slope at the frame; NaN at a gap."""
-    many = min(window, t.size)
-    at = np.arange(t.size)[:, np.newaxis]
-    rows = np.clip(at - many // 2, 0, t.size - many) + np.arange(many)
-    usual = float(np.median(np.diff(t)))
-    powers = ((t[rows] - t[:, np.newaxis]) / usual)[..., np.newaxis] ** np.arange(3)
-    weights = np.linalg.pinv(powers)[:, 1] / usual
-    weights[_has_gap(t, rows)] = math.nan
-    return rows, weights
-
-
-def slope(values: Floats, rows: Any, weights: Floats) -> Floats:
-    """Slopes of values at all frames, by the rows and weights of `slopes`."""
-    near = values[rows]
-    found: Floats = np.sum(weights * (near - near[:, :1]), axis=1)  # differences, since turns add up
-    return found
-
-
-def _has_gap(t: Floats, rows: Any) -> Any:
-    """Whether neighbouring frames last much longer than usual."""
-    usual = (rows.shape[1] - 1) * float(np.median(np.diff(t)))
-    return np.ptp(t[rows], axis=1) > _WIDEST * usual

@@ -292,7 +292,7 @@ class _Fit:
         """The motion at the measured times, and its outputs."""
         values = self.natural(at)
         begin = values.get("t0", self.guess.natural._asked.t0)
-        times, rows = np.unique(np.r_[begin, np.maximum(self.data.t, begin)], return_inverse=True)
+        times, rows = np.unique(np.r_[begin, np.maximum(self.data.times, begin)], return_inverse=True)
         placed = with_numbers(self.source, values, times)
         return placed.motion, outputs_at(placed, self.data, rows[1:])
 
@@ -337,6 +337,10 @@ class _Fit:
         whole = len(self.data.estimated) == len(self.data.values)
         size = np.array([x.size * x.factor for x in self.numbers.values()])
         covariance, blind = _inverse(jacobian)
+        shared = self.data.correlation()
+        if shared is not None:
+            # least squares without weights for the correlation: its errors are (J'J)^-1 J'CJ (J'J)^-1
+            covariance = covariance @ (jacobian.T @ shared @ jacobian) @ covariance
         covariance = covariance * (typical if whole else max(typical, 1.0)) * np.outer(size, size)
         for k in np.flatnonzero(blind):
             covariance[k, k] = math.inf

@@ -9,6 +9,7 @@ import numpy as np
 from spincyl._input.numbers import Floats, reals, si
 from spincyl._motion import Motion
 from spincyl._scale import si_factor
+from spincyl.lab._slopes import Sloped, slopes_at
 from spincyl.lab._vary import Placed
 
 #: Unit of each output that can be measured, and pint's name for the unit of its columns.
@@ -45,11 +46,31 @@ class Measured(NamedTuple):
     followed: frozenset[
         str
     ]  #: angles of turning that change so little from row to row that turns are counted
+    sloped: Sloped | None = None  #: how the precession is a slope of phi over frames, if it is one
 
     @property
     def wants(self) -> frozenset[Any]:
         """The optional outputs of `roll` that are needed."""
-        return frozenset({"pose"} if _POSE & set(self.values) else ())
+        return frozenset({"pose"} if _POSE & set(self.values) or self.sloped else ())
+
+    @property
+    def times(self) -> Floats:
+        """All times at which a motion is needed: those of the rows, then those of the frames of slopes."""
+        return self.t if self.sloped is None else np.r_[self.t, self.sloped.t]
+
+    def correlation(self) -> Floats | None:
+        """Correlation of the errors of the values, in the order of the residuals; None without slopes."""
+        if self.sloped is None:
+            return None
+        seen = {name: np.isfinite(x) for name, x in self.values.items()}
+        found = np.eye(sum(int(x.sum()) for x in seen.values()))
+        first = 0
+        for name, x in seen.items():
+            many = int(x.sum())
+            if name == "precession":
+                found[first : first + many, first : first + many] = self.sloped.correlation(x[:, 0])
+            first += many
+        return found
 
 
 def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None) -> Measured:
@@ -107,7 +128,10 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
             spread = float(np.nanstd(column)) if np.isfinite(column).any() else 0.0
             found[name] = np.full(column.shape, 0.1 * spread or 1.0)
     left = tuple(name for name in values if name not in given)
-    return Measured(t[order], order, values, found, left, factors, followed)
+    sloped = slopes_at(table["precession"], t[order], second or 1.0) if "precession" in names else None
+    if sloped is not None:  # a slope beside a gap is none, whatever number stands there
+        values["precession"][np.isnan(sloped.weights).any(axis=1)] = np.nan
+    return Measured(t[order], order, values, found, left, factors, followed, sloped)
 
 
 def _count_turns(angle: Floats) -> bool:
@@ -132,12 +156,22 @@ def _column(name: str, values: Any, written: str, unit: str) -> Floats:
 
 
 def outputs_at(placed: Placed, data: Measured, at: Any) -> dict[str, Floats]:
-    """The outputs of a computed motion at the measured times, the last ones after its end."""
+    """The outputs of a computed motion at the measured times, the last ones after its end.
+
+    `at` has the rows of the motion at all times of `data.times`.
+    """
     m = placed.motion
-    rows = np.minimum(at, m.t.size - 1)
+    every = np.minimum(at, m.t.size - 1)
+    rows = every[: data.t.size]
     cos, sin = math.cos(placed.phi0), math.sin(placed.phi0)
     found = {}
     for name in data.values:
+        if name == "precession" and data.sloped is not None:
+            # before its start and after its end the motion has its first and last precession
+            rate, late = m.states.precession, data.sloped.t - m.t[every[data.t.size :]]
+            phi = m.phi[every[data.t.size :]] + rate[every[data.t.size :]] * late
+            found[name] = data.sloped.of(phi)[:, np.newaxis]
+            continue
         if name in ("precession", "spin", "hertz"):
             column = getattr(m.states, "spin" if name == "spin" else "precession")
         elif name in ("x", "y", "z", "centre", "contact_point"):

@@ -268,7 +268,8 @@ def fit_stop(
         Inclination at which the stopwatch is started, in radians, or a text such as "20deg". For several
         inclinations a list: one for each column of `seconds`, or one for each time. Or a table, as
         `read_table` returns it, or a dict, with a column of times for each inclination. The columns are
-        called "20deg", "20°" or "20 (deg)"; a column of text has the names of the rows.
+        called "20deg", "20°", "20 Grad" or "20 (deg)", also among other words and with a unit of the times,
+        as in "Zeit bei 20° (ms)"; a column of text has the names of the rows.
     seconds : array_like, optional
         Measured times from the start of the stopwatch until the body stops, in seconds; NaN or None if
         missing. A list of times, or a table with a row for each student and a column for each inclination. To

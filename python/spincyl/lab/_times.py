@@ -1,6 +1,7 @@
 """Times of a stopwatch, of one or several first inclinations: outliers, robust means and their errors."""
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -23,6 +24,12 @@ _MIXED_RATIO = 3.0
 #: Math. Statist. 35, 73), in robust standard deviations. One time of twelve then moves the mean by at most
 #: 1.5/12 of a robust standard deviation, less than the error of the mean.
 _CLIP = 1.5
+#: A number of degrees in the name of a column, in English, German or French; and units of the times.
+_IN_DEGREES = re.compile(
+    r"((?:(?<!\S)[-+])?(?<![\d.])(?:\d+\.?\d*|\.\d+))\s*(?:[°º](?!C)|(?:deg|degrees?|degr[ée]s?|grad)\b)",
+    re.I,
+)
+_TIMES = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
 
 
 class WildTime(NamedTuple):
@@ -163,11 +170,11 @@ def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | No
     columns = [name for name in table if name not in texts]
     if not columns:
         raise ValueError("from_: expected at least one column of times, called by its inclination: '20deg'")
-    theta = [_angle_of_column(name, getattr(table, "units", {}).get(name, "")) for name in columns]
+    pairs = [_angle_of_column(name, getattr(table, "units", {}).get(name, "")) for name in columns]
     errors = np.broadcast_to(_angle_errors(from_err, (len(columns),)), len(columns))
     trials = []
-    for name, angle, err in zip(columns, theta, errors, strict=True):
-        times = np.atleast_1d(_seconds(f"from_[{name!r}]", table[name]))
+    for name, (angle, second), err in zip(columns, pairs, errors, strict=True):
+        times = second * np.atleast_1d(_seconds(f"from_[{name!r}]", table[name]))
         where = [f"from_[{name!r}][{k}]" for k in range(times.size)]
         trials.append(_trials(np.full(times.size, angle), np.full(times.size, err), times, where, names))
     return _Trials(
@@ -179,14 +186,21 @@ def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | No
     )
 
 
-def _angle_of_column(name: object, unit: str) -> float:
-    """The inclination that a column is called by."""
-    text = f"{name}{unit}".replace(",", ".")
+def _angle_of_column(name: object, unit: str) -> tuple[float, float]:
+    """The inclination that a column is called by, and the seconds of its unit of time."""
+    second = _TIMES.get(unit.lower())
+    text = (str(name) if second else f"{name}{unit}").replace(",", ".")
+    angles = {found[1] for found in _IN_DEGREES.finditer(text)}
     try:
-        return float(_inclination(f"from_: the column {name!r}", radians("from_", text)))
+        given = f"{angles.pop()}deg" if len(angles) == 1 else text
+        found = float(_inclination(f"from_: the column {name!r}", radians("from_", given)))
+        return found, second or 1.0
     except (TypeError, ValueError):
-        told = f"from_: the column {name!r} is not called by an inclination with its unit, such as '20deg'"
-        raise ValueError(f"{told}; leave it out, or give from_ and seconds as arrays") from None
+        many = "two inclinations" if angles else "an inclination with its unit"
+        told = f"from_: the column {text!r} is {'' if angles else 'not '}called by {many}; expected one"
+        raise ValueError(
+            f"{told}, as in '20deg', or leave it out, or give from_ and seconds as arrays"
+        ) from None
 
 
 def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:

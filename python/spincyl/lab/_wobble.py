@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from spincyl._input.equality import compared_by_value
-from spincyl._input.numbers import Floats, Reals, number, reals
+from spincyl._input.numbers import Floats, Reals, number, reals, warn
 
 _TURNS_PER_WINDOW = 8  # turns in a window
 _PER_OCTAVE = 24  # filters per octave
@@ -27,6 +27,8 @@ _LEAST_FUNDAMENTAL = 0.2  # least fundamental in any turn of a window, as a shar
 _KNOCK_SCATTER = 4.0  # a window whose scatter exceeds that of its neighbours by this factor contains a knock
 _FEWEST_WINDOWS = 4  # least number of coherent windows in a row
 _SYSTEMATIC_ERROR = 1e-3  # relative systematic error of a window without noise
+# sound that is left out: its least level, as a share of that of the whirr, and its least duration in seconds
+_LOUD, _LASTS = 0.7, 0.2
 
 
 @compared_by_value
@@ -82,6 +84,12 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     TypeError
         If an argument is not real numbers; the message names it.
 
+    Warns
+    -----
+    UserWarning
+        If the recording is as loud before or after the whirr, for longer than 16 of its turns: one whirr
+        is followed, the longest without a jump of its rate, and other sound is left out.
+
     Notes
     -----
     If a body is louder twice per turn, `turns` is twice the true rate: compare it with a film.
@@ -107,7 +115,36 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
     time, turns, errors = time[keep], turns[keep], errors[keep]
     # errors that remain in sounds without noise: 1e-3, and the cube of the relative change within a window
     quickens = np.abs(np.gradient(np.log(turns)))
+    half = 0.5 * _TURNS_PER_WINDOW / turns
+    missed = _left_out(level, pace, (time[0] - half[0], time[-1] + half[-1]), 4 * half[[0, -1]])
+    if missed:
+        parts = " and ".join(f"from {begin + a:.3g} to {begin + b:.3g} s" for a, b in missed)
+        found = f"{begin + max(time[0] - half[0], 0.0):.3g} to {begin + time[-1] + half[-1]:.3g} s"
+        told = (
+            f"sound: there is sound {parts} as well, which is left out: one whirr was followed, from {found};"
+        )
+        warn(f"{told} give the other part alone as t and sound, or other turns per second in between=")
     return Wobble(begin + time, turns, np.hypot(errors, turns * (_SYSTEMATIC_ERROR + quickens**3)))
+
+
+def _left_out(
+    level: Floats, pace: float, heard: tuple[float, float], least: Floats
+) -> list[tuple[float, float]]:
+    """Stretches before and after a whirr, in seconds, that are as loud and last as long as two windows."""
+    block = max(int(0.5 * _LASTS * pace), 1)
+    row = level[: level.size // block * block].reshape(-1, block)
+    loud, at = np.median(row, axis=1), (np.arange(len(row)) + 0.5) * block / pace  # a knock is no sound
+    within = (at >= heard[0]) & (at <= heard[1])
+    if not within.any():
+        return []
+    is_loud = loud > _LOUD * np.median(loud[within])
+    found = []
+    for side, shortest in zip((at < heard[0], at > heard[1]), least, strict=True):
+        there = np.flatnonzero(is_loud & side)
+        if there.size * block / pace > max(shortest, _LASTS):
+            half = 0.5 * block / pace
+            found.append((float(at[there[0]] - half), float(at[there[-1]] + half)))
+    return found
 
 
 def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:

@@ -179,14 +179,17 @@ class Scene:
             raise ValueError(f"path = {str(path)!r}: {why}")
         return found
 
+    def _body(self) -> str:
+        return self.urdf
+
     def save(self, path: str | PathLike[str]) -> list[Path]:
-        """Write the scene as JSON, as MJCF or both, and return the paths.
+        """Write the scene as JSON, as MJCF or both, or its body as URDF, and return the paths.
 
         Parameters
         ----------
         path : path-like
-            Path that ends with .json or .xml (MJCF); this file is written. For any other path both files are
-            written, and these endings are added to their names.
+            Path that ends with .json, .xml (MJCF) or .urdf; this file is written. For a path without such an
+            ending the first two are written, and these endings are added to their names.
 
         Returns
         -------
@@ -197,13 +200,18 @@ class Scene:
         ------
         OSError
             If a file cannot be written. Existing files stay until all new ones are complete.
+        ValueError
+            If the path has another ending, or URDF does not have the shape of the body.
         """
         path = path_of("path", path)
         if not path.name:
             raise ValueError(f"path = {str(path)!r}: expected the name of a file")
-        known = {".json": self._json, ".xml": self._model}
+        known = {".json": self._json, ".xml": self._model, ".urdf": self._body}
         only = path.suffix.lower() in known
-        paths = [path] if only else [path.with_name(path.name + suffix) for suffix in known]
+        if not only and path.suffix[1:].isalpha():
+            told = f"path = {str(path)!r}: expected a name without ending, or one that ends in"
+            raise ValueError(f"{told} {', '.join(known)}")
+        paths = [path] if only else [path.with_name(path.name + suffix) for suffix in (".json", ".xml")]
         texts = [known[x.suffix.lower()]() for x in paths]
         with ExitStack() as all_:  # both files are written, or neither
             for part, text in zip(map(all_.enter_context, map(writing_whole, paths)), texts, strict=True):
