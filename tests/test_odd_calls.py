@@ -92,7 +92,7 @@ def test_axes_are_those_of_matplotlib_and_three_where_three_are_drawn(subjects):
 def test_a_map_that_is_no_portrait_is_refused_before_it_is_drawn():
     axes = {"theta": np.linspace(0.1, 1.5, 5), "ell": np.linspace(0.5, 2.0, 4)}
     for data, said in (
-        (sc.sweep.portrait(**axes, want="rate"), "not none"),
+        (sc.sweep.portrait(**axes, want="rate"), "there is none"),
         (sc.sweep.portrait(**axes, bore=[0.0, 0.5]), "not one over {'theta': 5, 'ell': 4, 'bore': 2}"),
         (sc.sweep.portrait(axes["theta"], 1.0), "not one over {'theta': 5}"),
         (sc.sweep.portrait(axes["theta"][:0], axes["ell"]), "not one over {'theta': 0, 'ell': 4}"),
