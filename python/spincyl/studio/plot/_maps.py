@@ -293,9 +293,8 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     Returns
     -------
     Axes
-        The map, ell to the right and theta upward. Contours show the energy of a steady state less the energy
-        sqrt(1 + ell^2) of the same body balanced at rest on its rim, in M g R. The dashed line is the ridge,
-        where the energy of the steady states of one body is stationary.
+        Contours show the energy of a steady state less that of the body balanced at rest, sqrt(1 + ell^2), in
+        M g R. On the dashed ridge the energy of the steady states of one body is stationary.
 
     Raises
     ------
