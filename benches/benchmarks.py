@@ -98,7 +98,10 @@ def main():
     if args.draw:
         return
     text = report.table(rows)
-    told = (f"{name}: relative error of the energy | time by which the motion is ahead" for name in curves)
+    told = (
+        f"{name}: relative error of the energy | {name}: time by which the motion is ahead (sqrt(R/g))"
+        for name in curves
+    )
     lines = ["| number of steps of 1e-3 | " + " | ".join(told) + " |"]
     lines.append("| --- |" + " --- | --- |" * len(curves))
     for k in range(3, int(np.log10(args.steps)) + 1):

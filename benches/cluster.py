@@ -86,13 +86,13 @@ def efficiency(client, blocks, count, rounds):
         # without the scheduler, whose time the plan counts separately
         each[name] = used["workers"] - used["scheduler"]
     told = (
-        "initial states on one thread",
-        "`sweep.roll` on two threads",
-        "dask on two threads",
-        "dask on two workers",
+        "initial states, one thread (us)",
+        "`sweep.roll`, two threads (us)",
+        "dask, two threads (us)",
+        "dask, two workers (us)",
     )
     head(
-        "Efficiency: microseconds a motion by the clock",
+        "Efficiency: time per motion by the clock",
         "job",
         "motions per block",
         "number of blocks",
@@ -101,8 +101,9 @@ def efficiency(client, blocks, count, rounds):
     )
     for line in walls:
         row(*line)
-    title = "CPU time of all threads and processes, microseconds a motion; less affected by other work on the computer"
-    head(title, "job", *told, "part of it for client and scheduler", "efficiency (ratio)")
+    title = "CPU time per motion of all threads and processes; less affected by other work on the computer"
+    part = "client and scheduler, part of the time with two workers (us)"
+    head(title, "job", *told, part, "efficiency (ratio)")
     for line in cpus:
         row(*line)
     return each
@@ -159,13 +160,13 @@ def plan(blocks, each, used, kept):
     """The time of 1e9 motions, from the figures above: the computing, and the work of the one scheduler."""
     told = (
         "motions per block",
-        "time of the workers (s)",
-        "time of the scheduler if motions are counted (s)",
-        "time of the scheduler if they are saved (s)",
+        "computing time (s)",
+        "scheduler, if results are counted (s)",
+        "scheduler, if results are saved (s)",
         "size of the results (GB)",
-        "rate of writing that keeps up (MB/s)",
+        "results made per second (MB/s)",
     )
-    head("1e9 motions", "job", "workers", "number of blocks", *told)
+    head("1e9 motions", "job", "number of workers", "number of blocks", *told)
     for name in JOBS:
         for workers_, times in ((2, 1), (100, 1), (1000, 1), (1000, 100)):
             size = blocks[name] * times

@@ -31,7 +31,7 @@ def scheduler(folder, count):
     }
     head(
         "The scheduler: cost of one more block, with blocks of two motions",
-        "results of the motions",
+        "use of the results",
         "CPU time of client and scheduler per block (ms)",
         "time by the clock per block, two workers (ms)",
     )
@@ -89,8 +89,8 @@ def saved(cluster, folder, size, count):
     total = size * count
     head(
         "Saved by two workers",
-        "what happens while it is saved",
-        "time (s)",
+        "what happens during the saving",
+        "time by the clock (s)",
         "bytes per motion",
         "files per block",
     )
@@ -101,7 +101,7 @@ def saved(cluster, folder, size, count):
         plain.append(seconds)
     files, used = written(store)
     expected = {p.relative_to(store): p.read_bytes() for p in sorted(store.rglob("*")) if p.is_file()}
-    row("undisturbed", min(plain), used / total, files / count)
+    row("nothing", min(plain), used / total, files / count)
     remove(store)
     seen = []
 
@@ -117,9 +117,19 @@ def saved(cluster, folder, size, count):
     killer.join()
     there = {p.relative_to(store): p.read_bytes() for p in sorted(store.rglob("*")) if p.is_file()}
     same = "the same bytes" if there == expected else "OTHER BYTES"
-    row(f"a worker killed after {seen[0]} of {count} blocks: {same}", seconds, used / total, files / count)
+    row(
+        f"a worker is killed after {seen[0]} of {count} blocks; the store has {same}",
+        seconds,
+        used / total,
+        files / count,
+    )
     seconds, found = wall(lambda: sc.sweep.save(lazy(start, total, size), store))
-    row(f"run again with all {count} blocks done: only checked", seconds, used / total, files / count)
+    row(
+        f"the script runs again after all {count} blocks: they are only checked",
+        seconds,
+        used / total,
+        files / count,
+    )
     assert np.array_equal(
         np.bincount(found["status"].to_numpy(), minlength=7), counted(lazy(start, total, size)).compute()
     )

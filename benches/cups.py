@@ -103,8 +103,8 @@ def table():
         "exact radius",
         "time of a turn in MuJoCo",
         "exact time of a turn",
-        "range of the inclination in MuJoCo",
-        "rate at which the end rises, over the exact rate",
+        "largest less smallest inclination in MuJoCo",
+        "precession at which the narrow end rises in MuJoCo, over the exact one",
     ]
     yield head
     yield ["---"] * len(head)
@@ -113,7 +113,10 @@ def table():
         rate = 0.8 * apex.rate
         scene = scene_of(body, rate)
         true = float(body.scale.seconds(2 * np.pi / rate)), 1e3 * body.scale.radius * apex.radius
-        ways = {f"mesh of {n} points a circle": lambda x, n=n, of=body: as_mesh(x, of, n) for n in (64, 512)}
+        ways = {
+            f"mesh of {n} points for each circle": lambda x, n=n, of=body: as_mesh(x, of, n)
+            for n in (64, 512)
+        }
         ways["circles of the MJCF file"] = lambda x: x
         for way, make in ways.items():
             model = mujoco.MjModel.from_xml_string(make(scene.mjcf))

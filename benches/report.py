@@ -167,7 +167,7 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
     last = steps * 1e-3
     every = np.arange(steps + 1) * 1e-3
     wants: dict[str, tuple[str, ...]] = {
-        "nothing": (),
+        "none": (),
         "pose": ("pose",),
         "force": ("force",),
         "both": ("pose", "force"),
@@ -285,17 +285,25 @@ def _time(seconds: float) -> str:
 
 def table(rows: list[Row]) -> str:
     """Return Markdown: a table of all scenes, the points of all curves, and the cost of each output."""
-    head = ["scene", "t", "exact solution: true error", "its estimated error", "time of one call"]
-    head.append("time of one more state")
-    methods = list(rows[0].curves)
-    head += [f"{name}: time for an error of {target:g}" for name in methods for target in _TARGETS]
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    head = ["scene", "t", "true error", "estimated error", "time of one call", "time of one more state"]
+    lines = ["The exact solution:", "", "| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
     for row in rows:
         true = "-" if row.true is None else f"{row.true:.1e}"
         cells = [row.scene.name, f"{row.scene.t:g}", true, f"{row.claimed:.1e}"]
         cells += [_time(row.call_seconds), _time(row.exact_seconds)]
-        cells += [_at(row.curves.get(name, []), target) for name in methods for target in _TARGETS]
         lines.append("| " + " | ".join(cells) + " |")
+    head = ["scene", "t", "largest error allowed", *rows[0].curves]
+    lines += [
+        "",
+        'Time of each method for an error of the final state below the allowed one; "-" means never:',
+        "",
+    ]
+    lines += ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    for row in rows:
+        for target in _TARGETS:
+            cells = [row.scene.name, f"{row.scene.t:g}", f"{target:g}"]
+            cells += [_at(row.curves.get(name, []), target) for name in rows[0].curves]
+            lines.append("| " + " | ".join(cells) + " |")
     lines += [
         "",
         "Each point: setting (step or tolerance), time per trajectory, error of the final state.",
@@ -309,7 +317,7 @@ def table(rows: list[Row]) -> str:
             lines.append(f"- {name}: {listed}")
         lines.append("")
     lines += [
-        "| outputs computed by RK4 | time per step for the last state (ns) | time per step for every state (ns) |",
+        "| outputs of RK4 besides states | time per step, last state only (ns) | time per step, every state (ns) |",
         "| --- | --- | --- |",
     ]
     lines += [f"| {name} | {last:.0f} | {every:.0f} |" for name, last, every in costs()]

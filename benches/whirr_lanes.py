@@ -70,8 +70,8 @@ def main():
         f"Whirrs under every loss law, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
     )
     print(
-        "| loss law | time per whirr (us) | time over that of the fastest law |"
-        " ending of the whirrs (`Ending`) and their number | largest estimated error | largest true error |\n"
+        "| loss law | time per whirr (us) | time over the time of the fastest law |"
+        " `Ending` and number of the whirrs that end with it | largest estimated error | largest true error |\n"
         + "| --- " * 6
         + "|"
     )

@@ -155,7 +155,7 @@ def rows(name: str, scene: sc.Scene, seconds: float) -> list[list[str]]:
             [name, "spincyl, RK4", f"{steps}", less, "", f"{1e3 * took:.1f} ms"]
         )
     known = f"{errors['theta']:.0e} rad", f"{1000 * errors['position']:.0e} mm"
-    found.append([name, "spincyl, known answer: estimated error", "", *known, ""])
+    found.append([name, "spincyl, exact solution (estimated errors)", "", *known, ""])
     return found
 
 

@@ -238,7 +238,10 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
 
 
 #: the sentence before each table
-_KEY = 'Each cell is a loss law with a contact: "yes" if it is computed, or the letter of the reason why it is refused.'
+_KEY = (
+    'Each cell says whether a loss law (row) with a contact (column) is computed: "yes", "on the table" (computed, but only'
+    " on the\ntable, as explained above), or the letter of the reason why it is refused."
+)
 
 
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:

@@ -233,7 +233,10 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"t": t[::-1]}, "t: expected times in ascending order"),
         ({"theta": theta[::-1]}, "theta: rises, but .* drifts down"),
         ({"theta": None, "precession": 1e-3 * precession}, "precession: no drift of this body has"),
-        ({"theta": rng.uniform(0.1, 0.3, 40)}, "theta: expected a drift"),
+        (
+            {"theta": rng.uniform(0.1, 0.3, 40)},
+            "theta: expected values that rise or fall with t; their rank correlation",
+        ),
         ({"theta": -theta}, r"^theta\[0\] = -0\.\d+: expected a positive number, or NaN if it is missing$"),
         ({"theta": np.degrees(theta)}, "theta: expected inclinations .* radians"),
         ({"precession": 0 * precession}, r"^precession\[0\] = 0: expected a positive number"),

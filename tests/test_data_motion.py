@@ -213,7 +213,10 @@ def test_a_bound_holds_and_a_number_that_is_not_free_stays():
             "^free: 'friction' cannot be varied in this motion; expected some of theta, w1",
         ),
         ({"free": []}, "^free: expected at least one name"),
-        ({"free": {"mu": (0.2, 0.3)}}, "^free\\['mu'\\] = .*: expected bounds with 0.05, the guess, between"),
+        (
+            {"free": {"mu": (0.2, 0.3)}},
+            "^free\\['mu'\\] = .*: expected bounds on both sides of the guess, 0.05",
+        ),
         ({"measured": {"z": [1.0]}}, "^measured: expected a column 't'"),
         ({"measured": {"t": [0.0, 0.1, 0.2]}}, "^measured: expected a column besides 't'"),
         ({"measured": {"t": [0.0, 0.1, 0.2], "q": [1, 2, 3]}}, "^measured: 'q' is not an output of a motion"),

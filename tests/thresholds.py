@@ -22,8 +22,8 @@ time may have an ending just there. If an estimated error is infinite, any two r
     without an estimated error  how many have an infinite estimated error now, and did not before
 
 The command names every scene with another ending or beyond the estimated errors. It fails if there are more of them than
-on the page. The last column has the number of motions that change if the threshold is divided and multiplied by 1000: it
-shows whether any scene comes near the threshold.
+on the page. The last two columns have the numbers of motions that change if the threshold is divided and multiplied by 1000: they
+show whether any scene comes near the threshold.
 """
 
 import argparse
@@ -359,8 +359,8 @@ def main():
                 far.append(
                     str(sum(repr(a) != repr(b) for a, b in zip(base, then, strict=True))) if some else then
                 )
-            new.append(", ".join(far))
-            print(f"  by 1000: {new[-1]}", flush=True)
+            new += far
+            print(f"  by 1000: {', '.join(far)}", flush=True)
             found[row.name, row.file] = new
             if given.write:
                 PAGE.write_text(written(PAGE.read_text("utf-8"), found), "utf-8")

@@ -197,12 +197,12 @@ def measure(quick):
         "tolerance or step",
         "time per motion (us)",
         "number of motions",
-        "wrong endings",
+        "motions with a wrong ending",
         "median error of the time of the ending",
-        "99 % of these errors are below",
-        "largest of these errors",
+        "99 % of errors of this time are below",
+        "largest error of this time",
         "99 % of errors of the state at t = 20 are below",
-        "largest of these errors",
+        "largest error of this state",
     )
     text = table(head, rows)
     share = np.bincount(truth[:, 0].astype(int), minlength=4) / n

@@ -8,7 +8,7 @@ import re
 
 ROOT = pathlib.Path(__file__).parents[2]
 PAGE, PICTURE = ROOT / "docs" / "benchmarks.md", ROOT / "docs" / "figures" / "peers.png"
-JOB = "wide, kick 0.4"  # the set of motions whose times are drawn against their errors
+JOB = "wide nutation, kick 0.4"  # the set of motions whose times are drawn against their errors
 #: the programs that are drawn, with their colours, and where in points their names stand from their last points
 PROGRAMS = {
     "spincyl": ("#0072b2", (0, -32)),
@@ -18,9 +18,9 @@ PROGRAMS = {
 }
 #: the jobs whose ratios are drawn, in the words of the figure
 JOBS = {
-    "near-steady, kick 0.05": "rolling, it hardly nods",
-    "wide, kick 0.4": "rolling, it nods",
-    "very wide, kick 0.8": "rolling, it nods widely",
+    "small nutation, kick 0.05": "rolling, it hardly nods",
+    "wide nutation, kick 0.4": "rolling, it nods",
+    "very wide nutation, kick 0.8": "rolling, it nods widely",
     "random starts (99 %)": "rolling, any start",
     "map, points, 1 thread": "steady states, scattered",
     "whirrs": "a coin that whirrs, losses",

@@ -77,11 +77,19 @@ class Drift(Hinting):
     ends_at_theta : float or array
         Inclination at the end, or the limit of the inclination if the drift never ends.
     ended : str or array of str
-        How the drift ended: "face lands", "lies down", "lowest state" (no steady state nearby has less
-        energy), "balanced" (on a point of the rim), "stands upright" (a ball on its pole), or "no drift".
-        With centre="rolling" also "stability lost" (kappa of `Body.stability` reaches 0), "contact stops"
-        (psi' = 0 with dry contour friction or rolling resistance), or "drilling stops" (with drilling
-        friction: the angular velocity about the vertical reaches 0).
+        How the drift ended:
+
+        - "face lands": the face has landed, at theta = 0.
+        - "lies down": the body lies on its side, at theta = pi/2.
+        - "lowest state": no steady state nearby has less energy.
+        - "balanced": the body is balanced on a point of its rim, at theta0.
+        - "stands upright": a ball stands on its pole.
+        - "no drift": there is no drift from this state, as in arrays with an impossible value.
+        - "stability lost": kappa of `Body.stability` has reached 0. Only with centre="rolling".
+        - "contact stops": psi' has reached 0, under dry contour friction or rolling resistance. Only with
+          centre="rolling".
+        - "drilling stops": the angular velocity about the vertical has reached 0, under drilling friction.
+          Only with centre="rolling".
     """
 
     body: Body

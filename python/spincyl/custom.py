@@ -366,7 +366,7 @@ class Friction(Coulomb):
     @classmethod
     def from_si(cls, *_: object, **__: object) -> Self:
         """Raises TypeError: for a measured body the function gets the speed in m/s, without a conversion."""
-        how = "for a measured body custom.Friction(function, static) gets the speed of the slip in m/s"
+        how = "use custom.Friction(function, static); for a measured body function gets the slip in m/s"
         raise TypeError(f"custom.Friction.from_si: not needed; {how}")
 
     def __eq__(self, other: object) -> bool:

@@ -271,9 +271,9 @@ class AirFilm(Law):
     Parameters
     ----------
     viscosity : array_like
-        Viscosity in M g^(1/2)/R^(3/2), positive: 9.5e-8 for air under Euler's disk. The factor pi/4 is
-        Moffatt's estimate. Lubrication theory without pressure at the rim gives the factor 1.2811; to use it,
-        multiply `viscosity` by 1.63.
+        Viscosity of the air, in M g^(1/2)/R^(3/2), positive: 9.5e-8 for air under Euler's disk. The factor
+        pi/4 of the power P is Moffatt's estimate. Lubrication theory without pressure at the rim gives the
+        factor 1.2811; to use it, multiply `viscosity` by 1.63.
     """
 
     viscosity: Reals

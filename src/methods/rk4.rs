@@ -35,7 +35,7 @@ where
     change(|y: &[f64; N]| f(&Y::from(*y)).into(), y, k1, h)
 }
 
-/// The same for plain arrays of numbers, single or in lanes.
+/// The change of the plain array `y` over one step `h`, as from `increment`, single or in lanes.
 #[inline(always)]
 pub(crate) fn change<T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N]) -> [T; N],

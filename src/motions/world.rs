@@ -36,7 +36,7 @@ use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 /// A body whose lowest point is this close to the table touches it, in units of R.
 const NEAR_THE_TABLE: f64 = 1e-9;
 
-/// The start of a body in the world, in SI.
+/// The pose and the velocities with which a motion begins, along the axes of the world, in SI.
 ///
 /// ```
 /// use spincyl::measured::{Measured, Tube};
@@ -69,8 +69,8 @@ pub struct WorldStart {
 }
 
 impl WorldStart {
-    /// A start from the pose of the body, whose translation is the centre of mass in metres, and its twist: the velocity of the
-    /// centre in m/s and the angular velocity in rad/s, along the axes of the world.
+    /// A start from the pose of the body, whose translation is the centre of mass in metres, and its velocities:
+    /// that of the centre in m/s and the angular velocity in rad/s, along the axes of the world.
     #[must_use]
     pub fn new(pose: Isometry3<f64>, velocity: Vector3<f64>, angular_velocity: Vector3<f64>) -> Self {
         let position = pose.translation.vector.into();

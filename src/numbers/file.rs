@@ -42,7 +42,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
     Written::deserialize(from).map(|x| x.0)
 }
 
-/// The same for rows that are arrays of numbers.
+/// Rows of numbers in files, with the same words for infinity and NaN.
 pub(crate) mod rows {
     use super::Written;
     use serde::{Deserialize, Deserializer, Serializer};

@@ -108,7 +108,7 @@ pub struct CirclesShape {
     pub kind: ShapeKind,
     /// The unit R of length.
     pub radius: f64,
-    /// The radius of the bore of a tube; `None` for a body of unknown inside.
+    /// The radius of the bore of a tube; `None` for a body of another kind, whose inside is not known.
     pub inner_radius: Option<f64>,
     /// The circles, from the lower end up.
     pub circles: Vec<SceneCircle>,

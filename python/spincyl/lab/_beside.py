@@ -58,7 +58,7 @@ class FilmComparison(NamedTuple):
         Mean of the squares of `away` for "theta", "precession" and "centre"; about 1 if film and motion
         agree. That of the centre is per degree of freedom, since its place is fitted.
     phi0 : float
-        Angle by which the path of the motion is turned, in radians.
+        Angle about the vertical by which the computed motion is turned to fit the film, in radians.
     place : tuple of float
         The point of the film to which the origin of the motion is moved: x and y in metres.
     mirrored : bool

@@ -254,7 +254,7 @@ def _free(known: dict[str, Number], free: Any) -> dict[str, Number]:
             if not low < high or not low <= one.value <= high:
                 value = one.value * one.factor
                 raise ValueError(
-                    f"free[{name!r}] = {pair!r}: expected bounds with {value:.6g}, the guess, between"
+                    f"free[{name!r}] = {pair!r}: expected bounds on both sides of the guess, {value:.6g}"
                 )
             one = one._replace(low=low, high=high)
         size = max(abs(one.value), one.size)

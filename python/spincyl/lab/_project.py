@@ -149,7 +149,9 @@ def _tracks_of_points(root: Any) -> dict[str, Columns]:
         raise ValueError(f"no point is marked in any frame: it has {there}{told}")
     begin, many = min(frames), (max(frames) - min(frames)) // step + 1
     if many * len(shown) > _MOST:
-        raise ValueError(f"{len(shown)} tracks over {many} frames are too many")
+        raise ValueError(
+            f"{len(shown)} tracks over {many} frames are too many; expected at most {_MOST:,} places"
+        )
     n = begin + step * np.arange(many, dtype=np.float64)
     timing = _properties(_object_of_property(clip.get("video"))) | _properties(
         _object_of_property(own.get("clipcontrol"))

@@ -224,7 +224,8 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
     correlation = float(np.corrcoef(_ranks(t[seen]), _ranks(values[seen]))[0, 1])
     if not abs(correlation) > 0.5:
         raise ValueError(
-            f"{name}: expected a drift; the rank correlation with t is {correlation:.2f}, below 0.5"
+            f"{name}: expected values that rise or fall with t; their rank correlation with t,"
+            f" {correlation:.2f}, is between -0.5 and 0.5"
         )
     return correlation > 0
 

@@ -445,6 +445,6 @@ def _duration(plain: Body, kind: Any, centre: str, theta: float, theta_err: floa
     beside = drift(plain, np.array([theta - theta_err, theta + theta_err]), kind(_UNIT), centre).stops_at
     off = np.abs(beside - one.stops_at)
     if not np.isfinite(off).any():
-        told = f"there is no drift from {theta - theta_err:.4g} or from {theta + theta_err:.4g} rad"
-        raise ValueError(f"from_err = {theta_err!r}: {told}, the inclination less and plus this error")
+        told = f"no drift starts at {theta - theta_err:.4g} or at {theta + theta_err:.4g} rad"
+        raise ValueError(f"from_err = {theta_err!r}: {told}, the inclination minus or plus this error")
     return float(one.stops_at), float(np.nanmean(off))

@@ -139,8 +139,7 @@ def repeats(m: "Motion") -> Repeat | None:
     period = pace(m)
     if last - first > _LONGEST * period:
         many = (last - first) / period
-        told = f"motion: has {many:.0f} nutations, too many to show"
-        raise ValueError(f"{told}; expected at most {_LONGEST}; use a shorter time")
+        raise ValueError(f"motion: expected at most {_LONGEST} nutations, not {many:.0f}; use a shorter time")
     if m.method != "exact" or not period < last - first:
         return None
     phi, psi, centre = seen(m, np.array([first, first + period]), "phi", "psi", "centre")

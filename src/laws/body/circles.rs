@@ -149,7 +149,7 @@ impl Body {
         row.and_then(|row| row.at(usize::from(circle))).map_or(*self, |row| self.on(row))
     }
 
-    /// The same with the circle carrying that does so at this inclination.
+    /// This body, standing on the circle that touches the table at this inclination.
     pub(crate) fn told_at(&self, theta: f64) -> Self {
         self.standing_on(self.at(theta).view().circles.map_or(0, |[here, _]| here))
     }

@@ -94,10 +94,11 @@ pub(crate) fn equal_rims(body: &Body) -> Result<(), Error> {
     if body.has_row() { Err(Error::OutOfRange { name: "circles", value: count, expected }) } else { Ok(()) }
 }
 
-/// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body at theta = pi/2 and w2 = 0; above 1 the body rises.
+/// The launch number with friction, (I3 w1 w3 - Fh)/ell, of a body that lies on its side, at theta = pi/2 and w2 = 0;
+/// above 1 the body rises on its lower rim.
 ///
-/// Fh is the friction at the lower rim if this rim alone carries the body. At a rim at rest Fh is the friction that
-/// rolling needs, at most `mu`, which then is the static coefficient.
+/// Fh is the component of the friction along e_h, at the lower rim, if this rim alone carries the body. At a rim at
+/// rest Fh is the friction that rolling needs, at most `mu`, which then is the static coefficient.
 pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
     launch_on(body, 0, y, slip, mu)
 }
@@ -529,7 +530,7 @@ const SAME: f64 = 1e-12;
 /// The largest number of steps of the search for the impulses: some tens are usual, I3 = 0.001 takes
 /// thousands.
 const STEPS: usize = 100_000;
-/// The same number under a coefficient that depends on the speed, and the number of steps after which the coefficient
+/// `STEPS` under a coefficient that depends on the speed, and the number of steps after which the coefficient
 /// follows the speed by a smaller share.
 const OWN_STEPS: usize = 20_000;
 const FOLLOWS: usize = 100;

@@ -126,7 +126,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         self.under(self.losses.pull, angle, precession, w, held)
     }
 
-    /// The same under this pull of the table.
+    /// The response of the body, as from `at`, under the force `pull` of the table instead of that of the losses.
     #[inline(always)]
     pub fn under(
         &self,

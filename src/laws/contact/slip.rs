@@ -255,8 +255,10 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         (at, pace, push)
     }
 
-    /// The response to the friction force F = -strength N pull/size, where `size` is the magnitude of `pull`, with
-    /// dt/dsigma, which is size/sum. One division serves all quotients. A patch exerts the couple `twist` N, too.
+    /// The response to the friction force F = -strength N pull/size, and dt/dsigma = size/sum, with the variable sigma
+    /// of this module. N is the normal force, `strength` the coefficient of friction, and `size` the magnitude of the
+    /// vector `pull`, against which friction acts. On a patch of contact the table also exerts the couple `twist` N.
+    /// One division serves all quotients.
     #[inline(always)]
     pub fn with(
         &self,

@@ -46,7 +46,7 @@ impl Lying<f64> {
         }
     }
 
-    /// The same with these largest coefficients.
+    /// How the body begins to move, with `most` as the largest coefficients of friction of both circles.
     fn begins_under(&self, w: [f64; 2], most: [f64; 2], near: [[f64; 2]; 2]) -> Option<Begun> {
         let mut q = near;
         let mut velocity = 0.0;

@@ -50,7 +50,7 @@ impl<T: Real> Kinematics<T> {
         seen
     }
 
-    /// The same over a table that turns at this rate.
+    /// These kinematics over a table that turns at the rate `om`.
     #[inline(always)]
     fn over(mut self, om: T) -> Self {
         self.om = om;

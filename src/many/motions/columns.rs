@@ -35,7 +35,8 @@ pub struct MotionStarts<'a> {
     pub(crate) circles: &'a [CirclesOfRow],
 }
 
-/// Radius, height above the centre of mass, and fillet of the circles of a body; a radius of NaN means no such circle.
+/// The circles of one body, each as its radius, its height above the centre of mass, and its fillet, in natural units.
+/// A radius of NaN marks a place without a circle.
 pub(crate) type CirclesOfRow = [[f64; 3]; MOST_CIRCLES];
 
 /// The columns of bodies and initial states, collected from pairs of a body and its initial state.

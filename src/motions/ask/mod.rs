@@ -71,9 +71,10 @@ pub struct Ask {
     pub method: Method,
     /// Whether the motion continues past events other than a landing of the face; with a law of friction it never does.
     pub beyond: bool,
-    /// The coefficient of restitution of impacts, from 0 to 1. With `None` the motion ends where the body leaves the
-    /// table or its other rim lands; otherwise the motion continues in the air, on the other rim and on both rims. A stone
-    /// ends at its edge, and a body on a patch of contact where a face or its other rim lands.
+    /// The coefficient of restitution of impacts, from 0 to 1, or `None`. With `None` the motion ends where the body
+    /// leaves the table or its other rim lands. With a number the motion continues in the air, on the other rim and on
+    /// both rims, but the motion of a stone ends where its edge lands, and the motion of a body on a patch of contact
+    /// ends where a face or its other rim lands.
     pub restitution: Option<f64>,
     /// The law whose coefficient the restitution is.
     #[cfg_attr(feature = "serde", serde(default))]

@@ -50,16 +50,16 @@ pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     fn told(&self, _theta: f64) -> Self {
         *self
     }
-    /// The same for a pose.
+    /// A pose that is seen from the upper end of a body, as told from its lower end.
     fn pose_told(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
-    /// The same for a pose of a motion whose poses all are told in this way, after a half turn of the laboratory about the
+    /// `pose_told` for a motion whose poses all are told in this way, after a half turn of the laboratory about the
     /// vertical, so that phi begins with 0.
     fn pose_told_from_start(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
-    /// The same for a force.
+    /// A force that is seen from the upper end of a body, as told from its lower end.
     fn force_told(force: &Self::Force) -> Self::Force {
         *force
     }

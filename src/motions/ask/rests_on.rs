@@ -124,7 +124,7 @@ impl Motion {
     }
 }
 
-/// The same for a body that has rolled on its first rim without a change of phase.
+/// What a body rests on that has rolled on its first rim without a change of phase.
 #[cfg(feature = "many")]
 pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
     LastState { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
@@ -132,7 +132,7 @@ pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> Rest
 
 #[cfg(feature = "many")]
 impl Followed {
-    /// The same for a motion whose path is apart.
+    /// What the body rests on at the end of this motion, whose path is stored apart.
     pub(crate) fn rests_on(&self, body: &Body) -> RestsOn {
         LastState::of(&self.motion, Some(&self.path)).map_or(RestsOn::None, |last| last.rests_on(body))
     }

@@ -56,7 +56,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.rolling_at(&self.at, y)
     }
 
-    /// The same at the place and the heading of these numbers.
+    /// w' of a body that rolls, and the power of its losses, at the place and the heading of the numbers `at`.
     pub(super) fn rolling_at(&self, at: &[f64; N], y: &State) -> ([f64; 3], f64) {
         let mut losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
         if self.of.tilt != 0.0 && self.of.turning == 0.0 {

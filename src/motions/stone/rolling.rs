@@ -28,7 +28,7 @@ const FREE_TIME: usize = 9;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct RollingStone {
-    /// The time, in sqrt(a/g).
+    /// The time since the initial state, in sqrt(a/g), where a is the largest semi-axis.
     pub time: f64,
     /// The rotation from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
     /// z) of length 1.

@@ -110,7 +110,8 @@ pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N], heading: (f64,
     carried_at(turning, heading, [y[X], y[Y]])
 }
 
-/// The same under a point at this place.
+/// The velocity of a table that turns at this rate under the point (x, y), along e_h and e2, from the sine and
+/// cosine of phi.
 #[inline(always)]
 pub(crate) fn carried_at(turning: f64, (sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
     [turning * (x * sin - y * cos), turning * (x * cos + y * sin)]

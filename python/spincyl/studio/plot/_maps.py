@@ -122,7 +122,7 @@ def branches(
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     rate_max : float, optional
-        Right edge of the axes, as a reduced rate, or in turns per second if `hertz` is true. Default: 3, or
+        Largest rate on the axes, as a reduced rate, or in turns per second if `hertz` is true. Default: 3, or
         the turns per second at which the fastest body has the reduced rate 3.
     marks : bool, optional
         If true, mark the points A to G. Default: only for a single body.
@@ -203,7 +203,7 @@ def portrait(
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     ell_max : float
-        Right edge, more than the fillet and at most 1000; only without `data`.
+        Largest ell on the map, at its right edge: more than the fillet and at most 1000. Only without `data`.
 
     Returns
     -------
@@ -288,13 +288,13 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     ax : matplotlib Axes, optional
         Axes to draw on. Default: new axes.
     ell_max : float
-        Right edge, 0.01 to 1000.
+        Largest ell on the map, at its right edge: 0.01 to 1000.
 
     Returns
     -------
     Axes
-        Contours show the energy above that of the body balanced at rest, sqrt(1 + ell^2), in M g R. The
-        dashed line is the ridge, where the energy is stationary along the branch of one body.
+        Contours show the energy of a steady state less that of the body balanced at rest, sqrt(1 + ell^2), in
+        M g R. On the dashed ridge the energy of the steady states of one body is stationary.
 
     Raises
     ------
@@ -351,7 +351,7 @@ def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
     region = data.get("region")
     if region is None or region.dims != ("theta", "ell") or min(region.shape) < 2:
         found = "there is none" if region is None else f"its axes are {dict(region.sizes)}"
-        raise ValueError(f'data: expected "region" over at least two theta and two ell; {found}')
+        raise ValueError(f'data: expected the variable "region" for at least two theta and two ell; {found}')
     bore, fillet = (number(f"data[{name!r}]", data.get(name, 0.0)) for name in ("bore", "fillet"))
     return data["theta"].values, data["ell"].values, region.values, bore, fillet
 

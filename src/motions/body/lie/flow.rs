@@ -109,7 +109,7 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// The same flow on a slope, at these numbers.
+    /// This flow on a slope with the tangent `tilt`, at the numbers `y`.
     pub fn on_slope<const N: usize>(mut self, tilt: f64, y: &[f64; N]) -> Self {
         self.tilt = tilt;
         self.stands_at(y);
@@ -260,7 +260,7 @@ impl<G: Own> LyingFlow<G> {
         force.map(|[n, across, _]| ((self.fixed * n).powi(2) - across * across).max(0.0).sqrt())
     }
 
-    /// The same of both rims together.
+    /// The largest force along e_h that friction holds at both rims together, beside these forces across.
     pub fn holds_together(&self, force: &[[f64; 3]; 2]) -> f64 {
         self.holds_along(force).iter().sum::<f64>() * (1.0 + GRACE)
     }

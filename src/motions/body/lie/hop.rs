@@ -127,7 +127,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.rates_on_rim(self.hop_angle(chi), self.of.body.theta_end() - chi, y, sticks)
     }
 
-    /// The same at this inclination.
+    /// The rates of the numbers at this inclination, without those of the inclination.
     pub(crate) fn rates_on_rim(&self, angle: (f64, f64), theta: f64, y: &[f64; N], sticks: bool) -> [f64; N] {
         let (w, slip) = (y.w(), y.slip());
         let mut all = [0.0; N];

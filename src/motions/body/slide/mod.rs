@@ -105,7 +105,7 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// The same on a slope with this tangent, or on a table that turns at this rate.
+    /// This flow on a slope with the tangent `tilt`, or on a table that turns at the rate `turning`.
     pub fn on_table(mut self, [tilt, turning]: [f64; 2]) -> Self {
         let turns = turning != 0.0;
         (self.tilt, self.turning) = (tilt, turning);

@@ -102,7 +102,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.standing_with(friction, (&self.ask.losses, pull(self.of.tilt, &self.at)))
     }
 
-    /// The same with these losses and this pull.
+    /// The flow of a body that stands with these numbers, under these losses and this pull.
     fn standing_with(&self, friction: &Friction, beside: (&Losses, [f64; 2])) -> StandingFlow {
         let (shape, angle) = (self.of.slide.law.shape, self.at.angle());
         let lam = match friction {

@@ -115,7 +115,7 @@ impl<G: Own> LossyFlow<G> {
         lossy
     }
 
-    /// The same flow on a slope, or on a table that turns, from these numbers.
+    /// This flow on a slope with the tangent `tilt`, or on a table that turns at the rate `om`, from the numbers `at`.
     pub fn on_table<const N: usize>(mut self, [tilt, om]: [f64; 2], at: &[f64; N], y: &State) -> Self {
         (self.tilt, self.om) = (tilt, om);
         if self.is_pulled() {
@@ -202,7 +202,7 @@ impl<G: Own> LossyFlow<G> {
         self.pull_at(y, (y[SIN], y[COS]), y[W2], spin)
     }
 
-    /// The same flow with the pull of the slope at these numbers.
+    /// This flow with the pull of the slope at the numbers `y`.
     pub fn here<const N: usize>(&self, y: &[f64; N]) -> Self {
         let mut here = *self;
         here.stands_at(y);

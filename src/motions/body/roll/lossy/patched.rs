@@ -15,7 +15,7 @@ use crate::motions::dry::creep::RestingPatch;
 use crate::motions::walk::numbers::BodyNumbers;
 
 impl<G: Own> LossyFlow<G> {
-    /// The same flow on a patch of contact.
+    /// This flow on a patch of contact.
     pub fn on_patch(mut self, friction: &Friction, y: &State) -> Self {
         let (fixed, slides, radius) = (self.mu, friction.strength(), friction.patch());
         if radius > 0.0 {
