@@ -19,8 +19,8 @@
 //! // A can, 2 cm high, whose centre of mass is 20 cm above the table.
 //! let can = Measured::tube(&Tube::solid(0.05, 0.02, 0.1))?;
 //! let dropped = WorldStart::new(Isometry3::translation(0.3, 0.4, 0.2), Vector3::zeros(), Vector3::z());
-//! let [gap, rise] = can.start_in_world(&dropped)?.aloft.expect("it is in the air");
-//! assert!((can.scale().metres(gap) - 0.19).abs() < 1e-15 && rise == 0.0);
+//! let gap = can.start_in_world(&dropped)?.aloft.expect("it is in the air");
+//! assert!((can.scale().metres(gap.height) - 0.19).abs() < 1e-15 && gap.lift == 0.0);
 //! # Ok::<(), spincyl::Error>(())
 //! ```
 

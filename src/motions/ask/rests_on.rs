@@ -109,11 +109,12 @@ impl Motion {
     ///
     /// ```
     /// use spincyl::contact::Friction;
-    /// use spincyl::motion::{Ask, RestsOn, Start, roll_with};
+    /// use spincyl::motion::{AboveTable, Ask, RestsOn, Start, roll_with};
     /// use spincyl::{Body, State};
     ///
     /// let coin = Body::solid(0.25)?;
-    /// let start = Start::from(State { theta: 0.4, w1: 0.0, w2: 0.0, w3: 0.0 }).with_aloft([2.0, 0.0]);
+    /// let state = State { theta: 0.4, w1: 0.0, w2: 0.0, w3: 0.0 };
+    /// let start = Start::from(state).with_aloft(AboveTable::new(2.0, 0.0));
     /// let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0);
     /// let motion = roll_with(&coin, start, &[0.0, 50.0], &ask, || true)?.expect("not interrupted");
     /// assert_eq!(motion.rests_on(&coin), RestsOn::Face);
