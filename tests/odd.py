@@ -371,7 +371,7 @@ def laws():
     laws = {name: getattr(sc.loss, name) for name in sc.loss.__all__ if name not in ("Law", "Loss", "Sum")}
     weighed = sc.Scale(0.01, 0.02)
     for name, law in laws.items():
-        (own,) = law.__dataclass_fields__
+        own, *_ = law.__dataclass_fields__
         found[f"loss.{name}"] = law, {own: 1e-3}
         first = {"AirFilm": "viscosity", "BoundaryLayer": "C"}.get(name, own)
         found[f"loss.{name}.from_si"] = law.from_si, {first: 1e-3, "scale": weighed}

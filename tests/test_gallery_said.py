@@ -108,7 +108,7 @@ def test_a_dropped_coin_whirrs_to_rest_within_four_seconds_and_stays_on_its_edge
     says(
         dropped_coin,
         "whirrs to rest, all within 4 seconds",
-        "If it does not bounce at all, it stays on its edge",
+        "If the coin does not bounce at all, it stays on its edge",
     )
     for bounces in (0.0, 0.3, 0.5, 0.7):
         m = dropped_coin.rest(bounces)
@@ -122,7 +122,7 @@ def test_a_dropped_coin_whirrs_to_rest_within_four_seconds_and_stays_on_its_edge
 def test_a_dropped_egg_tumbles_bounces_unevenly_and_rocks_to_rest_and_impacts_take_most_of_its_energy():
     says(
         dropped_egg, "falls from 10 cm, leaning by 35 degrees", "makes it tumble", "higher and lower by turns",
-        "After half a second it rolls away end over end, slips as it rocks to rest", "almost two metres",
+        "After half a second the egg rolls away end over end, slips as it rocks to rest", "almost two metres",
         "take most of its energy, however well it bounces",
     )  # fmt: skip
     for bounces in (0.0, 0.3, dropped_egg.RESTITUTION):
@@ -174,7 +174,7 @@ def test_eulers_disk_stops_at_one_time_under_three_laws_and_the_whirr_tells_them
         eulers_disk_stops,
         "from 17 degrees",
         "three loss laws that stop it at the same time",
-        "shows which law it was",
+        "shows which of the laws acts",
     )
     body, start = eulers_disk_stops.body, eulers_disk_stops.start
     assert np.degrees(start.theta) == pytest.approx(17, abs=0.5)
@@ -284,7 +284,7 @@ def test_a_pencil_slips_backwards_below_a_coefficient_and_forwards_above():
 def test_a_cup_rolls_round_its_apex_to_rest_as_a_closed_form_says_and_too_fast_it_slides_outwards():
     says(
         rolled_cup, "goes round its apex in a circle", "at a time and place that a closed form gives",
-        "Pushed too fast for its friction, it slides outwards first, and its bottom may rise",
+        "Pushed too fast for the friction, the cup slides outwards first, and its bottom may rise",
     )  # fmt: skip
     scene = rolled_cup
     for speed, slides, rises in (
@@ -351,7 +351,7 @@ def test_a_puck_slides_farther_with_a_spin_and_its_whole_face_ends_both_in_one_r
 def test_a_can_topples_only_with_enough_friction_and_speed_and_a_fast_spin_keeps_it_down():
     says(
         pushed_can, "topples if the friction is strong enough", "only tips, and rocks to rest",
-        "A fast spin keeps it on its face",
+        "A fast spin keeps the can on its face",
     )  # fmt: skip
     for mu, speed, turns, low, high in (
         (0.49, 3.0, 0.0, 0.0, 0.0), (0.55, 0.6, 0.0, 1.0, 10.0), (0.55, 1.0, 0.0, 89.0, 91.0), (0.55, 1.0, 5.0, 0.0, 0.0),
@@ -363,7 +363,7 @@ def test_a_can_topples_only_with_enough_friction_and_speed_and_a_fast_spin_keeps
 def test_the_shape_wins_a_race_and_where_all_slip_they_arrive_at_the_same_time():
     says(
         race_downhill, "a solid ball, then a disk, a hollow ball, and last a hoop",
-        "Where all of them slip they arrive at the same time",
+        "Where all of them slip, the four bodies arrive at the same time",
     )  # fmt: skip
     times = [race_downhill.arrival(race_downhill.race(name, 10.0, 0.3)) for name in race_downhill.runners]
     assert (np.diff(times) > 0.03).all()
@@ -377,7 +377,7 @@ def test_the_shape_wins_a_race_and_where_all_slip_they_arrive_at_the_same_time()
 def test_a_ball_on_a_turntable_goes_round_at_two_sevenths_of_its_rate_and_a_hollow_one_at_two_fifths():
     says(
         turntable, "at two sevenths of the rate of the table, and a hollow one at two fifths",
-        "It drifts across",
+        "The circle drifts across",
     )  # fmt: skip
     turn = 2 * np.pi * turntable.second / turntable.rate
     for body, share in ((turntable.body, 2 / 7), (turntable.hollow, 2 / 5)):

@@ -93,9 +93,9 @@ def test_a_map_that_is_no_portrait_is_refused_before_it_is_drawn():
     axes = {"theta": np.linspace(0.1, 1.5, 5), "ell": np.linspace(0.5, 2.0, 4)}
     for data, said in (
         (sc.sweep.portrait(**axes, want="rate"), "there is none"),
-        (sc.sweep.portrait(**axes, bore=[0.0, 0.5]), "not one over {'theta': 5, 'ell': 4, 'bore': 2}"),
-        (sc.sweep.portrait(axes["theta"], 1.0), "not one over {'theta': 5}"),
-        (sc.sweep.portrait(axes["theta"][:0], axes["ell"]), "not one over {'theta': 0, 'ell': 4}"),
+        (sc.sweep.portrait(**axes, bore=[0.0, 0.5]), "its axes are {'theta': 5, 'ell': 4, 'bore': 2}"),
+        (sc.sweep.portrait(axes["theta"], 1.0), "its axes are {'theta': 5}"),
+        (sc.sweep.portrait(axes["theta"][:0], axes["ell"]), "its axes are {'theta': 0, 'ell': 4}"),
     ):
         with pytest.raises(ValueError, match="^data: expected ") as caught:
             sc.plot.portrait(data)
