@@ -63,7 +63,7 @@ fn main() -> Result<(), spincyl::Error> {
 RECIPE = "\n[profile.release.package.spincyl]\nopt-level = 2\ncodegen-units = 1\n"
 SURVEY = """
 use spincyl::contact::Friction;
-use spincyl::ensemble::{Job, MotionOutput, MotionStarts, roll};
+use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, roll};
 use spincyl::motion::{Ask, Start, roll_with};
 use spincyl::{Body, steady};
 use std::time::Instant;
@@ -81,7 +81,9 @@ fn main() -> Result<(), spincyl::Error> {
         bodies.iter_mut().zip(numbers).for_each(|(column, x)| column.push(x));
         states.iter_mut().zip(<[f64; 4]>::from(y)).for_each(|(column, x)| column.push(x));
     }
-    let starts = MotionStarts::new(bodies.each_ref().map(|x| x.as_slice()), states.each_ref().map(|x| x.as_slice()));
+    let [ell, i1, i3, fillet, theta_end] = &bodies;
+    let columns = BodyColumns::new(ell, i1, i3).with_fillet(fillet).with_theta_end(theta_end);
+    let starts = MotionStarts::new(columns, states.each_ref().map(|x| x.as_slice()));
     let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
     let mut least = [f64::INFINITY; 3];
     for _ in 0..5 {
