@@ -4,8 +4,8 @@ Compiles the wheel, and new programs in empty folders that use the crate, each f
 dependencies. Each processor time is compared with a yardstick that any machine has: a release build of nalgebra
 alone, compiled twice before the others (the smaller is taken) and once after them. For unoptimised programs the
 yardstick is such a build of nalgebra, and the program is run: 100 exact motions, and 20 with friction. With --recipe
-two release programs with a survey are compiled and run in turn: as cargo makes them, and with the profile of
-docs/rust.md. Needs cargo, and maturin for the wheel; ten minutes.
+two release programs with a survey are compiled and run in turn: as cargo makes them, and with one unit for this
+crate (docs/rust.md). Needs cargo, and maturin for the wheel; ten minutes.
 usage: python benches/compile.py [--debug | --recipe]
 """
 
