@@ -121,6 +121,14 @@ def test_a_push_that_ends_leaves_a_ball_rolling():
     np.testing.assert_allclose(m.contact_point[:, 0], [0.0, 0.5 * a, 2 * a + 2 * a * 4], atol=1e-7)
 
 
+def test_the_work_of_a_drive_alone_is_what_a_ball_gains():
+    pushes = sc.custom.Drive(lambda now: ((0.1, 0.0), (0.0, 0.0, 0.0)))
+    ball = sc.Body.ball(0.0, i1=0.4, i3=0.4)
+    start = sc.State(np.pi / 2, 0.0, 0.0, 0.0)
+    m = sc.roll(ball, start, [0.0, 2.0], losses=pushes, contact=sc.Coulomb(0.5), want="pose")
+    assert m.work_lost[-1] == pytest.approx(-0.1 * m.contact_point[-1, 0], abs=1e-9)
+
+
 def test_the_work_of_a_drive_is_what_a_body_gains():
     pushes = sc.custom.Drive(lambda now: ((0.1, 0.0), (0.0, 0.0, 0.02))) + sc.loss.AirLinear(0.01)
     coin = sc.Body.solid(0.1)

@@ -316,7 +316,7 @@ pub fn roll<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (times, start) = (times.as_slice()?, (asked.slip.unwrap_or_default(), asked.t0));
     let ask = asked.ask()?;
-    let loses = asked.couple.is_some() || !ask.losses.is_none();
+    let loses = asked.couple.is_some() || asked.drive.is_some() || !ask.losses.is_none();
     match (body, state) {
         (AnyBody::Rim(body), AnyState::Rim(state)) => {
             let body = Body::of_rows(body.into(), &asked.circles)?;
