@@ -164,7 +164,7 @@ impl<'a> Job<'a> {
 }
 
 coded! {
-    /// The method that computed a motion: the code in [`MotionOutput::method`].
+    /// The method that computed a motion: the code in `MotionOutput::method`.
     pub enum Answer {
         /// None, because the body or the state is invalid, or the step is too long.
         None = 0,
