@@ -177,11 +177,14 @@ class Moment:
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray
-        Slip along e_h and e2 of `State`, in sqrt(g R), or in m/s; zeros where the body rolls.
+        Slip along e_h and e2 of `State`, in sqrt(g R), or in m/s; zeros where the body rolls. In the air:
+        the velocity of the lowest point over the table.
     phi, psi : float
         Heading of e_h over the table and turn about the axis, in radians, as `Motion.phi` and `Motion.psi`.
     contact_point : ndarray
-        Place of the contact point on the table, in R, or in m.
+        Place of the contact point on the table, or below the lowest point in the air, in R, or in m.
+    height : float
+        Height of the lowest point, in R, or in m; 0 on the table.
     velocity : ndarray
         Velocity of the centre of mass along x and y of the table, in sqrt(g R), or in m/s.
     axes : ndarray
@@ -197,6 +200,7 @@ class Moment:
     phi: float
     psi: float
     contact_point: Floats
+    height: float
     velocity: Floats
     axes: Floats
 
@@ -218,16 +222,16 @@ class Drive(_Own):
     TypeError
         If `function` is not a Python function, or for a stone, a drift or lazy arrays.
     ValueError
-        In `sc.roll` and `sc.sweep.roll`, if a value is not finite; and for a smooth table, a slope, a table
-        that turns, a patch of contact, a restitution, a body on its face, and beside losses that hold a
-        body at rest: dry friction along the rim, drilling friction and rolling resistance.
+        In `sc.roll` and `sc.sweep.roll`, if a value is not finite; and for a smooth table, a table that
+        turns, a patch of contact, a body on its face, and beside losses that hold a body at rest: dry
+        friction along the rim, drilling friction and rolling resistance.
 
     Notes
     -----
     The drive is given as ``losses=``, alone or in a sum with laws of `sc.loss`: `Motion.work_lost` is what
     these have taken less the work of the drive, so that the energy, the heat of friction and `work_lost`
-    have a constant sum. The motion ends where a face or a second rim lands, or where the body leaves the
-    table. A value that jumps, such as a motor that is switched on, costs short steps. A pulse that is
+    have a constant sum. The motion ends where a face or a second rim lands and, without a restitution,
+    where the body leaves the table. A value that jumps, such as a motor that is switched on, costs short steps. A pulse that is
     shorter than a hundredth of sqrt(R/g) while the body is at rest may be missed: begin a new motion there.
 
     Examples
@@ -267,8 +271,9 @@ class Drive(_Own):
                 phi=float(now[7]),
                 psi=float(now[8]),
                 contact_point=length * now[9:11],
-                velocity=speed * now[11:13],
-                axes=now[13:].reshape(3, 3),
+                height=length * float(now[11]),
+                velocity=speed * now[12:14],
+                axes=now[14:].reshape(3, 3),
             )
             found = self.function(moment)
             try:

@@ -54,14 +54,17 @@ pub struct Moment {
     pub time: f64,
     /// The inclination and the angular velocity along e1, e2, e3. A body with two rims is told from the lower one.
     pub state: State,
-    /// The slip along the lean and across it, in sqrt(g R); 0 where the body rolls.
+    /// The slip along the lean and across it, in sqrt(g R); 0 where the body rolls. In the air it is the velocity of the
+    /// lowest point over the table.
     pub slip: [f64; 2],
     /// The heading phi of the lean over the table, in radians from x to y, and the turn psi about the axis.
     pub phi: f64,
     /// See `phi`.
     pub psi: f64,
-    /// The place of the contact point on the table, in R.
+    /// The place of the contact point on the table, or below the lowest point of a body in the air, in R.
     pub contact_point: Point2<f64>,
+    /// The height of the lowest point, in R; 0 on the table.
+    pub height: f64,
     /// The velocity of the centre of mass along x and y, in sqrt(g R).
     pub velocity: Vector2<f64>,
 }

@@ -43,6 +43,8 @@ pub struct MomentInSi {
     pub psi: f64,
     /// The place of the contact point in metres.
     pub contact_point: Point2<f64>,
+    /// The height of the lowest point in metres; 0 on the table.
+    pub height: f64,
     /// The velocity of the centre along x and y, in m/s.
     pub velocity: Vector2<f64>,
     /// The axes e1, e2, e3 as columns ([`Moment::axes`]).
@@ -109,6 +111,7 @@ impl<L: Fn(&MomentInSi) -> Push> DriveLaw for InSi<L> {
             phi: now.phi,
             psi: now.psi,
             contact_point: now.contact_point.map(|x| scale.metres(x)),
+            height: scale.metres(now.height),
             velocity: now.velocity.map(speed),
             axes: now.axes(),
         });

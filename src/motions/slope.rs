@@ -21,7 +21,7 @@ use crate::error::{Error, room, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
-use crate::laws::custom::{CoupleLaw, FrictionLaw};
+use crate::laws::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::scale::Scale;
 use crate::laws::state::State;
@@ -108,6 +108,24 @@ impl CoupleLaw for AtPace<'_, dyn CoupleLaw + '_> {
     }
 }
 
+impl DriveLaw for AtPace<'_, dyn DriveLaw + '_> {
+    fn push(&self, body: &Body, now: &Moment) -> Push {
+        let (pace, weight) = (self.pace, self.pace * self.pace);
+        let now = Moment {
+            time: now.time / pace,
+            state: now.state.at_pace(pace),
+            slip: now.slip.map(|u| pace * u),
+            velocity: pace * now.velocity,
+            ..*now
+        };
+        let Push { force, couple } = self.law.push(body, &now);
+        Push { force: force / weight, couple: couple / weight }
+    }
+    fn has_failed(&self) -> bool {
+        self.law.has_failed()
+    }
+}
+
 /// What a wrong value of such a law says, in units with the full gravity.
 pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
     match fault {
@@ -117,6 +135,9 @@ pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
         Error::Couple { power, expected, theta, w, normal } => {
             let (w, weight) = (w.map(|w| pace * w), pace * pace);
             Error::Couple { power: pace * weight * power, expected, theta, w, normal: weight * normal }
+        }
+        Error::OutOfRange { name: "drive", value, expected } => {
+            Error::OutOfRange { name: "drive", value: value / pace, expected }
         }
         fault => fault,
     }

@@ -122,9 +122,10 @@ impl DriveLaw for PythonLaw<'_, '_> {
     fn push(&self, _: &Body, now: &Moment) -> Push {
         let State { theta, w1, w2, w3 } = now.state;
         let ([along, across], at, v) = (now.slip, now.contact_point, now.velocity);
-        let numbers = [now.time, theta, w1, w2, w3, along, across, now.phi, now.psi, at.x, at.y, v.x, v.y];
+        let numbers = [now.time, theta, w1, w2, w3, along, across, now.phi, now.psi, at.x, at.y];
+        let numbers = numbers.into_iter().chain([now.height, v.x, v.y]);
         let rows = now.axes().transpose();
-        let numbers: Vec<f64> = numbers.iter().chain(rows.iter()).copied().collect();
+        let numbers: Vec<f64> = numbers.chain(rows.iter().copied()).collect();
         let found = || {
             let push = self.function.call1((PyArray1::from_vec(self.function.py(), numbers),))?;
             let all: Vec<f64> = push.try_iter()?.map(|x| x?.extract()).collect::<PyResult<_>>()?;

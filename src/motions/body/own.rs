@@ -12,7 +12,10 @@ use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::flow::FlowPlace;
+use crate::motions::body::fly::Flies;
+use crate::motions::body::fly::air::{AirFlight, Launch};
 use crate::motions::dry::creep::ASIDE;
+use crate::motions::walk::numbers::PHI;
 use crate::numbers::Dual;
 
 /// The laws of the user in a body's walk.
@@ -34,12 +37,36 @@ pub(crate) trait Own:
     fn drives(&self) -> bool {
         false
     }
-    /// Asks the drive for its force and couple at these numbers, with w, the slip and the velocity of the centre along e_h
-    /// and e2 there.
-    fn asks_drive<const N: usize>(&self, _: &[f64; N], _w: [f64; 3], _slip: [f64; 2], _velocity: [f64; 2]) {}
-    /// The force along e_h and e2 that the drive had where it was asked last.
-    fn pushes<const N: usize>(&self, _: &[f64; N]) -> [f64; 2] {
-        [0.0; 2]
+    /// Asks the drive for its force and couple at these numbers, with w, the slip, the velocity of the centre along e_h and
+    /// e2, and the height there.
+    fn asks_drive<const N: usize>(
+        &self,
+        _: &[f64; N],
+        _w: [f64; 3],
+        _slip: [f64; 2],
+        _velocity: [f64; 2],
+        _height: f64,
+    ) {
+    }
+    /// The force along x and y, and the couple along e1, e2, e3, that the drive had where it was asked last.
+    fn driven(&self) -> ([f64; 2], [f64; 3]) {
+        ([0.0; 2], [0.0; 3])
+    }
+    /// That force along e_h and e2.
+    #[inline(always)]
+    fn pushes<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
+        if !(Self::IS && self.drives()) {
+            return [0.0; 2];
+        }
+        let ([x, along], (sin, cos)) = (self.driven().0, y[PHI].sin_cos());
+        [x * cos + along * sin, along * cos - x * sin]
+    }
+    /// The flight of a body under these laws and those of the air.
+    fn flight<'a>(self, from: Launch<'_>, losses: Couples<f64>) -> Box<dyn Flies + 'a>
+    where
+        Self: 'a,
+    {
+        Box::new(AirFlight::<Self>::new(from, losses, self))
     }
     /// Notes whether the body is seen from its upper end from now on, while a law is told of it from its lower end.
     fn sees(&self, _over: bool) {}

@@ -18,7 +18,7 @@ use crate::motions::dry::friction::slipped;
 use crate::motions::walk::errors::doubted;
 use crate::motions::walk::hops::LONGER;
 use crate::motions::walk::numbers::{
-    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses, pull,
+    BodyNumbers, COS, HEAT, Halt, SIN, TIME, U2, UH, W1, W2, W3, loses, lost, poses,
 };
 use crate::motions::walk::slow::clear_until;
 use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, WalkStep};
@@ -59,12 +59,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     /// w' of a body that rolls, and the power of its losses, at the place and the heading of the numbers `at`.
     pub(super) fn rolling_at(&self, at: &[f64; N], y: &State) -> ([f64; 3], f64) {
         let mut losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
-        if self.of.tilt != 0.0 && self.of.turning == 0.0 {
-            losses = losses.pulled(pull(self.of.tilt, at));
-        }
-        if self.of.own.drives() {
+        if self.of.turning == 0.0 && (self.of.tilt != 0.0 || self.of.own.drives()) {
             self.of.slide.asks_drive(at);
-            losses = losses.pulled(self.of.own.pushes(at));
+            losses = losses.pulled(self.of.slide.pull(at));
         }
         let Acted { w, power, .. } =
             Lossy { rates: Contact::Rolling.rates(&self.of.body), losses }.in_state(y);

@@ -182,12 +182,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         law.patch().map(|radius| patched(&law.shape, angle, radius, self.of.slide.drills(angle, w[0], w[2])))
     }
 
-    /// Whether the motion ends where a second circle or a face lands: what a table that turns, a patch, or another law of
-    /// restitution does there has no law.
+    /// Whether the motion ends where a second circle or a face lands: what a table that turns, a patch, a drive, or another law
+    /// of restitution does there has no law.
     pub(super) fn has_one_contact(&self) -> bool {
         let other =
             self.ask.impact_law != ImpactLaw::Stronge && self.ask.restitution.is_some_and(|e| e > 0.0);
-        self.of.turning != 0.0 || self.of.slide.law.patch().is_some() || other
+        self.of.turning != 0.0 || self.of.slide.law.patch().is_some() || self.of.own.drives() || other
     }
 
     /// The impact at these numbers; None for a rolling contact without a solution.
@@ -214,10 +214,11 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     fn couple_bound(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
         if self.of.own.has_couple() {
-            let own = self.of.own.couple_at(&at.state(), force);
+            let (own, driven) = (self.of.own.couple_at(&at.state(), force), self.of.own.driven().1);
             let losses = Couples::of(&self.ask.losses, |x| x);
             return own
                 .into_iter()
+                .chain(driven)
                 .fold(self.most_couple(at, losses, sum * force), |most: f64, m| most.max(m.abs()))
                 / body.i1().min(body.i3());
         }
@@ -241,6 +242,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             let [along, across] = self.of.slide.slips(from.angle, w, [0.0; 2], Some([0.0; 2])).0.u;
             let mut at = self.at;
             at[W1..=U2].copy_from_slice(&[w[0], w[1], w[2], struck.slip[0], struck.slip[1]]);
+            self.of.slide.asks_drive(&at);
             let [pull_h, pull_2] = self.of.slide.pull(&at);
             [along - light.couples[0] * force + pull_h, across + pull_2]
         })

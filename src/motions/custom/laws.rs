@@ -15,8 +15,10 @@ use crate::laws::custom::{
     CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push, SpeedLaw, fault_of_couple, fault_of_drive,
     fault_of_friction,
 };
-use crate::laws::loss::{Couple, Kinematics, OwnCouple};
+use crate::laws::loss::{Couple, Couples, Kinematics, OwnCouple};
 use crate::laws::state::State;
+use crate::motions::body::fly::Flies;
+use crate::motions::body::fly::air::{AirFlight, DRIVEN_NUMBERS, Launch};
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::dry::friction::OwnFriction;
@@ -79,11 +81,6 @@ impl<'a> OwnLaws<'a> {
         (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
     }
 
-    /// The couple of the drive where it was asked last; 0 without one.
-    fn couple_of_drive(&self) -> [f64; 3] {
-        self.driven.get().map_or([0.0; 3], |driven| driven.couple)
-    }
-
     /// The drive at these numbers.
     fn driven_at<const N: usize>(
         &self,
@@ -92,6 +89,7 @@ impl<'a> OwnLaws<'a> {
         [w1, w2, w3]: [f64; 3],
         [u_h, u_2]: [f64; 2],
         [v_h, v_2]: [f64; 2],
+        height: f64,
     ) -> Driven {
         let (side, state) = upright_state([y[SIN], y[COS], w1, w2, w3]);
         let (state, over) = self.seen_from_lower_rim(&state);
@@ -106,6 +104,7 @@ impl<'a> OwnLaws<'a> {
             phi,
             psi: over * psi,
             contact_point: Point2::new(y[X], y[Y]),
+            height,
             velocity: Vector2::new(v_h * cos - v_2 * sin, v_h * sin + v_2 * cos),
         };
         if law.has_failed() {
@@ -212,7 +211,7 @@ impl OwnCouple<f64> for OwnLaws<'_> {
         normal: impl Fn(&Couple<f64>) -> f64,
     ) -> Option<Couple<f64>> {
         let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
-        let driven = self.couple_of_drive();
+        let driven = self.driven().1;
         let under = |found: &Couple<f64>| normal(&beside(Some(*found), driven));
         let found = self.custom.couple.map(|law| self.couple_by_secants(law, [s, c, w1, w2, w3], under));
         if self.drives() { Some(beside(found, driven)) } else { found }
@@ -226,7 +225,7 @@ impl OwnCouple<f64> for OwnLaws<'_> {
             (there, Some(found)) if there == at => found.under(normal),
             _ => self.value(law, at, normal),
         });
-        OwnCouple::<f64>::is_there(self).then(|| -own.map_or(0.0, power) - power(self.couple_of_drive()))
+        OwnCouple::<f64>::is_there(self).then(|| -own.map_or(0.0, power) - power(self.driven().1))
     }
 }
 
@@ -245,7 +244,7 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
     ) -> Option<Couple<Dual<f64>>> {
         let ((s, c), [w1, w2, w3]) = (seen.angle, seen.w);
         let (y, still) = ([s, c, w1, w2, w3], Dual::constant);
-        let driven = self.couple_of_drive().map(still);
+        let driven = self.driven().1.map(still);
         let Some(law) = self.custom.couple else {
             return self.drives().then(|| beside(None, driven));
         };
@@ -278,13 +277,30 @@ impl Own for OwnLaws<'_> {
     fn drives(&self) -> bool {
         self.custom.drive.is_some()
     }
-    fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3], slip: [f64; 2], velocity: [f64; 2]) {
-        self.driven.set(self.custom.drive.map(|law| self.driven_at(law, y, w, slip, velocity)));
+    fn asks_drive<const N: usize>(
+        &self,
+        y: &[f64; N],
+        w: [f64; 3],
+        slip: [f64; 2],
+        velocity: [f64; 2],
+        height: f64,
+    ) {
+        self.driven.set(self.custom.drive.map(|law| self.driven_at(law, y, w, slip, velocity, height)));
     }
-    fn pushes<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
-        let Some(Driven { push: Push { force, .. }, .. }) = self.driven.get() else { return [0.0; 2] };
-        let (sin, cos) = y[PHI].sin_cos();
-        [force.x * cos + force.y * sin, force.y * cos - force.x * sin]
+    fn driven(&self) -> ([f64; 2], [f64; 3]) {
+        self.driven
+            .get()
+            .map_or(([0.0; 2], [0.0; 3]), |Driven { push, couple, .. }| (push.force.into(), couple))
+    }
+    fn flight<'a>(self, from: Launch<'_>, losses: Couples<f64>) -> Box<dyn Flies + 'a>
+    where
+        Self: 'a,
+    {
+        if self.drives() {
+            Box::new(AirFlight::<Self, DRIVEN_NUMBERS>::new(from, losses, self))
+        } else {
+            Box::new(AirFlight::<Self>::new(from, losses, self))
+        }
     }
 
     fn sees(&self, over: bool) {

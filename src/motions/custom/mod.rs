@@ -19,7 +19,7 @@ use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
-use crate::laws::custom::{CoupleLaw, Custom, FrictionLaw};
+use crate::laws::custom::{CoupleLaw, Custom, DriveLaw, FrictionLaw};
 use crate::laws::loss::Law;
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::body::{self, BodyWalk, without_friction};
@@ -41,8 +41,9 @@ const CUSTOM_NUMBERS: usize = 14;
 /// of 0; a body with two rims is seen from the lower one. Along the impact of one rim the coefficient of friction is
 /// that of the current speed; where both rims land at once it is that of the slip after the impact. A motion beyond
 /// events is an error, and so is friction of the user on a patch of contact. The default tolerance of a step is 1e-10.
-/// A body with `custom.drive` rolls or slips on one rim, and the motion ends where another part lands or the body leaves
-/// the table; what it has lost is less by the work of the drive. With `custom.friction` the contact has to be Coulomb's friction, of which only the static coefficient is used. A
+/// A body with `custom.drive` rolls, slips or flies, and the motion ends where a face or a second rim lands; what it has
+/// lost is less by the work of the drive. With `custom.friction` the contact has to be Coulomb's friction, of which only the
+/// static coefficient is used. A
 /// motion whose law is so stiff that it would need too many steps ends there with
 /// [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
 /// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
@@ -64,8 +65,8 @@ const CUSTOM_NUMBERS: usize = 14;
 /// # Errors
 /// Those of [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`]; `OutOfRange` for a motion beyond
 /// events, on a table that turns, with friction of the user on a patch of contact, beside a tangential restitution, or
-/// on another contact than Coulomb's friction, and for a drive on a smooth or a tilted table, on a patch of contact, with a
-/// restitution, on a face, or beside a loss that holds a body at rest; at any time `Couple` or `Coefficient` if a law is not finite or
+/// on another contact than Coulomb's friction, and for a drive on a smooth table, on a patch of contact, on a face, or
+/// beside a loss that holds a body at rest; at any time `Couple` or `Coefficient` if a law is not finite or
 /// supplies energy.
 pub fn roll_with(
     body: &Body,
@@ -166,21 +167,23 @@ pub(crate) fn followed(
     let told = body;
     let (seen, start) = start.seen_on(body);
     let (body, start) = (&seen, &start);
+    let origin = start.time;
     let tol = check(body, start, ask, &custom)?;
     check_times_after(start.time, times)?;
     let (ask, start) = without_friction(body, ask, start);
     let ask = on_own_table(&ask, &custom);
     on_slope(&ask, &start, times, |start, times, ask, pace| {
-        let (couple, friction) =
-            (custom.couple.map(|law| AtPace { law, pace }), custom.friction.map(|law| AtPace { law, pace }));
+        let couple = custom.couple.map(|law| AtPace { law, pace });
+        let friction = custom.friction.map(|law| AtPace { law, pace });
+        let drive = custom.drive.map(|law| AtPace { law, pace });
         let custom = Custom {
             couple: couple.as_ref().map(|law| law as &dyn CoupleLaw),
             friction: friction.as_ref().map(|law| law as &dyn FrictionLaw),
-            drive: custom.drive,
+            drive: drive.as_ref().map(|law| law as &dyn DriveLaw),
         };
         let fault = Cell::new(None);
         let mut go_on = || !custom.has_failed() && go_on();
-        let (last, driven, since) = (Cell::new(([f64::NAN; 5], None)), Cell::new(None), start.time);
+        let (last, driven, since) = (Cell::new(([f64::NAN; 5], None)), Cell::new(None), pace * origin);
         let mut run = |run_tol: f64, times: &[f64]| {
             let over = Cell::new(body.view().over);
             driven.set(None);
@@ -231,7 +234,6 @@ fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
     };
     let held = ask.losses.iter().find(|(law, coefficient)| is_held_by(*law) && *coefficient != 0.0);
     match () {
-        () if !ask.is_level() => refuse("slope", ask.slope, "0 on a table that does not turn, with a drive"),
         () if ask.table == Table::Smooth => refuse("contact", f64::NAN, "friction, or rolling, with a drive"),
         () if let Some((_, coefficient)) = held => {
             refuse("losses", coefficient, "no law that holds a motion at rest, with a drive")
@@ -239,7 +241,6 @@ fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
         () if ask.table.friction().patch() > 0.0 => {
             refuse("patch", ask.table.friction().patch(), "0 with a drive")
         }
-        () if let Some(e) = ask.restitution => refuse("restitution", e, "None with a drive"),
         () if body::on_face(body, &start.state) => {
             refuse("theta", start.state.theta, "a body that stands on a rim, with a drive")
         }

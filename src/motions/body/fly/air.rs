@@ -4,6 +4,7 @@
 //! y = (change of the quaternion q of the body's axes, w along them, lost, time)
 //! q' = q (0, w)/2,   I1 wx' = (I1 - I3) wy wz + mx,   I1 wy' = (I3 - I1) wx wz + my,   I3 wz' = mz
 //! z' = z x w         the vertical in the body's axes, for the power series at the start
+//! (x, y)'' = F       of a drive alone: the centre beside its parabola, four numbers more
 //! ```
 //! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation act
 //! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points, and no
@@ -16,22 +17,26 @@
 
 use super::lands::{AngleSeries, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
-use crate::laws::body::{Body, MOST_CIRCLES, Shape};
+use crate::laws::body::{Body, MOST_CIRCLES, Rim, Shape};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::laws::state::State;
 use crate::methods::flow::{Exhausted, Flow, FlowPlace, Spent, Steps, TakenStep};
 use crate::methods::rk8;
 use crate::motions::body::own::Own;
 use crate::motions::walk::hops::Leaves;
+use crate::motions::walk::numbers::{COS, PHI, SIN, TIME};
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Dual, Real, TERMS};
 use core::cell::RefCell;
 use core::f64::consts::{FRAC_PI_2, TAU};
 
+/// Count of the numbers, and of those of a body that a force drives, which moves its centre beside the parabola.
 const NUMBERS: usize = 9;
+pub(crate) const DRIVEN_NUMBERS: usize = NUMBERS + 4;
 const AIR_LOST: usize = 7;
 const AIR_TIME: usize = 8;
-type AirNumbers = [f64; NUMBERS];
+/// The first of the velocities of the centre beside its parabola, after its place.
+const FASTER: usize = NUMBERS + 2;
 /// Length of the first step, in units of the time in which the body turns by one radian.
 const FIRST_STEP: f64 = 0.05;
 /// Angle by which the fastest of rotation and nutation turns in the longest step.
@@ -45,6 +50,8 @@ const FAR_TURN: f64 = 1.0;
 const SHORT_PART: f64 = 1e-9;
 /// Number of terms of a polynomial through the values of a couple of the user.
 const FITTED: usize = 7;
+/// Count of the numbers of a body at a time, with its pose.
+const BODY_NUMBERS: usize = PHI + 4;
 /// Number of coordinates of the vertical and of w.
 const MOVING: usize = 6;
 /// Below this size of the cosine of theta its sine follows from it.
@@ -52,13 +59,25 @@ const LEVEL_COSINE: f64 = 0.5;
 
 /// A step of a flight against the air: the numbers at its start, and phi and psi there.
 #[derive(Debug, Clone, Copy)]
-struct AirStep {
-    y: AirNumbers,
+struct AirStep<const N: usize> {
+    y: [f64; N],
     angles: [f64; 2],
 }
 
+/// The start of a flight at the time `now` of a motion, on a slope with the tangent `tilt`. Steps have this tolerance, and the
+/// first one is `longer` by this factor.
+#[derive(Clone, Copy)]
+pub(crate) struct Launch<'a> {
+    pub body: &'a Body,
+    pub from: &'a Aloft,
+    pub now: f64,
+    pub tol: f64,
+    pub longer: f64,
+    pub tilt: f64,
+}
+
 /// A flight against the air.
-pub(crate) struct AirFlight<G = ()> {
+pub(crate) struct AirFlight<G = (), const N: usize = NUMBERS> {
     shape: Shape<f64>,
     from: Aloft,
     /// The quaternion at the start.
@@ -67,7 +86,10 @@ pub(crate) struct AirFlight<G = ()> {
     free: Flight,
     losses: Couples<f64>,
     own: G,
-    steps: RefCell<Vec<AirStep>>,
+    /// Both rims, if laws of the user see a body from the lower one.
+    rims: Option<[Rim<f64>; 2]>,
+    now: f64,
+    steps: RefCell<Vec<AirStep<N>>>,
     tol: f64,
     first: f64,
     spent: Spent,
@@ -75,8 +97,8 @@ pub(crate) struct AirFlight<G = ()> {
 
 /// The flow of such a flight, of which these rims may land.
 #[derive(Clone, Copy)]
-struct AirFlow<'a, G> {
-    of: &'a AirFlight<G>,
+struct AirFlow<'a, G, const N: usize> {
+    of: &'a AirFlight<G, N>,
     rims: [bool; MOST_CIRCLES],
 }
 
@@ -95,7 +117,7 @@ enum AirHalt {
 type Clear = [f64; MOST_CIRCLES];
 
 /// The angular velocity along the axes of the body.
-fn body_rates(y: &AirNumbers) -> [f64; 3] {
+fn body_rates<const N: usize>(y: &[f64; N]) -> [f64; 3] {
     [y[4], y[5], y[6]]
 }
 
@@ -114,22 +136,19 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
     ]
 }
 
-impl<G: Own> AirFlight<G> {
-    /// A flight against the air of these losses and of `own` laws. The first step is `longer` by this factor.
-    pub fn new(
-        body: &Body,
-        from: &Aloft,
-        (losses, own): (Couples<f64>, G),
-        (tol, longer): (f64, f64),
-        tilt: f64,
-    ) -> Self {
+impl<G: Own, const N: usize> AirFlight<G, N> {
+    /// A flight against the air of these losses and of `own` laws.
+    pub fn new(from: Launch<'_>, losses: Couples<f64>, own: G) -> Self {
+        let Launch { body, from, now, tol, longer, tilt } = from;
         let (free, shape) = (Flight::new(body, from, tilt), &body.shape());
         let from = &free.from;
         // The axes of the body are e1, e2 and e3 at the start, which lean toward x.
         let half = 0.5 * from.angle.0.atan2(from.angle.1);
         let (sin, cos) = if half < FRAC_PI_2 { half.sin_cos() } else { (1.0, 0.0) };
         let [w1, w2, w3] = from.w;
-        let y = [0.0, 0.0, 0.0, 0.0, w1, w2, w3, 0.0, 0.0];
+        let mut y = [0.0; N];
+        y[4..7].copy_from_slice(&[w1, w2, w3]);
+        let rims = (body.has_two_rims() && !body.has_row()).then(|| body.rims());
         let steps = RefCell::new(vec![AirStep { y, angles: [0.0; 2] }]);
         let fastest = w1.abs().max(w2.abs()).max(w3.abs());
         let (first, spent) = (
@@ -137,11 +156,11 @@ impl<G: Own> AirFlight<G> {
             Spent { evaluations: 0, erred: 0.0, patience: 0, exhausted: None },
         );
         let facing = [cos, 0.0, -sin, 0.0];
-        Self { shape: *shape, from: *from, facing, free, losses, own, steps, tol, first, spent }
+        Self { shape: *shape, from: *from, facing, free, losses, own, rims, now, steps, tol, first, spent }
     }
 
     /// The couple of the air along the axes of the body, with these numbers.
-    fn couple(&self, y: &AirNumbers) -> [f64; 3] {
+    fn couple(&self, y: &[f64; N]) -> [f64; 3] {
         let w = body_rates(y);
         let m = self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free;
         if !self.own.has_couple() {
@@ -152,7 +171,7 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The state with these numbers, and the sine and cosine of psi in it.
-    fn state(&self, y: &AirNumbers) -> (State, [f64; 2]) {
+    fn state(&self, y: &[f64; N]) -> (State, [f64; 2]) {
         // The vertical is s e1 + c e3.
         let [first, second, axis] = axes(self.quaternion(y));
         let (up, s) = ([first[2], second[2]], first[2].hypot(second[2]));
@@ -163,18 +182,60 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The couple of the user along the axes of the body. No normal force acts.
-    fn own_couple(&self, y: &AirNumbers) -> [f64; 3] {
+    fn own_couple(&self, y: &[f64; N]) -> [f64; 3] {
         let (state, [sin, cos]) = self.state(y);
-        let [m1, m2, m3] = self.own.couple_at(&state, 0.0);
+        let (own, driven) = (self.own.couple_at(&state, 0.0), self.driven(y));
+        let [m1, m2, m3]: [f64; 3] = core::array::from_fn(|i| own[i] + driven[i]);
         [cos * m1 - sin * m2, sin * m1 + cos * m2, m3]
     }
 
+    /// Asks the drive at these numbers. Returns its couple along e1, e2, e3.
+    fn driven(&self, y: &[f64; N]) -> [f64; 3] {
+        if N == NUMBERS {
+            return [0.0; 3];
+        }
+        let last = self.steps.borrow().last().map_or([0.0; 2], |step| step.angles);
+        let here = self.aloft(y, self.angles(y, last));
+        let lower = self.rims.filter(|_| here.angle.1 < 0.0).map(|rims| here.on_other_rim(&rims));
+        let at = lower.unwrap_or(here);
+        let (mut all, ([x, z], (sin, cos))) = ([0.0; BODY_NUMBERS], (self.velocity(y), at.pose[0].sin_cos()));
+        (all[SIN], all[COS], all[TIME]) = (at.angle.0, at.angle.1, self.now + y[AIR_TIME]);
+        all[PHI..PHI + 4].copy_from_slice(&at.pose);
+        self.own.asks_drive(&all, at.w, at.slip, [x * cos + z * sin, z * cos - x * sin], at.height);
+        let [m1, m2, m3] = self.own.driven().1;
+        if lower.is_some() { [m1, -m2, -m3] } else { [m1, m2, m3] }
+    }
+
+    /// The velocity of the centre along x and y.
+    fn velocity(&self, y: &[f64; N]) -> [f64; 2] {
+        let ([forth, aside, _], (sin, cos)) = (self.free.velocity, self.from.pose[0].sin_cos());
+        let falls = self.free.tilt * y[AIR_TIME];
+        [forth * cos - aside * sin + falls + y[FASTER], forth * sin + aside * cos + y[FASTER + 1]]
+    }
+
+    /// The body with these numbers, and with these phi and psi since the start.
+    fn aloft(&self, y: &[f64; N], [phi, psi]: [f64; 2]) -> Aloft {
+        let (sin, cos) = psi.sin_cos();
+        let [along, aside, w3] = body_rates(y);
+        let w = [along * cos - aside * sin, along * sin + aside * cos, w3];
+        let [x, across, cosine] = self.leans(y).axis;
+        let sine = if cosine.abs() < LEVEL_COSINE {
+            ((1.0 - cosine) * (1.0 + cosine)).sqrt()
+        } else {
+            x.hypot(across)
+        };
+        let beside = if N == NUMBERS { [0.0; 4] } else { core::array::from_fn(|i| y[NUMBERS + i]) };
+        let [height, _] = self.rim(y, 0);
+        let at = self.free.placed_beside(y[AIR_TIME], (sine, cosine), w, [phi, psi], beside);
+        Aloft { height, ..at }
+    }
+
     /// The quaternion of the body's axes.
-    fn quaternion(&self, y: &AirNumbers) -> [f64; 4] {
+    fn quaternion(&self, y: &[f64; N]) -> [f64; 4] {
         core::array::from_fn(|i| self.facing[i] + y[i])
     }
 
-    fn leans(&self, y: &AirNumbers) -> Leaning {
+    fn leans(&self, y: &[f64; N]) -> Leaning {
         let ((s, c), [a0, b0, c0, d0], [da, db, dc, dd]) =
             (self.from.angle, self.facing, [y[0], y[1], y[2], y[3]]);
         let [a, b, c1, d] = self.quaternion(y);
@@ -187,7 +248,7 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The height of the lowest point of a rim, and its rate.
-    fn rim(&self, y: &AirNumbers, k: usize) -> [f64; 2] {
+    fn rim(&self, y: &[f64; N], k: usize) -> [f64; 2] {
         let (Leaning { axis, change }, (s0, c0), t) = (self.leans(y), self.from.angle, y[AIR_TIME]);
         let (rim, began) = (self.free.rim_at(k, axis[2]), self.free.rim_at(k, c0));
         let [first, second, _] = axes(self.quaternion(y));
@@ -206,18 +267,18 @@ impl<G: Own> AirFlight<G> {
     }
 
     /// The flow of these rims.
-    fn flow(&self, rims: [bool; MOST_CIRCLES]) -> AirFlow<'_, G> {
+    fn flow(&self, rims: [bool; MOST_CIRCLES]) -> AirFlow<'_, G, N> {
         AirFlow { of: self, rims }
     }
 
     /// The numbers after a part of a step.
-    fn part(&self, step: &AirStep, h: f64) -> AirNumbers {
+    fn part(&self, step: &AirStep<N>, h: f64) -> [f64; N] {
         let flow = self.flow([false; MOST_CIRCLES]);
         flow.part(&flow.place(step.y), h)
     }
 
     /// phi and psi since the start, from the numbers, within half a turn of those before.
-    fn angles(&self, y: &AirNumbers, [phi, psi]: [f64; 2]) -> [f64; 2] {
+    fn angles(&self, y: &[f64; N], [phi, psi]: [f64; 2]) -> [f64; 2] {
         let [first, _, axis] = axes(self.quaternion(y));
         let turned = (-axis[1]).atan2(-axis[0]);
         let phi = turned + TAU * ((phi - turned) / TAU).round();
@@ -231,7 +292,7 @@ impl<G: Own> AirFlight<G> {
 
     /// phi and psi at `y`, at the end of the part [from, to] of a step. Close to a pole phi turns by up to half a turn
     /// in a moment, so that parts in which it turns far are divided.
-    fn turned(&self, step: &AirStep, [from, to]: [f64; 2], before: [f64; 2], y: &AirNumbers) -> [f64; 2] {
+    fn turned(&self, step: &AirStep<N>, [from, to]: [f64; 2], before: [f64; 2], y: &[f64; N]) -> [f64; 2] {
         let angles = self.angles(y, before);
         let middle = 0.5 * (from + to);
         if (angles[0] - before[0]).abs() < FAR_TURN || middle - from <= SHORT_PART * self.first {
@@ -242,7 +303,7 @@ impl<G: Own> AirFlight<G> {
     }
 }
 
-impl<G: Own> AirFlight<G> {
+impl<G: Own, const N: usize> AirFlight<G, N> {
     /// The coefficients of the couple of the user in powers of the time, up to `near`: a polynomial through its values.
     fn fitted(&self, near: f64) -> [[f64; FITTED]; 3] {
         let mut all = [[0.0; FITTED]; 3];
@@ -357,7 +418,7 @@ impl<G: Own> AirFlight<G> {
     }
 }
 
-impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
+impl<G: Own, const A: usize> Flow<MOST_CIRCLES> for AirFlow<'_, G, A> {
     type Halt = AirHalt;
     const TIME: usize = AIR_TIME;
     const OVER: AirHalt = AirHalt::Time;
@@ -368,12 +429,12 @@ impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
     const CLOSELY: bool = true;
 
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64 {
-        self.of.state(&core::array::from_fn(|i| y[i])).0.theta
+        self.of.state(&core::array::from_fn::<f64, A, _>(|i| y[i])).0.theta
     }
 
     #[inline(always)]
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
-        let y: AirNumbers = core::array::from_fn(|i| y[i]);
+        let y: [f64; A] = core::array::from_fn(|i| y[i]);
         let (Shape { i1, i3, .. }, [a, b, c, d]) = (self.of.shape, self.of.quaternion(&y));
         let [x, z, w] = body_rates(&y);
         let [m1, m2, m3] = self.of.couple(&y);
@@ -388,10 +449,15 @@ impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
             -(m1 * x + m2 * z + m3 * w),
             1.0,
         ]);
+        if A > NUMBERS {
+            let ([f_x, f_y], [v_x, v_y]) = (self.of.own.driven().0, self.of.velocity(&y));
+            all[NUMBERS..A].copy_from_slice(&[y[FASTER], y[FASTER + 1], f_x, f_y]);
+            all[AIR_LOST] -= f_x * v_x + f_y * v_y;
+        }
     }
 
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; MOST_CIRCLES] {
-        let y = core::array::from_fn(|i| place.y[i]);
+        let y: [f64; A] = core::array::from_fn(|i| place.y[i]);
         core::array::from_fn(|i| {
             let [value, slope] = if self.rims[i] { self.of.rim(&y, i) } else { [1.0, 0.0] };
             Dual { value, slope }
@@ -399,7 +465,7 @@ impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
     }
 
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
-        self.of.rim(&core::array::from_fn(|i| y[i]), i)[0]
+        self.of.rim(&core::array::from_fn::<f64, A, _>(|i| y[i]), i)[0]
     }
 
     fn end(&self, i: usize) -> AirHalt {
@@ -433,20 +499,20 @@ impl<G: Own> Flow<MOST_CIRCLES> for AirFlow<'_, G> {
         if !self.of.own.has_couple() {
             return None;
         }
-        let State { theta, w1, w2, w3 } = self.of.state(&core::array::from_fn(|i| place.y[i])).0;
+        let State { theta, w1, w2, w3 } = self.of.state(&core::array::from_fn::<f64, A, _>(|i| place.y[i])).0;
         let at = [theta.sin(), theta.cos(), w1, w2, w3];
         self.of.own.finds_fault(&[], Some((at, 0.0))).then_some((AirHalt::Fault, place.y))
     }
 
     fn passed<const N: usize>(&self, (from, ..): TakenStep<'_, N>, _: f64, to: &FlowPlace<N>) {
-        let y: AirNumbers = core::array::from_fn(|i| to.y[i]);
+        let y: [f64; A] = core::array::from_fn(|i| to.y[i]);
         let Some(step) = self.of.steps.borrow().last().copied() else { return };
         let angles = self.of.turned(&step, [0.0, y[AIR_TIME] - from.y[AIR_TIME]], step.angles, &y);
         self.of.steps.borrow_mut().push(AirStep { y, angles });
     }
 }
 
-impl<G: Own> Flies for AirFlight<G> {
+impl<G: Own, const N: usize> Flies for AirFlight<G, N> {
     fn lands(
         &mut self,
         leaves: [Leaves; MOST_CIRCLES],
@@ -497,18 +563,8 @@ impl<G: Own> Flies for AirFlight<G> {
         let step = &steps[steps.partition_point(|step| step.y[AIR_TIME] <= t).max(1) - 1];
         let part = (t - step.y[AIR_TIME]).max(0.0);
         let y = if part > 0.0 { self.part(step, part) } else { step.y };
-        let [phi, psi] = self.turned(step, [0.0, part], step.angles, &y);
-        let (sin, cos) = psi.sin_cos();
-        let [along, aside, w3] = body_rates(&y);
-        let w = [along * cos - aside * sin, along * sin + aside * cos, w3];
-        let [x, across, cosine] = self.leans(&y).axis;
-        let sine = if cosine.abs() < LEVEL_COSINE {
-            ((1.0 - cosine) * (1.0 + cosine)).sqrt()
-        } else {
-            x.hypot(across)
-        };
-        let [height, _] = self.rim(&y, 0);
-        (Aloft { height, ..self.free.placed(t, (sine, cosine), w, [phi, psi]) }, y[AIR_LOST])
+        let angles = self.turned(step, [0.0, part], step.angles, &y);
+        (self.aloft(&y, angles), y[AIR_LOST])
     }
 
     fn free(&self) -> &Flight {

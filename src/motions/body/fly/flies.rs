@@ -6,7 +6,7 @@
 //! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
 //! factor. [`strike`](crate::motions::body::strike) has the impacts.
 
-use super::air::AirFlight;
+use super::air::Launch;
 use super::lands::TOUCH;
 use crate::laws::body::{Body, Rim, View, border_at, tilt};
 use crate::laws::contact::{Force, Table};
@@ -145,6 +145,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
         let law = &self.of.slide.law;
         let (shape, angle) = (&law.shape, from.angle);
+        self.of.slide.asks_drive(&self.at);
         let at = self.of.slide.slips(angle, from.w, [0.0; 2], Some([0.0; 2])).0;
         let (lever, [w1, w2, w3]) = (shape.rim.lever(angle), from.w);
         let square = (shape.rim.slope(angle) * w2 * w2).abs();
@@ -215,17 +216,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         let body = &self.of.body;
         let (from, now) = (self.aloft(), self.at[TIME]);
         let Takeoff { leaves, .. } = self.hops.takeoff;
-        let mut course: Box<dyn Flies> = match self.of.own.in_air(&self.ask.losses) {
+        let mut course: Box<dyn Flies + '_> = match self.of.own.in_air(&self.ask.losses) {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
                 let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
-                Box::new(AirFlight::new(
-                    body,
-                    &from,
-                    (losses, self.of.own),
-                    (self.of.slide.tol, longer),
-                    self.of.tilt,
-                ))
+                let (tol, tilt) = (self.of.slide.tol, self.of.tilt);
+                self.of.own.flight(Launch { body, from: &from, now, tol, longer, tilt }, losses)
             }
             None => Box::new(Flight::new(body, &from, self.of.tilt)),
         };

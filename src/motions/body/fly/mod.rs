@@ -297,7 +297,19 @@ impl Flight {
 
     /// The body at a time since the start, from known orientation and rotation; `turned` are the angles by which phi
     /// and psi have grown.
-    fn placed(&self, t: f64, angle: (f64, f64), [w1, w2, w3]: [f64; 3], turned: [f64; 2]) -> Aloft {
+    fn placed(&self, t: f64, angle: (f64, f64), w: [f64; 3], turned: [f64; 2]) -> Aloft {
+        self.placed_beside(t, angle, w, turned, [0.0; 4])
+    }
+
+    /// The same body where a force has moved its centre by x and y, and made it faster along both, beside its parabola.
+    fn placed_beside(
+        &self,
+        t: f64,
+        angle: (f64, f64),
+        [w1, w2, w3]: [f64; 3],
+        turned: [f64; 2],
+        [x, y, faster_x, faster_y]: [f64; 4],
+    ) -> Aloft {
         let (rim, from) = (self.shape.rim, &self.from);
         let (phi, psi) = (from.pose[0] + turned[0], from.pose[1] + turned[1]);
         let [forth, aside, up] = self.velocity;
@@ -306,11 +318,13 @@ impl Flight {
         let (sin0, cos0) = from.pose[0].sin_cos();
         let (begin, lever) = (rim.lever(from.angle), rim.lever(angle));
         let (moved_x, moved_y) = ((forth * cos0 - aside * sin0) * t, (forth * sin0 + aside * cos0) * t);
-        let (moved_x, v_h, v_2) = if self.tilt == 0.0 {
-            (moved_x, v_h, v_2)
+        let falls = self.tilt * t;
+        let ((sin, cos), faster) = (phi.sin_cos(), [falls + faster_x, faster_y]);
+        let (moved_x, moved_y) = (moved_x + 0.5 * falls * t + x, moved_y + y);
+        let (v_h, v_2) = if faster == [0.0; 2] {
+            (v_h, v_2)
         } else {
-            let ((sin, cos), faster) = (phi.sin_cos(), self.tilt * t);
-            (moved_x + 0.5 * faster * t, v_h + faster * cos, v_2 - faster * sin)
+            (v_h + faster[0] * cos + faster[1] * sin, v_2 - faster[0] * sin + faster[1] * cos)
         };
         let mut flown = Aloft {
             angle,

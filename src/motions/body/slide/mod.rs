@@ -125,7 +125,7 @@ impl<L: Own> Slide<L> {
     pub fn asks_drive<const N: usize>(&self, y: &[f64; N]) {
         if L::IS && self.law.varies().drives() {
             let (angle, w, u) = (y.angle(), y.w(), y.slip());
-            self.law.varies().asks_drive(y, w, u, self.law.centre(angle, w, u));
+            self.law.varies().asks_drive(y, w, u, self.law.centre(angle, w, u), 0.0);
         }
     }
 

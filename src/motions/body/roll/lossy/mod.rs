@@ -141,7 +141,7 @@ impl<G: Own> LossyFlow<G> {
     #[inline(always)]
     fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3]) {
         if self.is_driven() {
-            self.law.losses.given.asks_drive(y, w, [0.0; 2], self.centre(y.angle(), w));
+            self.law.losses.given.asks_drive(y, w, [0.0; 2], self.centre(y.angle(), w), 0.0);
         }
     }
 
