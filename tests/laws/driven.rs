@@ -306,6 +306,60 @@ fn a_table_that_is_told_from_another_direction_has_the_same_motion() {
 }
 
 #[test]
+fn a_driven_motion_goes_on_from_any_of_its_moments_also_in_the_air() {
+    let mut r = wander(31_117);
+    let mut flying = 0;
+    let wind = |_: &Body, now: &Moment| {
+        let (sin, cos) = (0.7 * now.time).sin_cos();
+        let force = Vector2::new(0.2 * cos, 0.1 + 0.1 * now.height) - 0.1 * now.velocity;
+        Push::new(force, now.axes().transpose() * Vector3::new(0.1 * sin, 0.05, 0.06 * cos))
+    };
+    for _ in 0..200 {
+        let (body, start, table) = any(&mut r);
+        let ask = Ask::on(table).with_pose(true).with_slope(0.2 * r());
+        let (start, ask) = tossed(&mut r, start, ask);
+        let times: Vec<f64> = (0..=12).map(|i| 0.25 * f64::from(i)).collect();
+        let Ok(m) = driven(&body, start, &times, &ask, &wind) else { continue };
+        let (Some(path), Some(poses)) = (m.path.as_ref(), m.poses.as_ref()) else { continue };
+        let struck = path.impacts.first().map_or(f64::INFINITY, |hit| hit.time);
+        let later =
+            |i: &usize| times[*i] > struck && path.aloft.get(*i).is_some_and(|aloft| aloft.height > 0.0);
+        let Some(from) = (0..m.states.len()).find(later) else { continue };
+        let (aloft, pose) = (path.aloft[from], poses[from]);
+        let again = Start::from(m.states[from])
+            .with_slip(path.slip[from])
+            .with_aloft(Some(aloft))
+            .with_time(times[from])
+            .with_heading(pose.phi.rest)
+            .with_place([pose.contact_point.x, pose.contact_point.y]);
+        let of = driven(&body, again, &times[from..], &ask, &wind).unwrap();
+        assert_eq!(m.ending(), of.ending());
+        for (i, (a, b)) in m.states[from..].iter().zip(&of.states).enumerate() {
+            let off = states_apart(a, b);
+            assert!(off < 10.0 * (m.error + of.error) + 1e-9, "{i} {off:e} {body:?} {start:?} {table:?}");
+        }
+        flying += 1;
+    }
+    assert!(flying > 30, "{flying}");
+}
+
+#[test]
+fn a_force_tips_a_can_that_lies_on_its_side_as_a_slope_does() {
+    // It tips about the rim that carries it, which is half a radius from its centre and a radius below.
+    let (can, rolls) = (Body::solid(0.5).unwrap(), Ask::on(Table::Rolling { mu: f64::INFINITY }));
+    let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
+    let ending = |f: f64| {
+        let pull = move |_: &Body, _: &Moment| Push::new(Vector2::new(f, 0.0), NO_COUPLE);
+        driven(&can, start, &[0.0, 0.01], &rolls, &pull).unwrap()
+    };
+    assert_eq!(ending(0.49).ending(), Ending::Side);
+    let m = ending(0.6);
+    assert_eq!(m.ending(), Ending::Done);
+    let turns = 0.1 / (can.i1() + 1.25) * 0.01;
+    assert!((m.states[1].w2 / turns - 1.0).abs() < 1e-3, "{:?} {turns}", m.states[1]);
+}
+
+#[test]
 fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end() {
     let mut r = wander(12_004);
     let mut compared = 0;
