@@ -346,7 +346,7 @@ fn a_driven_motion_goes_on_from_any_of_its_moments_also_in_the_air() {
 #[test]
 fn a_force_tips_a_can_that_lies_on_its_side_as_a_slope_does() {
     // It tips about the rim that carries it, which is half a radius from its centre and a radius below.
-    let (can, rolls) = (Body::solid(0.5).unwrap(), Ask::on(Table::Rolling { mu: f64::INFINITY }));
+    let (can, rolls) = (Body::solid(0.5).unwrap(), Ask::on(Friction::coulomb(2.0)));
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
     let ending = |f: f64| {
         let pull = move |_: &Body, _: &Moment| Push::new(Vector2::new(f, 0.0), NO_COUPLE);
