@@ -38,9 +38,14 @@
 //! All layers may use `error`, and `python` uses all of them. Rolling and smooth share `contact::reduced`:
 //! J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
-// Without the modules for many bodies, without lanes, or with only one width of lanes, some items are not used.
+// Without the modules for many bodies or for Python, without lanes, or with only one width of lanes, some items are not used.
 #![cfg_attr(
-    any(not(feature = "many"), not(lanes_of_eight), all(target_arch = "x86_64", not(lanes_of_sixteen))),
+    any(
+        not(feature = "many"),
+        not(feature = "python"),
+        not(lanes_of_eight),
+        all(target_arch = "x86_64", not(lanes_of_sixteen))
+    ),
     allow(dead_code, unused_imports, unused_variables)
 )]
 

@@ -152,6 +152,19 @@ def test_the_work_of_a_drive_is_what_a_body_gains():
     assert repr(pushes) == "custom.Drive(<lambda>) + AirLinear(0.01)"
 
 
+def test_a_sweep_of_driven_bodies_has_the_motions_of_roll_one_by_one():
+    pushes = sc.custom.Drive(lambda now: ((0.1 * np.cos(now.time), 0.1), now.axes.T @ [0.0, 0.05, 0.03]))
+    coin, theta = sc.Body.solid(0.1), np.linspace(0.4, 1.3, 6)
+    options = {"losses": pushes + sc.loss.AirLinear(0.01), "contact": sc.Coulomb(0.3), "restitution": 0.4}
+    y = coin.steady(theta).kicked(0.1)
+    starts = sc.State(y.theta, y.w1, y.w2, y.w3, height=0.2)
+    many = sc.sweep.roll(coin, starts, 3.0, **options)
+    for i in range(theta.size):
+        one = sc.roll(coin, sc.State(*(x[i] for x in (y.theta, y.w1, y.w2, y.w3)), height=0.2), 3.0, **options)
+        assert int(many.ending[i]) == int(one.ending)
+        np.testing.assert_allclose(many.states[i], one.states[-1], atol=1e-12)
+
+
 def zero(now):
     return (0.0, 0.0), (0.0, 0.0, 0.0)
 
