@@ -475,11 +475,15 @@ def test_the_mass_of_a_tube_is_its_density_times_its_volume(size):
 @pytest.mark.parametrize(
     ("given", "error", "why"),
     [
-        ({"density": "wood"}, ValueError, "^density = 'wood': expected 'oak' or 'fir', or a number in kg/m"),
         (
-            {"density": "beech"},
+            {"density": "wood"},
             ValueError,
-            "^density = 'beech': expected 'oak' or 'fir', or a number in kg/m",
+            "^density = 'wood': expected 'beech' or 'birch' or .* or 'pine', or",
+        ),
+        (
+            {"density": "walnut"},
+            ValueError,
+            "^density = 'walnut': expected 'beech' or 'birch' or .* or 'pine', or a number in kg/m",
         ),
         ({"density": "stel"}, ValueError, "^density = 'stel': expected 'steel'"),
         ({"density": "mithril"}, ValueError, "^density = 'mithril': expected one of 'steel', "),
@@ -499,7 +503,7 @@ def test_a_density_that_is_none_is_refused_by_its_name(given, error, why):
 
 def test_a_body_of_known_volume_has_the_mass_of_its_density():
     egg = sc.Ellipsoid.egg("22mm", "28mm").in_metres(density="oak")
-    assert egg.scale.mass == pytest.approx(640 * 4 / 3 * math.pi * 0.022**2 * 0.028, rel=1e-12)
+    assert egg.scale.mass == pytest.approx(706 * 4 / 3 * math.pi * 0.022**2 * 0.028, rel=1e-12)
     ball = sc.Body.ball(0.0, 0.4, 0.4).in_metres(radius="28.6mm", density="1.7g/cm3")
     assert ball.scale.mass == pytest.approx(1700 * 4 / 3 * math.pi * 0.0286**3, rel=1e-12)
     rod = sc.Body.solid(3.0).in_metres(radius="5mm", density="steel", gravity=1.62)
@@ -518,6 +522,32 @@ def test_a_drill_turns_in_rpm():
     tube = sc.measured(outer_diameter="16mm", wall="1mm", length="95mm")
     given = [sc.State.from_si(1.3, w, 0.0, 0.0, scale=tube).w1 for w in ("60rpm", 2 * math.pi)]
     assert given[0] == pytest.approx(given[1], rel=1e-15)
+
+
+def test_a_wood_at_twelve_percent_moisture_weighs_its_dry_mass_and_its_water():
+    from spincyl._input.materials import MATERIALS
+
+    woods = {
+        name: float(sort.split("G = ")[1][:4]) for name, (_, sort) in MATERIALS.items() if "G = " in sort
+    }
+    assert {"beech", "birch", "maple", "oak", "fir"} <= set(woods)
+    for name, gravity in woods.items():
+        assert "12 % moisture" in MATERIALS[name][1]
+        wet = sc.measured(outer_diameter="22mm", length="66mm", density=name).scale.mass
+        dry = sc.measured(outer_diameter="22mm", length="66mm", density=1000 * gravity).scale.mass
+        assert wet / dry - 1 == pytest.approx(0.12, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"), [("Beach", "beech"), ("polycarbonat", "polycarbonate"), ("abs", "ABS")]
+)
+def test_a_material_is_found_in_any_case_and_a_misspelt_one_is_proposed(typed, meant):
+    if typed.lower() == meant.lower():
+        known = sc.measured(outer_diameter="22mm", length="66mm", density=meant)
+        assert sc.measured(outer_diameter="22mm", length="66mm", density=typed) == known
+        return
+    with pytest.raises(ValueError, match=f"^density = '{typed}': expected .*'{meant}'"):
+        sc.measured(outer_diameter="22mm", length="66mm", density=typed)
 
 
 def test_a_part_of_a_material_has_its_density_and_the_page_lists_each_material():
