@@ -46,8 +46,9 @@ _SAME = {
     "teflon": "PTFE",
 }
 _KNOWN = {name.lower(): name for name in MATERIALS} | _SAME
-_WOODS = "wood", "walnut", "cherry", "spruce", "larch", "teak"
-_SORTS = dict.fromkeys(_WOODS, ("beech", "birch", "maple", "oak", "ash", "fir", "pine"))
+_WOODS = "beech", "birch", "maple", "oak", "ash", "fir", "pine"
+_OTHERS = "wood", "walnut", "cherry", "spruce", "larch", "teak"
+_SORTS: dict[str, tuple[str, ...]] = dict.fromkeys(_OTHERS, _WOODS)
 _SORTS |= {
     "plastic": ("acrylic", "polypropylene", "polystyrene", "PET", "PVC", "polycarbonate", "ABS", "PLA")
 }
