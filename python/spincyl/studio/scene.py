@@ -28,6 +28,7 @@ from spincyl._input.numbers import (
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State
+from spincyl._upward import function_of_method
 from spincyl.studio.mjcf import mjcf
 from spincyl.studio.scene_again import motion_of
 from spincyl.studio.scene_data import VERSION, bounds, inclination, scene_data
@@ -219,23 +220,36 @@ class Scene:
         return paths
 
     def compare(
-        self, time: Reals, position: Reals, orientation: Reals, *, scalar_first: bool = False
+        self,
+        time: Reals,
+        position: Reals = None,
+        orientation: Reals = None,
+        *,
+        scalar_first: bool = False,
     ) -> Deviation:
         """Compare the trajectory of a contact engine with the known motion at the times of the engine.
 
         Parameters
         ----------
-        time : array_like, (n,)
+        time : array_like, (n,), or table
             Times of the engine since the initial state, in seconds, in ascending order. The known motion is
             computed at these times, also after the last time of the scene. Times after an event that ends the
             motion, such as the landing of the face, are left out.
-        position : array_like, (n, 3)
+
+            Or, without `position` and `orientation`, a table of the trajectory: the path of a text file, as
+            for `data.read_table`; a DataFrame, a dict or a structured array of NumPy. It has the columns t;
+            x, y, z; and qx, qy, qz, qw, in any order, beside others. They may also be called "time";
+            "pos_x", "position_x", "centre_x", "com_x"; "quat_x", "orientation_x" and so on, whatever the
+            capitals and the signs between the words. Units in brackets are converted, as in "x (mm)" and
+            "t (ms)". A dict or an array may also have "position" (n, 3) and "orientation" (n, 4).
+        position : array_like, (n, 3), optional
             Positions of the centre of mass in the engine, in metres.
-        orientation : array_like, (n, 4)
+        orientation : array_like, (n, 4), optional
             Unit quaternions x, y, z, w in the engine. They rotate vectors from the axes of the body to the
             axes of the laboratory; their sign does not matter.
         scalar_first : bool
-            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake.
+            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake. Not for a table with a column for
+            each component.
 
         Returns
         -------
@@ -245,7 +259,10 @@ class Scene:
         Raises
         ------
         ValueError, TypeError
-            If an argument is invalid; the message names it.
+            If an argument is invalid; the message names it. If a column is missing; the message lists those
+            of the table.
+        OSError
+            If the file of a table cannot be read.
 
         Warns
         -----
@@ -255,6 +272,12 @@ class Scene:
             milliseconds. If the first position is more than 30 times as far from the known position as that
             is from the origin; the positions may be in millimetres.
         """
+        if position is None and orientation is None:
+            time, position, orientation, named = function_of_method("Scene.compare")(time)
+            if named and flag("scalar_first", scalar_first):
+                raise ValueError("scalar_first: leave it out; the columns of the table are named")
+        elif position is None or orientation is None:
+            raise TypeError("position, orientation: give both of them, or neither beside a table")
         t = _checked_array("time", si("time", time, "second"), ())
         x = _checked_array("position", position, (t.size, 3))
         q = _checked_array("orientation", orientation, (t.size, 4), scalar_first)
