@@ -173,7 +173,7 @@ class Outlines:
         pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms. With
         both, a moment may also be a text such as "3.2e-6 kg m^2".
         """
-        scale = None if diameter is None or mass is None else Scale(cls._half(diameter), mass)
+        scale = None if diameter is None or mass is None else Scale(_half(diameter), mass)
         moments = [moment_as_number(name, x, scale) for name, x in (("i1", i1), ("i3", i3))]
         given = [reals(name, x) for name, x in zip(("offset", "i1", "i3"), (offset, *moments), strict=True)]
         if is_scalar(*given):
@@ -195,9 +195,9 @@ class Outlines:
             if mass is not None:
                 raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
             return self
-        return self.in_metres(mass, radius=self._half(diameter))
+        return self.in_metres(mass, radius=_half(diameter))
 
-    @staticmethod
-    def _half(diameter: float) -> float:
-        """The radius in metres, of a diameter."""
-        return in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres") / 2
+
+def _half(diameter: float) -> float:
+    """The radius in metres, of a diameter."""
+    return in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres") / 2

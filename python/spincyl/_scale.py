@@ -184,8 +184,7 @@ def moment_in_natural(name: str, value: Reals, scale: Scale | None) -> float:
 
 def moment_as_number(name: str, value: Reals, scale: Scale | None) -> Reals:
     """A moment of inertia in M R^2; only a text with a unit or a quantity is converted."""
-    has_unit = isinstance(value, str) or is_quantity(value)
-    return moment_in_natural(name, value, scale) if has_unit else value
+    return moment_in_natural(name, value, scale) if isinstance(value, str) or is_quantity(value) else value
 
 
 def refuse_other_scale(told: str, of: Scale | bool, scale: Scale | None) -> None:

@@ -109,10 +109,8 @@ class Sized:
         try:
             return self._with_scale(scale, **moments)
         except ValueError as e:
-            if not moments:
-                raise
-            one = scale.mass * scale.radius**2
-            raise ValueError(f"{e}; M R^2 is {one:.4g} kg m^2 of this body") from None
+            one = f"; M R^2 is {scale.mass * scale.radius**2:.4g} kg m^2 of this body" if moments else ""
+            raise ValueError(f"{e}{one}") from None
 
     def _volume(self) -> float:
         """Volume in natural units; ValueError if it is not known exactly."""
