@@ -11,10 +11,20 @@ from spincyl.lab._columns import METRES, SECONDS, Columns, columns_of, picked
 from spincyl.lab._tracker import read_table
 
 _TIMES = ("t", "time", "seconds", "simulation_time")
-#: Names of the components of positions and of quaternions, before the axis; the first alone for `x`, `qx`.
-_PLACES = ("", "p", "pos", "position", "centre", "center", "com", "pose_position")
-_TURNS = ("q", "quat", "quaternion", "orientation", "rotation", "pose_orientation")
-_NUMBER = {"": 1.0, "1": 1.0}
+
+
+class _Vector(NamedTuple):
+    """How a vector may be called in a table."""
+
+    words: tuple[str, ...]  #: names before the axis; "" is the axis alone
+    axes: str  #: a letter for each component
+    units: dict[str, float]
+
+
+_PLACE = _Vector(("", "p", "pos", "position", "centre", "center", "com", "pose_position"), "xyz", METRES)
+_TURN = _Vector(
+    ("q", "quat", "quaternion", "orientation", "rotation", "pose_orientation"), "xyzw", {"": 1.0, "1": 1.0}
+)
 
 
 class Trajectory(NamedTuple):
@@ -39,17 +49,15 @@ def trajectory(table: Any) -> Trajectory:
         if (other := alike.setdefault(_plain(name), name)) != name:
             raise ValueError(f"{told}: {other!r} and {name!r} are the same column")
     time = picked(told, columns, _there(alike, _TIMES), SECONDS)
-    place, _ = _components(told, columns, alike, (_PLACES, "xyz", METRES))
-    turn, named = _components(told, columns, alike, (_TURNS, "xyzw", _NUMBER))
+    place, _ = _components(told, columns, alike, _PLACE)
+    turn, named = _components(told, columns, alike, _TURN)
     if not len(time.values) == len(place) == len(turn):
         lengths = f"{len(time.values)} times, {len(place)} positions and {len(turn)} quaternions"
         raise ValueError(f"{told}: expected columns of equal length, not {lengths}")
     return Trajectory(time.in_si, place, turn, named)
 
 
-def _components(
-    told: str, columns: Columns, alike: dict[str, str], of: tuple[tuple[str, ...], str, dict[str, float]]
-) -> tuple[Floats, bool]:
+def _components(told: str, columns: Columns, alike: dict[str, str], of: _Vector) -> tuple[Floats, bool]:
     """The components of vectors in columns of their own, or one column with all of them; and which it is."""
     words, axes, units = of
     whole = [alike[_plain(word)] for word in words if _plain(word) in alike and word]

@@ -17,11 +17,9 @@ from spincyl._input.numbers import (
     Floats,
     Reals,
     flag,
-    floats,
     instance_of,
     json_value,
     number,
-    reals,
     si,
     warn,
 )
@@ -31,14 +29,14 @@ from spincyl._state import State
 from spincyl._upward import function_of_method
 from spincyl.studio.mjcf import mjcf
 from spincyl.studio.scene_again import motion_of
-from spincyl.studio.scene_data import VERSION, bounds, inclination, scene_data
+from spincyl.studio.scene_data import VERSION, bounds, checked_array, inclination, scene_data
 from spincyl.studio.shape import rotations
 from spincyl.studio.urdf import urdf
 
 #: An answer may differ from itself by this much where its error is below rounding, in R or radians.
 _ROUNDING = 1e-13
-#: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
-_UNIT, _DOUBTED = 1e-3, 0.1
+#: Turn from the initial orientation, radians, above which there is a warning.
+_DOUBTED = 0.1
 #: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
 #: from the origin, above which there is a warning.
 _LONG, _FARTHEST = 10.0, 30.0
@@ -278,9 +276,9 @@ class Scene:
                 raise ValueError("scalar_first: leave it out; the columns of the table are named")
         elif position is None or orientation is None:
             raise TypeError("position, orientation: give both of them, or neither beside a table")
-        t = _checked_array("time", si("time", time, "second"), ())
-        x = _checked_array("position", position, (t.size, 3))
-        q = _checked_array("orientation", orientation, (t.size, 4), scalar_first)
+        t = checked_array("time", si("time", time, "second"), ())
+        x = checked_array("position", position, (t.size, 3))
+        q = checked_array("orientation", orientation, (t.size, 4), scalar_first)
         if t[0] < 0 or (np.diff(t) < 0).any():
             raise ValueError("time: expected seconds since the initial state, in ascending order")
         last = self.scale.seconds(float(self.motion.t[-1]) - self._began)
@@ -345,8 +343,8 @@ class Scene:
         ValueError, TypeError
             If an argument is invalid; the message names it.
         """
-        q = _checked_array("orientation", orientation, (4,), scalar_first)
-        w = _checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
+        q = checked_array("orientation", orientation, (4,), scalar_first)
+        w = checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
         pressed = number("normal_force", normal_force) / self.scale.newtons(1.0)
         laws = () if self.motion.losses is None else self.motion.losses.laws
         slips = flag("slips", slips)
@@ -445,25 +443,3 @@ def _lines(value: Any, begin: str = "\n ") -> str:
         return json.dumps(value, allow_nan=False)
     entries = (f"{begin}{json.dumps(key)}: {_lines(x, begin + ' ')}" for key, x in value.items())
     return "{" + ",".join(entries) + begin[:-1] + "}"
-
-
-def _checked_array(
-    name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None
-) -> Floats:
-    """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
-    found = floats(reals(name, value))
-    fits = found.shape == shape if shape else found.ndim == 1
-    if not fits:
-        raise ValueError(f"{name}: expected finite numbers of shape {shape or '(n,)'}, not {found.shape}")
-    if not found.size:
-        raise ValueError(f"{name}: expected at least one number, not an empty array")
-    bad = np.argwhere(~np.isfinite(found))
-    if bad.size:
-        place = f"value {bad[0, 0]} is" if found.ndim == 1 else f"row {bad[0, 0]} has"
-        what = "NaN" if np.isnan(found[tuple(bad[0])]) else "an infinite number"
-        raise ValueError(f"{name}: {place} {what}; expected finite numbers")
-    if scalar_first is None:
-        return found
-    if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
-        raise ValueError(f"{name}: expected unit quaternions")
-    return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found
