@@ -228,7 +228,7 @@ class Motion(Outputs, Showing):
         end = float(self._asked.times[-1] if self.event is None else self.event.time)
         if not self.error > LARGE_ERROR:
             return end if self.error <= LARGE_ERROR else np.nan
-        t0, begun = self._asked.t0, [] if self._phases is None else self._phases[:, 0]
+        t0, begun = self._asked.t0, np.empty(0) if self._phases is None else self._phases[:, 0]
         sign = 1.0 if end >= t0 else -1.0
         spread = t0 + (end - t0) * np.r_[0.0, np.geomspace(1e-9, 1.0, 2048)]
         marks = sign * np.unique(sign * np.r_[spread, begun])
