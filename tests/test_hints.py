@@ -300,11 +300,33 @@ def test_a_body_that_hops_until_its_motion_is_unknown_warns_once():
     (one,) = said
     assert one.category is sc.ErrorWarning and m.status.name == "DONE"
     assert f"is {m.natural.error:.2g}, in natural units: impacts multiply errors" in str(one.message)
-    # as the message says, an earlier end has a smaller error, here without a warning
+    # as the message says, it is known up to an earlier time, here without a warning
+    assert "known_until of the motion is the time" in str(one.message) and 0.05 < m.known_until < 0.2
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        early = sc.roll(coin, start, np.linspace(0, 0.05, 101), **how)
+        early = sc.roll(coin, start, m.known_until, **how)
     assert early.natural.error < 0.1 and len(early.impacts) > 20
+    assert early.known_until == early.t[-1], "it is known up to its end"
+    assert m.at(np.linspace(0, m.known_until + 0.1, 101)).natural.error > 0.1
+    assert m.known_until == pytest.approx(coin.scale.seconds(m.natural.known_until), rel=1e-15)
+
+
+@pytest.mark.parametrize("end", [1e15, -1e15])
+@pytest.mark.filterwarnings("ignore::spincyl.ErrorWarning")
+def test_a_motion_by_first_integrals_is_known_up_to_a_time_in_either_direction(end):
+    tube = sc.Body.tube(6.0, bore=0.8)
+    m = sc.roll(tube, tube.steady(1.4).kicked(0.05), end)
+    until = m.known_until
+    assert m.error > 1 and 0 < until / end < 0.1
+    assert m.at(until).error < 0.1 < m.at(30 * until).error
+    known = sc.roll(tube, tube.steady(1.4).kicked(0.05), [0.0, np.sign(end)])
+    assert known.known_until == np.sign(end)
+
+
+def test_a_motion_that_ends_early_is_known_up_to_its_event():
+    body = sc.Body.solid(1.0)
+    m = sc.roll(body, sc.State(0.3, 0.0, 0.0, 0.0), 2.0)
+    assert m.event is not None and m.known_until == m.event.time < 2.0
 
 
 def test_names_of_laws_of_restitution_lead_to_what_exists():

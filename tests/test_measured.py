@@ -475,11 +475,15 @@ def test_the_mass_of_a_tube_is_its_density_times_its_volume(size):
 @pytest.mark.parametrize(
     ("given", "error", "why"),
     [
-        ({"density": "wood"}, ValueError, "^density = 'wood': expected 'oak' or 'fir', or a number in kg/m"),
         (
-            {"density": "beech"},
+            {"density": "wood"},
             ValueError,
-            "^density = 'beech': expected 'oak' or 'fir', or a number in kg/m",
+            "^density = 'wood': expected 'beech' or 'birch' or .* or 'pine', or",
+        ),
+        (
+            {"density": "walnut"},
+            ValueError,
+            "^density = 'walnut': expected 'beech' or 'birch' or .* or 'pine', or a number in kg/m",
         ),
         ({"density": "stel"}, ValueError, "^density = 'stel': expected 'steel'"),
         ({"density": "mithril"}, ValueError, "^density = 'mithril': expected one of 'steel', "),
@@ -499,7 +503,7 @@ def test_a_density_that_is_none_is_refused_by_its_name(given, error, why):
 
 def test_a_body_of_known_volume_has_the_mass_of_its_density():
     egg = sc.Ellipsoid.egg("22mm", "28mm").in_metres(density="oak")
-    assert egg.scale.mass == pytest.approx(640 * 4 / 3 * math.pi * 0.022**2 * 0.028, rel=1e-12)
+    assert egg.scale.mass == pytest.approx(706 * 4 / 3 * math.pi * 0.022**2 * 0.028, rel=1e-12)
     ball = sc.Body.ball(0.0, 0.4, 0.4).in_metres(radius="28.6mm", density="1.7g/cm3")
     assert ball.scale.mass == pytest.approx(1700 * 4 / 3 * math.pi * 0.0286**3, rel=1e-12)
     rod = sc.Body.solid(3.0).in_metres(radius="5mm", density="steel", gravity=1.62)
@@ -512,12 +516,109 @@ def test_a_body_of_known_volume_has_the_mass_of_its_density():
         egg.in_metres(0.1, density="oak")
 
 
+def test_a_solid_cylinder_by_its_moments_in_kg_m2_precesses_as_the_cylinder_does():
+    mass, radius, half = 0.384, 0.033, 0.0594
+    i1, i3 = mass * (radius**2 / 4 + half**2 / 3), mass * radius**2 / 2
+    known = sc.measured(outer_diameter=2 * radius, length=2 * half, mass=mass)
+    other = sc.Body(half / radius, 0.5, 0.9)  # of other moments
+    for wrong in (other, sc.Body.tube(half / radius, bore=0.9)):
+        body = wrong.in_metres(mass, radius=radius, i1=i1, i3=i3)
+        assert body.hertz(1.2) == pytest.approx(known.hertz(1.2), rel=1e-14)
+        assert math.isnan(body.bore) and body.scale == known.scale
+    texts = f"{1e7 * i1} g cm^2", f"{1e9 * i3} g*mm^2"
+    for body in (
+        other.in_metres(mass, radius=radius, i1=texts[0], i3=texts[1]),
+        sc.Body(half / radius, *texts, scale=sc.Scale(radius, mass)),
+        known.in_metres(i1=f"{i1} kg m^2"),
+    ):
+        assert body.hertz(1.2) == pytest.approx(known.hertz(1.2), rel=1e-14)
+    assert other.in_metres(mass, radius=radius, i3=i3).i1 == 0.5
+    again = eval(repr(other.in_metres(mass, radius=radius, i3=i3)), {**vars(sc), "nan": math.nan})
+    assert again == other.in_metres(mass, radius=radius, i3=i3)
+
+
+def test_a_tippe_top_and_a_cup_take_their_moments_in_kg_m2():
+    top = sc.Body.ball(-0.2, "1.2e-6 kg m^2", 0.4, diameter="30mm", mass="12g")
+    assert top == sc.Body.ball(-0.2, 1.2e-6 / 0.012 / 0.015**2, 0.4, diameter="30mm", mass="12g")
+    cup = sc.Body.frustum("25mm", "35mm", "90mm", wall=0.0).in_metres(
+        "7g", i1="8.5e-6 kg m^2", i3="6.6e-6 kg m^2"
+    )
+    assert cup.i3 == pytest.approx(6.6e-6 / 0.007 / 0.035**2) and len(cup.circles) == 2
+    assert cup.scale.radius == 0.035
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "why"),
+    [
+        (
+            lambda of: of(0.1, i3="3e-5 kg m^2"),
+            ValueError,
+            r"^i3 = .*<= 2 i1.*; M R\^2 is 1e-05 kg m\^2 of this body",
+        ),
+        (lambda of: of(0.1, i1=1e-9), ValueError, "^i1 = .*; M R.2 is 1e-05"),
+        (
+            lambda of: of(0.1, i3="3e-5 kg m^3"),
+            ValueError,
+            "^i3: '3e-5 kg m.3': expected a moment of inertia, .* kgm2",
+        ),
+        (lambda of: of(i3=3e-6), TypeError, "^i3 = 3e-06: a moment in kg m.2 needs radius and mass"),
+        (lambda of: sc.Body(1.0, "3 kg m^2", 0.5), TypeError, "^i1 = '3 kg m.2': .* needs radius and mass"),
+        (
+            lambda of: sc.Body.ball(0.1, 0.4, "3 kg m^2", diameter=0.1),
+            TypeError,
+            "^i3 = .* needs radius and mass",
+        ),
+        (
+            lambda of: sc.Ellipsoid.egg(1.0, 2.0).in_metres(1.0, radius=1.0, i1=0.1),
+            TypeError,
+            "^i1, i3: only for bodies",
+        ),
+        (lambda of: of(0.1, I3=3e-6), TypeError, "'I3': expected mass, .*, i1, i3"),
+    ],
+)
+def test_a_moment_in_kg_m2_that_no_body_has_is_refused_by_its_name(make, error, why):
+    with pytest.raises(error, match=why):
+        make(lambda *mass, **of: sc.Body.solid(1.0).in_metres(*mass, radius=0.01, **of))
+
+
+def test_moments_in_g_mm2_without_their_unit_warn():
+    with pytest.warns(UserWarning, match=r"i1: 4e\+07 M R\^2, .*: is it in kg m\^2") as said:
+        sc.Body.solid(1.0).in_metres(0.1, radius=0.01, i1=400.0, i3="4000 g mm^2")
+    assert len(said) == 1
+
+
 def test_a_drill_turns_in_rpm():
     egg = sc.Ellipsoid.egg("22mm", "28mm").in_metres(density="oak")
     assert egg.spinning(hertz="1500rpm") == egg.spinning(hertz=25.0)
     tube = sc.measured(outer_diameter="16mm", wall="1mm", length="95mm")
     given = [sc.State.from_si(1.3, w, 0.0, 0.0, scale=tube).w1 for w in ("60rpm", 2 * math.pi)]
     assert given[0] == pytest.approx(given[1], rel=1e-15)
+
+
+def test_a_wood_at_twelve_percent_moisture_weighs_its_dry_mass_and_its_water():
+    from spincyl._input.materials import MATERIALS
+
+    woods = {
+        name: float(sort.split("G = ")[1][:4]) for name, (_, sort) in MATERIALS.items() if "G = " in sort
+    }
+    assert {"beech", "birch", "maple", "oak", "fir"} <= set(woods)
+    for name, gravity in woods.items():
+        assert "12 % moisture" in MATERIALS[name][1]
+        wet = sc.measured(outer_diameter="22mm", length="66mm", density=name).scale.mass
+        dry = sc.measured(outer_diameter="22mm", length="66mm", density=1000 * gravity).scale.mass
+        assert wet / dry - 1 == pytest.approx(0.12, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"), [("Beach", "beech"), ("polycarbonat", "polycarbonate"), ("abs", "ABS")]
+)
+def test_a_material_is_found_in_any_case_and_a_misspelt_one_is_proposed(typed, meant):
+    if typed.lower() == meant.lower():
+        known = sc.measured(outer_diameter="22mm", length="66mm", density=meant)
+        assert sc.measured(outer_diameter="22mm", length="66mm", density=typed) == known
+        return
+    with pytest.raises(ValueError, match=f"^density = '{typed}': expected .*'{meant}'"):
+        sc.measured(outer_diameter="22mm", length="66mm", density=typed)
 
 
 def test_a_part_of_a_material_has_its_density_and_the_page_lists_each_material():

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pandas as pd
 import pytest
 from engine_scenes import (
     ALOFT,
@@ -278,6 +279,95 @@ def test_what_lies_beyond_the_end_of_the_answer_is_left_out_and_what_is_no_traje
         tube.compare([0.0, 0.01], x, np.roll(q, 1, axis=1))
     with pytest.raises(ValueError, match="^orientation"):
         tube.couple([0, 0, 0, 2.0], [0, 0, 1.0], 1.0)
+
+
+def columns(t, x, q, names="t x y z qx qy qz qw", lengths=1.0):
+    """A trajectory as a dict of columns."""
+    return dict(zip(names.split(), (t, *(x * lengths).T, *q.T), strict=True))
+
+
+def test_a_table_has_the_deviation_of_its_columns_in_any_order_and_by_any_usual_names(tmp_path):
+    scene = scene_of("tube")
+    t = np.linspace(0, scene.data["expected"]["time"][-1], 7)
+    x, q = answer(scene, t)
+    x = x + np.array([0.0, 3e-4, 4e-4])
+    known = scene.compare(t, x, q)
+    wide = np.zeros(7, [("time", "f8"), ("Position", "f8", 3), ("orientation", "f8", 4), ("slip", "f8", 2)])
+    wide["time"], wide["Position"], wide["orientation"] = t, x, q
+    narrow = np.array([*zip(t, *x.T, *q.T, strict=True)], [(name, "f8") for name in columns(t, x, q)])
+    ros = "Time pose.position.x pose.position.y pose.position.z" + "".join(
+        f" pose.orientation.{w}" for w in "xyzw"
+    )
+    frame = pd.DataFrame(columns(t, x, q)).set_index("t")
+    for table in (
+        columns(t, x, q),
+        dict(reversed(columns(t, x, q).items())) | {"w1": t, "contact_x": t, "body": ["a"] * 7},
+        columns(t, x, q, ros),
+        {"Time": t, "com": x, "quat": q},
+        wide,
+        narrow,
+        frame,
+        frame.reset_index().sample(frac=1, axis=1, random_state=1),
+    ):
+        found = scene.compare(table)
+        assert (found.position == known.position).all() and (found.angle == known.angle).all()
+    turned = scene.compare({"t": t, "position": x, "quaternion": np.roll(q, 1, axis=1)}, scalar_first=True)
+    assert (turned.angle == known.angle).all()
+    pipe = sc.measured(outer_diameter="16mm", length="95mm", mass="20g")
+    own = sc.roll(pipe, pipe.steady(1.4), t, want="pose")
+    assert sc.scene(own).compare(own.to_dataframe()).position.max() == 0
+
+
+def test_a_text_file_in_milliseconds_and_millimetres_says_so_in_its_names(tmp_path):
+    scene = scene_of("tube")
+    t = np.linspace(0, scene.data["expected"]["time"][-1], 7)
+    x, q = answer(scene, t)
+    head = "Time [ms];X (mm);Y (mm);Z (mm);quat_x;quat_y;quat_z;quat_w;energy (J)"
+    rows = np.column_stack([1e3 * t, 1e3 * x, q, t])
+    lines = [";".join(repr(float(cell)).replace(".", ",") for cell in row) for row in rows]
+    path = tmp_path / "engine.csv"
+    path.write_text("\n".join([head, *lines]))
+    for given in (path, str(path)):
+        found = scene.compare(given)
+        assert found.time == pytest.approx(t, rel=1e-14) and found.position.max() < 1e-15 * 1e3
+        assert found.angle.max() < 1e-14
+    path.write_text("\n".join([head.replace("quat_w", "q_real"), *lines]))
+    with pytest.raises(
+        ValueError, match=r"^time: the table '.*engine.csv': expected a column 'qw' .*'q_real'"
+    ):
+        scene.compare(path)
+
+
+def test_a_table_that_is_no_trajectory_is_refused_with_the_columns_that_it_has():
+    scene = scene_of("tube")
+    t = np.array([0.0, 0.01])
+    x, q = answer(scene, t)
+    table = columns(t, x, q)
+    for wrong, error, said in (
+        (
+            {k: v for k, v in table.items() if k != "z"},
+            ValueError,
+            "^time: .* 'z' .or 'p_z', .*; there are 't', 'x', 'y', 'qx'",
+        ),
+        ({"T": t} | table, ValueError, "^time: the table: 'T' and 't' are the same column"),
+        (table | {"qw": q[:1, 3]}, ValueError, "^time: .* equal length; qw has"),
+        (table | {"t": t[:1]}, ValueError, "^time: .* equal length, not 1 times, 2 positions"),
+        (
+            {"t (h)": t} | columns(t, x, q, "a x y z qx qy qz qw"),
+            ValueError,
+            "^time: .* unit 'h' of t: expected one of s",
+        ),
+        (table | {"x": [0.0, np.nan]}, ValueError, "^position: row 1 has NaN"),
+        (table | {"qx": q[:, 0] + 2}, ValueError, "^orientation: expected unit quaternions"),
+        (t, TypeError, "^time: expected a dict of columns, not ndarray; .* give position= and orientation="),
+        (3.0, TypeError, "^time: expected a dict of columns, not float"),
+    ):
+        with pytest.raises(error, match=said):
+            scene.compare(wrong)
+    with pytest.raises(ValueError, match="^scalar_first: leave it out; the columns"):
+        scene.compare(table, scalar_first=True)
+    with pytest.raises(TypeError, match="^position, orientation: give both"):
+        scene.compare(t, x)
 
 
 def test_an_engine_in_milliseconds_or_millimetres_is_doubted_and_one_that_falls_is_not():

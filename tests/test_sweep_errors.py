@@ -1,5 +1,7 @@
 """Sweeps without estimated errors have the same results as sweeps with them."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -80,3 +82,35 @@ def test_a_sweep_warns_of_large_errors_as_a_single_motion_does():
     with pytest.warns(sc.ErrorWarning, match="^1 of 2 motions have estimated errors above 0.1"):
         found = sc.sweep.roll(body, starts, 400.0, tol=0.01, **how)
     assert alone.error > 0.1 and found.error[0] > 0.1
+
+
+COIN = sc.measured(outer_diameter="24mm", length="2mm", mass="8g")
+HOPS = {"contact": sc.Coulomb(0.3), "restitution": 0.3}
+
+
+def test_a_sweep_of_bodies_that_hop_warns_once_of_those_that_are_no_longer_known():
+    starts = sc.flicked(COIN, hertz=8, launch=np.array([0.2, 1.3, 0.3, 1.3]))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        found = sc.sweep.roll(COIN, starts, 10.0, **HOPS)
+    natural = sc.roll(
+        COIN.natural, sc.flicked(COIN, hertz=8, launch=1.3), 10.0 / COIN.scale.seconds(1.0), **HOPS
+    )
+    (one,) = said
+    assert one.category is sc.ErrorWarning
+    worst = f"up to {natural.error:.2g}: motions 1, 3; `error` of the result has them all. Impacts multiply"
+    assert f"2 of 4 motions have estimated errors above 0.1, in natural units, {worst}" in str(one.message)
+    assert (np.flatnonzero(found.error > found.error[0] * 1e3) == [1, 3]).all()
+
+
+def test_of_many_motions_that_are_not_known_the_first_five_are_told():
+    starts = sc.flicked(COIN, hertz=8, launch=np.full(7, 1.3))
+    with pytest.warns(sc.ErrorWarning, match="^7 of 7 .*: motions 0, 1, 2, 3, 4, [.]{3}; `error`"):
+        sc.sweep.roll(COIN, starts, 10.0, **HOPS)
+
+
+def test_a_sweep_of_bodies_that_hop_and_are_known_does_not_warn():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = sc.sweep.roll(COIN, sc.flicked(COIN, hertz=8, launch=np.array([0.2, 1.3])), 0.05, **HOPS)
+    assert (found.error < 0.1 / COIN.scale.seconds(1.0)).all()  # in rad/s

@@ -146,6 +146,7 @@ HOMES.update(
         "LossFit.plot": ("spincyl.lab._figures", "losses"),
         "Motion.plot": ("spincyl.studio.plot._motions", "motion"),
         "Motion.sound": ("spincyl.studio.sound", "sound"),
+        "Scene.compare": ("spincyl.lab._trajectory", "trajectory"),
         "Motion.film": ("spincyl.studio.pages.view", "film_of"),
         "loss.typical": ("spincyl.lab._typical", "typical"),
         "card": ("spincyl.studio.cards", "card"),

@@ -30,7 +30,7 @@ from spincyl._input.reprs import is_lazy
 from spincyl._laws import Laws
 from spincyl._outlines import Outlines
 from spincyl._repr import repr_of_body
-from spincyl._scale import Scale
+from spincyl._scale import Scale, moment_as_number
 from spincyl._sized import Sized
 from spincyl._state import State, state_without_checks
 from spincyl._upward import function_of_method
@@ -57,7 +57,8 @@ class Body(Laws, Outlines, Sized, HintingFamily):
         sharp edges this is half the length. For a ball (`fillet=1`) it is the height above the centre of the
         ball, and must exceed -1.
     i1, i3 : array_like
-        Transverse and axial moments of inertia about the centre of mass, in M R^2, with 0 < i3 <= 2 i1.
+        Transverse and axial moments of inertia about the centre of mass, in M R^2, with 0 < i3 <= 2 i1. With
+        a `scale` that has a mass also a text such as "3.2e-6 kg m^2", or a pint quantity.
     bore : array_like, optional
         Ratio of inner to outer radius of a uniform tube; NaN for any other body. `solid`, `tube` and
         `from_metres` set the bore and compute the moments from it.
@@ -105,6 +106,8 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     def __post_init__(self) -> None:
         self._check_scale()
+        for name in ("i1", "i3"):
+            object.__setattr__(self, name, moment_as_number(name, getattr(self, name), self.scale))
         if self.rims is not None:
             set_rims(self)
             return
@@ -383,11 +386,11 @@ class Body(Laws, Outlines, Sized, HintingFamily):
             return "pair of balls", (2 + 2 * self.ell, 2.0), 8 / 3 * np.pi
         return "ball", (2.0, 2.0), 4 / 3 * np.pi
 
-    def _with_scale(self, scale: Scale | None) -> Self:
-        found = replace(self, scale=scale)
+    def _with_scale(self, scale: Scale | None, **moments: float) -> Self:
+        found = replace(self, scale=scale, **moments, **({"bore": np.nan} if moments else {}))
         object.__setattr__(found, "_parts", self._parts)
         object.__setattr__(found, "_unit", self._unit)
-        if scale is not None and self._measured.get("outer_diameter") == 2 * scale.radius:
+        if not moments and scale is not None and self._measured.get("outer_diameter") == 2 * scale.radius:
             usual = {"mass": scale._is_weighed, "gravity": scale.gravity != Scale.gravity}
             shown = self._measured | {"mass": scale.mass, "gravity": scale.gravity}
             shown = {name: x for name, x in shown.items() if usual.get(name, True)}

@@ -99,13 +99,7 @@ class Coulomb(_Law):
 
     @classmethod
     def from_si(
-        cls,
-        mu: Reals,
-        static: Reals = None,
-        *,
-        patch: Reals,
-        face: Face = "ring",
-        scale: "Scale | Body",
+        cls, mu: Reals, static: Reals = None, *, patch: Reals, face: Face = "ring", scale: "Scale | Body"
     ) -> Self:
         """Coulomb friction for a measured body: `patch` is in metres, or a text such as "0.3mm".
 

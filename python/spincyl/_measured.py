@@ -52,7 +52,8 @@ def measured(
     density : float or str, optional
         Density in kg/m^3, in place of `mass`, or the name of a material: "steel", "stainless steel", "cast
         iron", "aluminium", "brass", "copper", "glass", "acrylic", "polypropylene", "polystyrene", "PET",
-        "PVC", "PTFE", "oak" or "fir". The mass is then that of the tube with its fillets.
+        "PVC", "PTFE", "polycarbonate", "ABS", "PLA", "beech", "birch", "maple", "oak", "ash", "fir" or
+        "pine". The mass is then that of the tube with its fillets.
     fillet : float
         Radius of the rounded outer edges, in metres.
     gravity : float
@@ -82,7 +83,8 @@ def measured(
     Notes
     -----
     Densities of materials: Callister, Rethwisch, Fundamentals of Materials Science and Engineering, 3rd ed.
-    (Wiley, 2008), Table B.1; docs/api.md lists them. Those of alloys, plastics and wood vary by some percent.
+    (Wiley, 2008), Table B.1, and for woods the Wood Handbook (FPL-GTR-190, 2010), Table 5-3a, at 12 %
+    moisture; docs/api.md lists them. Those of alloys and plastics vary by some percent, those of wood by ten.
 
     See Also
     --------

@@ -1,5 +1,6 @@
 """The motion of a body from an initial state."""
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from spincyl import _core
-from spincyl._asked import Asked, Want, options_for_core, times_of, union_of_wants
+from spincyl._asked import NO_OUTPUTS, Asked, Want, options_for_core, times_of, union_of_wants
 from spincyl._body import Body
 from spincyl._circles import circles_at
 from spincyl._contact import AnyContact, Coulomb
-from spincyl._ending import Ending, Event, FixedStep, RestsOn
+from spincyl._ending import LARGE_ERROR, Ending, Event, FixedStep, RestsOn
 from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, Reals, si
 from spincyl._labelled import AXES, Components, frame, labelled
@@ -212,6 +213,31 @@ class Motion(Outputs, Showing):
     def message(self) -> str:
         """How the motion ended, how it was computed, and its estimated errors, in words."""
         return message(self)
+
+    @property
+    def known_until(self) -> float:
+        """Time until which the motion is known, in the unit of `t`.
+
+        Up to this time the estimated error is at most 0.1 in natural units, beyond which there is an
+        `ErrorWarning`: impacts multiply errors, and a body that hops forgets how it began. This is the end of
+        the motion if `error` is that small, and NaN if `error` is. Else it is found to 1 % of the time
+        since the initial state, or to a phase or an impact, by computing a dozen shorter motions.
+        """
+        if self._natural is not None and self.scale is not None:
+            return float(self.scale.seconds(self._natural.known_until))
+        end = float(self._asked.times[-1] if self.event is None else self.event.time)
+        if not self.error > LARGE_ERROR:
+            return end if self.error <= LARGE_ERROR else np.nan
+        t0, begun = self._asked.t0, np.empty(0) if self._phases is None else self._phases[:, 0]
+        sign = 1.0 if end >= t0 else -1.0
+        spread = t0 + (end - t0) * np.r_[0.0, np.geomspace(1e-9, 1.0, 2048)]
+        marks = sign * np.unique(sign * np.r_[spread, begun])
+
+        def unknown(count: int) -> bool:
+            asked = self._asked._replace(times=marks[:count], want=NO_OUTPUTS)
+            return not self._again(asked).error <= LARGE_ERROR
+
+        return float(marks[bisect_left(range(2, marks.size), True, key=unknown)])
 
     @property
     def phi(self) -> Floats:

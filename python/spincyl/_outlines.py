@@ -17,7 +17,7 @@ from spincyl._input.numbers import (
     number,
     reals,
 )
-from spincyl._scale import Scale
+from spincyl._scale import Scale, moment_as_number
 
 
 class Outlines:
@@ -170,9 +170,12 @@ class Outlines:
         """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
         `i1`, `i3`: transverse and axial moments of inertia about the centre of mass, in M R^2. The axis may
-        pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms.
+        pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms. With
+        both, a moment may also be a text such as "3.2e-6 kg m^2".
         """
-        given = reals("offset", offset), reals("i1", i1), reals("i3", i3)
+        scale = None if diameter is None or mass is None else Scale(_half(diameter), mass)
+        moments = [moment_as_number(name, x, scale) for name, x in (("i1", i1), ("i3", i3))]
+        given = [reals(name, x) for name, x in zip(("offset", "i1", "i3"), (offset, *moments), strict=True)]
         if is_scalar(*given):
             _core.check_ball(*map(float, given))
         return cls(*given, fillet=1.0)._across(diameter, mass)
@@ -192,5 +195,9 @@ class Outlines:
             if mass is not None:
                 raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
             return self
-        across = in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres")
-        return self.in_metres(mass, radius=across / 2)
+        return self.in_metres(mass, radius=_half(diameter))
+
+
+def _half(diameter: float) -> float:
+    """The radius in metres, of a diameter."""
+    return in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres") / 2

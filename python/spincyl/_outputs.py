@@ -112,12 +112,10 @@ class Outputs(Hinting):
     )
     normal = Number(FORCE, '(n,) normal force, M g or N. Needs want="force".')
     friction = Number(
-        FORCE,
-        '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".',
+        FORCE, '(n,) magnitude of the horizontal force of the table, M g or N. Needs want="force".'
     )
     friction_coefficient = Number(
-        FORCE,
-        '(n,) `friction` over `normal`; infinite if N <= 0, NaN in the air. Needs want="force".',
+        FORCE, '(n,) `friction` over `normal`; infinite if N <= 0, NaN in the air. Needs want="force".'
     )
     contact_force = Number(
         BOTH,
@@ -156,8 +154,7 @@ class Outputs(Hinting):
         PATCH, "(n,) angular velocity about the vertical over the table, sqrt(g/R) or rad/s. Needs a patch."
     )
     creep = Number(
-        PATCH,
-        "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch.",
+        PATCH, "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch."
     )
     couple = Number(
         COUPLE,

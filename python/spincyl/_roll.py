@@ -199,9 +199,9 @@ def roll(
         more than 0.3 rad or the nutation by more than 0.5 rad in a step.
     ErrorWarning
         If the estimated error of a motion without `step` exceeds 0.1 in natural units; impacts multiply
-        errors, and a body that hops often reaches this. For a stone, if it becomes too large before the
-        motion ends; the message gives the time until which the motion is known
-        (`EllipsoidMotion.known_until`).
+        errors, and a body that hops often reaches this. `Motion.known_until` is the time until which the
+        motion is known. For a stone, if it becomes too large before the motion ends; the message gives this
+        time (`EllipsoidMotion.known_until`).
 
     Notes
     -----
@@ -286,13 +286,9 @@ def roll(
     hops = restitution is not None
     given_up_too = hops and m.status == Ending.BOUNDED  # which has a warning of its own
     if not stone and step is None and not given_up_too and not m.error <= LARGE_ERROR:
-        why = "in natural units: its last states are not known"
-        if hops:
-            why = (
-                "in natural units: impacts multiply errors, and after some of them its states are not known;"
-            )
-            why += " a motion to an earlier t has a smaller error"
-        warn(f"the estimated error of the motion is {m.error:.2g}, {why}", ErrorWarning)
+        why = f"{'impacts multiply errors, and ' if hops else ''}its last states are not known"
+        told = f"the estimated error of the motion is {m.error:.2g}, in natural units: {why}"
+        warn(f"{told}; known_until of the motion is the time up to which they are", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)

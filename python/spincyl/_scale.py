@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 from spincyl import _core
 from spincyl._input.equality import compared_by_value
 from spincyl._input.hints import Hinting
-from spincyl._input.numbers import Reals, Result, elementwise, number, reals, si
+from spincyl._input.numbers import Reals, Result, elementwise, is_quantity, number, reals, si, warn
 from spincyl._upward import function_of_method
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ _OUTPUTS = {
 #: Natural unit of each output of a motion; outputs that are not listed are pure numbers.
 UNITS = {name: unit for unit, names in _OUTPUTS.items() for name in names.split()}
 _UNITS_WITH_MASS = ("J", "N")
+#: A moment of inertia beyond this, in M R^2, was probably not in kg m^2: a rod has it at a length of 350 R.
+_LARGE_MOMENT = 1e4
 
 
 @compared_by_value
@@ -165,6 +167,24 @@ def si_factor(natural: str, scale: Scale | None) -> tuple[float | None, str]:
     }
     factor, said = known.get(natural.replace("a", "R") if natural != "rad" else natural, (None, natural))
     return (None, natural) if said in _UNITS_WITH_MASS and not scale._is_weighed else (factor, said)
+
+
+def moment_in_natural(name: str, value: Reals, scale: Scale | None) -> float:
+    """A moment of inertia in M R^2, from kg m^2, a text with a unit or a quantity."""
+    if scale is None or not scale._is_weighed:
+        need = (
+            "radius and mass of the body: in_metres(mass, radius=, i1=, i3=), or scale=sc.Scale(radius, mass)"
+        )
+        raise TypeError(f"{name} = {value!r}: a moment in kg m^2 needs {need}")
+    found = number(name, si(name, value, "kilogram*metre**2")) / scale.mass / scale.radius**2
+    if _LARGE_MOMENT < found < math.inf:
+        warn(f"{name}: {found:.3g} M R^2, as of a mass {math.sqrt(found):.3g} R away: is it in kg m^2?")
+    return found
+
+
+def moment_as_number(name: str, value: Reals, scale: Scale | None) -> Reals:
+    """A moment of inertia in M R^2; only a text with a unit or a quantity is converted."""
+    return moment_in_natural(name, value, scale) if isinstance(value, str) or is_quantity(value) else value
 
 
 def refuse_other_scale(told: str, of: Scale | bool, scale: Scale | None) -> None:

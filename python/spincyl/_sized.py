@@ -5,10 +5,11 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
+from spincyl._input.hints import with_hints
 from spincyl._input.materials import density_in_si
 from spincyl._input.numbers import in_range, number, si, warn
 from spincyl._input.units import suspicion_of_units
-from spincyl._scale import Scale
+from spincyl._scale import Scale, moment_in_natural
 
 
 class Sized:
@@ -21,8 +22,9 @@ class Sized:
     _radius: Callable[[], float]
     #: Kind, length and width, and volume (0 if unknown) of the body, in natural units.
     _bulk: Callable[[], tuple[str, tuple[float, float], float]]
-    _with_scale: Callable[[Scale | None], Self]
+    _with_scale: Callable[..., Self]
 
+    @with_hints
     def in_metres(
         self,
         mass: float | None = None,
@@ -30,6 +32,8 @@ class Sized:
         radius: float | None = None,
         gravity: float | None = None,
         density: float | str | None = None,
+        i1: float | None = None,
+        i3: float | None = None,
     ) -> Self:
         """Return this body as a measured body, whose motions are in SI.
 
@@ -47,6 +51,10 @@ class Sized:
         density : float or str, optional
             Mean density in kg/m^3, in place of `mass`, or the name of a material as for `measured`: of a
             ball, an egg or another whole ellipsoid, and a tube or cylinder, whose volume is known.
+        i1, i3 : float, optional
+            Measured transverse and axial moments of inertia about the centre of mass, in kg m^2, or texts
+            such as "320 g mm^2": from a swing or from CAD, for a body of revolution whose mass is known. They
+            replace the moments of the body, and a tube loses its `bore`.
 
         Returns
         -------
@@ -58,14 +66,14 @@ class Sized:
         ------
         TypeError, ValueError
             If an argument is invalid, or if the body has no size and `radius` is missing; the message names
-            the argument.
+            the argument. If no body has these moments, as with i3 > 2 i1.
 
         Warns
         -----
         UserWarning
             If the body is larger than 5 m or smaller than 0.1 mm, or, where the volume is known, its density
             is below that of foam or above that of osmium. Probably millimetres or grams were given for metres
-            or kilograms.
+            or kilograms. If a moment is more than 10,000 M R^2; it was probably not in kg m^2.
 
         Examples
         --------
@@ -74,7 +82,13 @@ class Sized:
         >>> on_the_moon = balls.in_metres(gravity=1.62)
         >>> print(f"{balls.critical_hertz:.2f} Hz, on the Moon {on_the_moon.critical_hertz:.2f} Hz")
         10.17 Hz, on the Moon 4.13 Hz
+        >>> can = sc.Body.solid(1.8).in_metres("384g", radius="33mm", i1="5.3e-4 kg m^2", i3="3.4e-5 kg m^2")
+        >>> round(can.i1, 4), round(can.i3, 4)  # of a full can, whose water does not turn with it
+        (1.2674, 0.0813)
         """
+        given = {name: x for name, x in (("i1", i1), ("i3", i3)) if x is not None}
+        if given and self._length != "R":
+            raise TypeError("i1, i3: only for bodies of revolution; a stone has inertia=, in kg m^2 per mass")
         own = self.scale or Scale(1.0, math.nan)
         size = self._radius() if radius is None else number("radius", si("radius", radius, "metre"))
         weight = own.mass
@@ -91,7 +105,12 @@ class Sized:
         why = self._doubt_of(scale)
         if why:
             warn(why)
-        return self._with_scale(scale)
+        moments = {name: moment_in_natural(name, x, scale) for name, x in given.items()}
+        try:
+            return self._with_scale(scale, **moments)
+        except ValueError as e:
+            one = f"; M R^2 is {scale.mass * scale.radius**2:.4g} kg m^2 of this body" if moments else ""
+            raise ValueError(f"{e}{one}") from None
 
     def _volume(self) -> float:
         """Volume in natural units; ValueError if it is not known exactly."""

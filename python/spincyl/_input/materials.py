@@ -4,9 +4,12 @@ import difflib
 
 from spincyl._input.numbers import number, si
 
-#: Density at room temperature in kg/m^3, and which sort of the material has it. Source: W. D. Callister and
-#: D. G. Rethwisch, Fundamentals of Materials Science and Engineering, 3rd ed. (Wiley, 2008), Table B.1; where
-#: the table has a range, the middle of it.
+#: Density at room temperature in kg/m^3, and which sort of the material has it. Sources: W. D. Callister
+#: and D. G. Rethwisch, Fundamentals of Materials Science and Engineering, 3rd ed. (Wiley, 2008), Table B.1;
+#: where the table has a range, the middle of it. For three plastics, the maker's data sheet of the grade.
+#: For woods, Forest Products Laboratory, Wood Handbook, FPL-GTR-190 (2010), Table 5-3a: the specific
+#: gravity G of dry wood by its volume at 12 % moisture, and with its water the density 1120 G (chapter 4).
+#: Callister has such numbers G of two woods among his densities, 12 % too light.
 MATERIALS = {
     "steel": (7850.0, "plain carbon steel, such as A36 or 1020"),
     "stainless steel": (8000.0, "304 or 316"),
@@ -21,8 +24,16 @@ MATERIALS = {
     "PET": (1350.0, "poly(ethylene terephthalate)"),
     "PVC": (1440.0, "poly(vinyl chloride): 1300 to 1580"),
     "PTFE": (2170.0, "polytetrafluoroethylene"),
-    "oak": (640.0, "red oak, 12 % moisture: 610 to 670"),
-    "fir": (480.0, "Douglas fir, 12 % moisture: 460 to 500"),
+    "polycarbonate": (1200.0, "PC: Makrolon 2405, Covestro"),
+    "ABS": (1040.0, "acrylonitrile butadiene styrene: Terluran GP-22, BASF"),
+    "PLA": (1240.0, "polylactide, printed without voids: Ingeo 4043D, NatureWorks"),
+    "beech": (717.0, "American beech, 12 % moisture: G = 0.64"),
+    "birch": (694.0, "yellow birch, 12 % moisture: G = 0.62"),
+    "maple": (706.0, "sugar (hard) maple, 12 % moisture: G = 0.63"),
+    "oak": (706.0, "northern red oak, 12 % moisture: G = 0.63"),
+    "ash": (672.0, "white ash, 12 % moisture: G = 0.60"),
+    "fir": (538.0, "Douglas fir of the coast, 12 % moisture: G = 0.48"),
+    "pine": (448.0, "ponderosa pine, 12 % moisture: G = 0.40; southern pines are denser"),
 }
 _SAME = {
     "aluminum": "aluminium",
@@ -31,12 +42,16 @@ _SAME = {
     "perspex": "acrylic",
     "pp": "polypropylene",
     "ps": "polystyrene",
+    "pc": "polycarbonate",
     "teflon": "PTFE",
 }
 _KNOWN = {name.lower(): name for name in MATERIALS} | _SAME
-_WOODS = "wood", "beech", "birch", "maple", "ash", "pine", "spruce", "larch"
-_SORTS: dict[str, tuple[str, ...]] = dict.fromkeys(_WOODS, ("oak", "fir"))
-_SORTS |= {"plastic": ("acrylic", "polypropylene", "polystyrene", "PET", "PVC")}
+_WOODS = "beech", "birch", "maple", "oak", "ash", "fir", "pine"
+_OTHERS = "wood", "walnut", "cherry", "spruce", "larch", "teak"
+_SORTS: dict[str, tuple[str, ...]] = dict.fromkeys(_OTHERS, _WOODS)
+_SORTS |= {
+    "plastic": ("acrylic", "polypropylene", "polystyrene", "PET", "PVC", "polycarbonate", "ABS", "PLA")
+}
 
 
 def density_in_si(value: object) -> float:

@@ -30,6 +30,20 @@ _UNITS = {
         "g/cm^3": "1e3",
         "g/cm³": "1e3",
     },
+    "moment of inertia": {
+        "kgm2": "1",
+        "kgm^2": "1",
+        "kgm²": "1",
+        "gcm2": "1e-7",
+        "gcm^2": "1e-7",
+        "gcm²": "1e-7",
+        "gmm2": "1e-9",
+        "gmm^2": "1e-9",
+        "gmm²": "1e-9",
+        "kgmm2": "1e-6",
+        "kgmm^2": "1e-6",
+        "kgmm²": "1e-6",
+    },
     "gravity": {"m/s2": "1", "m/s^2": "1", "m/s²": "1"},
     "damping": {"Nms": "1"},
     "drag": {"Nms2": "1", "Nms^2": "1", "Nms²": "1"},
@@ -133,7 +147,7 @@ def quantity(kind: str) -> Callable[[str], float]:
 
     def number_in_si(text: str) -> float:
         number, unit = _parts(text)
-        unit = unit.replace(" ", "")  # "N m s" as well as "Nms"
+        unit = re.sub("[ *·]", "", unit)  # "N m s" and "N*m*s" as well as "Nms"
         if unit not in {"", *units}:
             known = ", ".join(filter(str.isascii, units))
             raise ArgumentTypeError(f"{text!r}: expected {_one(kind)}, without unit or in {known}")
@@ -159,6 +173,7 @@ _KINDS = {
     "metre": "length",
     "kilogram": "mass",
     "kilogram/metre**3": "density",
+    "kilogram*metre**2": "moment of inertia",
     "second": "duration",
     "hertz": "frequency",
     "radian/second": "angular velocity",
@@ -178,6 +193,7 @@ _EXAMPLES = {
     "metre": "16mm",
     "kilogram": "30g",
     "kilogram/metre**3": "7.85g/cm3",
+    "kilogram*metre**2": "3.2e-6 kg m^2",
     "second": "2s",
     "radian": "85deg",
     "hertz": "9Hz",

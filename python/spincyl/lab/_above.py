@@ -13,17 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from spincyl._input.numbers import Floats, number, reals, si, whole
+from spincyl._input.numbers import Floats, number, si, whole
 from spincyl._measured import sized_body
 from spincyl._scale import Scale
 from spincyl.lab._alias import Reading, Readings, read
-from spincyl.lab._columns import Camera, Columns
+from spincyl.lab._columns import METRES, SECONDS, Camera, Columns, columns_of, picked
 from spincyl.lab._filmed import Filmed
 from spincyl.lab._report import counted
 from spincyl.lab._tracker import read_tracker
 
-_METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
-_SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
+_ALSO = {"t": ("time", "Time")}  # other names of a column
 # times the tube's length: a longer line raises an error, since noise does not explain it
 _LONGEST_LINE = 1.05
 # times the tube's length: a shorter line raises an error, since a unit is probably wrong
@@ -243,28 +242,16 @@ def _ends(tracks: Mapping[str, Any], ends: Sequence[str] | None) -> tuple[str, s
 
 def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     """Times in seconds and positions x + iy in metres of a track."""
-    columns = tracks[name]
-    if not hasattr(columns, "keys"):
-        raise TypeError(f"tracks[{name!r}]: expected a dict of columns, not {type(columns).__name__}")
-    if not isinstance(columns, Columns):
-        columns = Columns((str(key), columns[key]) for key in list(columns.keys()))
+    told = f"tracks[{name!r}]"
+    columns = columns_of(told, tracks[name])
     found: list[Floats] = []
-    for wanted, units in (("t", _SECONDS), ("x", _METRES), ("y", _METRES)):
-        others = (wanted, wanted.upper(), *(("time", "Time") if wanted == "t" else ()))
-        key = next((k for k in others if k in columns), None)
-        if key is None:
-            there = ", ".join(map(repr, columns))
-            raise ValueError(f"tracks[{name!r}]: expected a column {wanted!r}; there are {there}")
-        unit = columns.units[key]
-        if unit not in units:
-            known = ", ".join(u for u in units if u)
-            raise ValueError(f"tracks[{name!r}]: unit {unit!r} of {key}: expected one of {known}")
-        values = np.asarray(reals(f"tracks[{name!r}][{key!r}]", columns[key]), np.float64)
-        if np.any(np.abs(values[np.isfinite(values)]) > _FARTHEST):
-            raise ValueError(f"tracks[{name!r}]: expected numbers up to {_FARTHEST:g} in {key}")
-        if values.ndim != 1 or (found and values.shape != found[0].shape):
-            raise ValueError(f"tracks[{name!r}]: expected columns of equal length; {key} has {values.shape}")
-        found.append(values * units[unit])
+    for wanted, units in (("t", SECONDS), ("x", METRES), ("y", METRES)):
+        one = picked(told, columns, (wanted, wanted.upper(), *_ALSO.get(wanted, ())), units)
+        if np.any(np.abs(one.values[np.isfinite(one.values)]) > _FARTHEST):
+            raise ValueError(f"{told}: expected numbers up to {_FARTHEST:g} in {one.key}")
+        if found and one.values.shape != found[0].shape:
+            raise ValueError(f"{told}: expected columns of equal length; {one.key} has {one.values.shape}")
+        found.append(one.in_si)
     return found[0], found[1] + 1j * found[2]
 
 
@@ -273,7 +260,7 @@ def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
     columns = tracks[name]
     if not isinstance(columns, Columns) or columns.camera is None:
         return None
-    return columns.camera._replace(scale=columns.camera.scale / _METRES[columns.units["x"]])
+    return columns.camera._replace(scale=columns.camera.scale / METRES[columns.units["x"]])
 
 
 def _both_ends(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Any, int]:
@@ -317,7 +304,7 @@ def _sine_of_inclination(shares: Floats, ruler: float) -> tuple[float, float]:
     scatter = 1.4826 * float(np.median(np.abs(shares - share)))
     error = math.hypot(1.2533 * scatter / math.sqrt(shares.size), ruler * share)
     if share > max(_LONGEST_LINE, 1 + 4 * ruler):
-        units = {1 / factor: unit for unit, factor in _METRES.items() if unit and factor != 1.0}
+        units = {1 / factor: unit for unit, factor in METRES.items() if unit and factor != 1.0}
         near = min(units, key=lambda k: abs(math.log(share / k)))
         hint = "; is the scale of length right?"
         if 0.5 < share / near <= _LONGEST_LINE:

@@ -3,13 +3,13 @@
 import cmath
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from spincyl._input.equality import equality_key
-from spincyl._input.numbers import Floats
+from spincyl._input.numbers import Floats, reals
 
 #: Words that are units when they stand alone.
 UNITS = frozenset(
@@ -32,6 +32,10 @@ UNITS = frozenset(
         "rad/s",
     )
 )
+
+#: Units of lengths and of times in the names of columns; a column without one is in metres or seconds.
+METRES = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254, "inch": 0.0254, "ft": 0.3048}
+SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}
 
 
 def cleaned(name: str) -> tuple[str, str]:
@@ -141,3 +145,57 @@ class Columns(dict[str, Floats]):
         return not self == other
 
     __hash__ = None  # unhashable, like a dict
+
+
+def columns_of(name: str, table: Any) -> Columns:
+    """The columns of a table: a dict, a DataFrame with its named index, or a structured array of NumPy.
+
+    An error names the argument `name`.
+    """
+    if isinstance(table, Columns):
+        return table
+    if getattr(getattr(table, "index", None), "name", None) is not None and hasattr(table, "reset_index"):
+        table = table.reset_index()  # a named index of pandas is a column
+    fields = getattr(getattr(table, "dtype", None), "names", None)
+    listed = table.keys() if hasattr(table, "keys") else fields or getattr(table, "columns", None)
+    if listed is None:
+        raise TypeError(f"{name}: expected a dict of columns, not {type(table).__name__}")
+    units = getattr(table, "attrs", {}).get("units", {})  # as `Motion.to_dataframe` has them
+    bare = None, "", "1"
+    given = {key: str(key) if units.get(key) in bare else f"{key} ({units[key]})" for key in list(listed)}
+    return Columns((written, table[key]) for key, written in given.items())
+
+
+class Picked(NamedTuple):
+    """A column of a table."""
+
+    key: str  #: its name
+    values: Floats  #: numbers in the unit of the table
+    factor: float  #: the unit in SI
+
+    @property
+    def in_si(self) -> Floats:
+        """The numbers in SI."""
+        return self.values * self.factor
+
+
+def picked(
+    told: str, columns: Columns, names: Sequence[str], units: Mapping[str, float], *, wide: bool = False
+) -> Picked:
+    """The column with the first of these names that the table has, (n,), or (n, k) if `wide`.
+
+    An error begins with `told`, and lists the columns if none has such a name.
+    """
+    key = next((k for k in names if k in columns), None)
+    if key is None:
+        others = f" (or {', '.join(map(repr, names[1:]))})" if len(names) > 1 else ""
+        there = ", ".join(map(repr, columns)) or "none"
+        raise ValueError(f"{told}: expected a column {names[0]!r}{others}; there are {there}")
+    unit = columns.units[key]
+    if unit not in units:
+        known = ", ".join(u for u in units if u)
+        raise ValueError(f"{told}: unit {unit!r} of {key}: expected one of {known}")
+    values = np.asarray(reals(f"{told}[{key!r}]", columns[key]), np.float64)
+    if values.ndim != 1 + wide:
+        raise ValueError(f"{told}: expected columns of equal length; {key} has {values.shape}")
+    return Picked(key, values, units[unit])

@@ -17,27 +17,26 @@ from spincyl._input.numbers import (
     Floats,
     Reals,
     flag,
-    floats,
     instance_of,
     json_value,
     number,
-    reals,
     si,
     warn,
 )
 from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl._state import State
+from spincyl._upward import function_of_method
 from spincyl.studio.mjcf import mjcf
 from spincyl.studio.scene_again import motion_of
-from spincyl.studio.scene_data import VERSION, bounds, inclination, scene_data
+from spincyl.studio.scene_data import VERSION, bounds, checked_array, inclination, scene_data
 from spincyl.studio.shape import rotations
 from spincyl.studio.urdf import urdf
 
 #: An answer may differ from itself by this much where its error is below rounding, in R or radians.
 _ROUNDING = 1e-13
-#: Tolerance of unit quaternions; turn from the initial orientation, radians, above which there is a warning.
-_UNIT, _DOUBTED = 1e-3, 0.1
+#: Turn from the initial orientation, radians, above which there is a warning.
+_DOUBTED = 0.1
 #: Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
 #: from the origin, above which there is a warning.
 _LONG, _FARTHEST = 10.0, 30.0
@@ -219,23 +218,36 @@ class Scene:
         return paths
 
     def compare(
-        self, time: Reals, position: Reals, orientation: Reals, *, scalar_first: bool = False
+        self,
+        time: Reals,
+        position: Reals = None,
+        orientation: Reals = None,
+        *,
+        scalar_first: bool = False,
     ) -> Deviation:
         """Compare the trajectory of a contact engine with the known motion at the times of the engine.
 
         Parameters
         ----------
-        time : array_like, (n,)
+        time : array_like, (n,), or table
             Times of the engine since the initial state, in seconds, in ascending order. The known motion is
             computed at these times, also after the last time of the scene. Times after an event that ends the
             motion, such as the landing of the face, are left out.
-        position : array_like, (n, 3)
+
+            Or, without `position` and `orientation`, a table of the trajectory: the path of a text file, as
+            for `data.read_table`; a DataFrame, a dict or a structured array of NumPy. It has the columns t;
+            x, y, z; and qx, qy, qz, qw, in any order, beside others. They may also be called "time";
+            "pos_x", "position_x", "centre_x", "com_x"; "quat_x", "orientation_x" and so on, whatever the
+            capitals and the signs between the words. Units in brackets are converted, as in "x (mm)" and
+            "t (ms)". A dict or an array may also have "position" (n, 3) and "orientation" (n, 4).
+        position : array_like, (n, 3), optional
             Positions of the centre of mass in the engine, in metres.
-        orientation : array_like, (n, 4)
+        orientation : array_like, (n, 4), optional
             Unit quaternions x, y, z, w in the engine. They rotate vectors from the axes of the body to the
             axes of the laboratory; their sign does not matter.
         scalar_first : bool
-            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake.
+            If true, the quaternions are w, x, y, z, as in MuJoCo and Drake. Not for a table with a column for
+            each component.
 
         Returns
         -------
@@ -245,7 +257,10 @@ class Scene:
         Raises
         ------
         ValueError, TypeError
-            If an argument is invalid; the message names it.
+            If an argument is invalid; the message names it. If a column is missing; the message lists those
+            of the table.
+        OSError
+            If the file of a table cannot be read.
 
         Warns
         -----
@@ -255,9 +270,15 @@ class Scene:
             milliseconds. If the first position is more than 30 times as far from the known position as that
             is from the origin; the positions may be in millimetres.
         """
-        t = _checked_array("time", si("time", time, "second"), ())
-        x = _checked_array("position", position, (t.size, 3))
-        q = _checked_array("orientation", orientation, (t.size, 4), scalar_first)
+        if position is None and orientation is None:
+            time, position, orientation, named = function_of_method("Scene.compare")(time)
+            if named and flag("scalar_first", scalar_first):
+                raise ValueError("scalar_first: leave it out; the columns of the table are named")
+        elif position is None or orientation is None:
+            raise TypeError("position, orientation: give both of them, or neither beside a table")
+        t = checked_array("time", si("time", time, "second"), ())
+        x = checked_array("position", position, (t.size, 3))
+        q = checked_array("orientation", orientation, (t.size, 4), scalar_first)
         if t[0] < 0 or (np.diff(t) < 0).any():
             raise ValueError("time: expected seconds since the initial state, in ascending order")
         last = self.scale.seconds(float(self.motion.t[-1]) - self._began)
@@ -322,8 +343,8 @@ class Scene:
         ValueError, TypeError
             If an argument is invalid; the message names it.
         """
-        q = _checked_array("orientation", orientation, (4,), scalar_first)
-        w = _checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
+        q = checked_array("orientation", orientation, (4,), scalar_first)
+        w = checked_array("angular_velocity", angular_velocity, (3,)) * self.scale.seconds(1.0)
         pressed = number("normal_force", normal_force) / self.scale.newtons(1.0)
         laws = () if self.motion.losses is None else self.motion.losses.laws
         slips = flag("slips", slips)
@@ -422,25 +443,3 @@ def _lines(value: Any, begin: str = "\n ") -> str:
         return json.dumps(value, allow_nan=False)
     entries = (f"{begin}{json.dumps(key)}: {_lines(x, begin + ' ')}" for key, x in value.items())
     return "{" + ",".join(entries) + begin[:-1] + "}"
-
-
-def _checked_array(
-    name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None
-) -> Floats:
-    """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
-    found = floats(reals(name, value))
-    fits = found.shape == shape if shape else found.ndim == 1
-    if not fits:
-        raise ValueError(f"{name}: expected finite numbers of shape {shape or '(n,)'}, not {found.shape}")
-    if not found.size:
-        raise ValueError(f"{name}: expected at least one number, not an empty array")
-    bad = np.argwhere(~np.isfinite(found))
-    if bad.size:
-        place = f"value {bad[0, 0]} is" if found.ndim == 1 else f"row {bad[0, 0]} has"
-        what = "NaN" if np.isnan(found[tuple(bad[0])]) else "an infinite number"
-        raise ValueError(f"{name}: {place} {what}; expected finite numbers")
-    if scalar_first is None:
-        return found
-    if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
-        raise ValueError(f"{name}: expected unit quaternions")
-    return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found

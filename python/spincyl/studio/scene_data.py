@@ -16,7 +16,7 @@ from spincyl._body import Body
 from spincyl._contact import Coulomb, Viscous
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
-from spincyl._input.numbers import Floats
+from spincyl._input.numbers import Floats, Reals, flag, floats, reals
 from spincyl._loss import LAWS
 from spincyl._motion import Motion
 from spincyl._phases import KINDS, has_two_rims
@@ -26,6 +26,7 @@ from spincyl.studio.scene_again import natural_data
 from spincyl.studio.shape import kind, landing, profiles, reach, rotations, skin, tensor
 
 VERSION = 1
+_UNIT = 1e-3  # tolerance of unit quaternions
 _SYMBOLS = (
     "n: up. a: axis 3 of the body. w: angular velocity; w_n = w.n; t = w - w_n n. s = |n x a|."
     " h = ((a.n) n - a)/s. q = (w.a - (a.n) w_n)/s^2. N: normal force, of both rims together."
@@ -326,3 +327,25 @@ def _errors(m: Motion, metre: float, second: float, joule: float, w: Floats, v: 
         "heat_and_losses": spent * joule,
         "is": "the largest at any time; angle is that between orientations",
     }
+
+
+def checked_array(
+    name: str, value: Reals, shape: tuple[int, ...], scalar_first: bool | None = None
+) -> Floats:
+    """Finite numbers of a shape, where () is any (n,); with `scalar_first`, unit quaternions x, y, z, w."""
+    found = floats(reals(name, value))
+    fits = found.shape == shape if shape else found.ndim == 1
+    if not fits:
+        raise ValueError(f"{name}: expected finite numbers of shape {shape or '(n,)'}, not {found.shape}")
+    if not found.size:
+        raise ValueError(f"{name}: expected at least one number, not an empty array")
+    bad = np.argwhere(~np.isfinite(found))
+    if bad.size:
+        place = f"value {bad[0, 0]} is" if found.ndim == 1 else f"row {bad[0, 0]} has"
+        what = "NaN" if np.isnan(found[tuple(bad[0])]) else "an infinite number"
+        raise ValueError(f"{name}: {place} {what}; expected finite numbers")
+    if scalar_first is None:
+        return found
+    if (np.abs(np.linalg.norm(found, axis=-1) - 1) > _UNIT).any():
+        raise ValueError(f"{name}: expected unit quaternions")
+    return np.roll(found, -1, axis=-1) if flag("scalar_first", scalar_first) else found

@@ -15,6 +15,7 @@ from spincyl.sweep._common import many_blocks
 
 _BODY = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _START = ("theta", "w1", "w2", "w3")
+_SHOWN = 5  # numbers of motions in a warning
 _OF_CIRCLES = {name for names in CIRCLE_COLUMNS for name in names}
 
 
@@ -103,13 +104,16 @@ def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarra
 
 def uncertain(asked: dict[str, Any], error: np.ndarray, status: np.ndarray) -> None:
     """Warn of large estimated errors, as `spincyl.roll` does."""
-    if asked.get("step") is not None or "restitution" in asked or not asked.get("errors", True):
+    if asked.get("step") is not None or not asked.get("errors", True):
         return
     known = ~np.isin(status, [Status.INVALID, Status.PAINLEVE, Status.LANDING, Status.BOUNDED])
-    large = known & ~(error <= LARGE_ERROR)
-    if large.any():
-        told = f"{np.count_nonzero(large)} of {status.size} motions have estimated errors above {LARGE_ERROR}"
-        warn(f"{told}, in natural units, up to {error[large].max():.2g}", ErrorWarning)
+    rows = np.flatnonzero(known & ~(error <= LARGE_ERROR))
+    if rows.size:
+        told = f"{rows.size} of {status.size} motions have estimated errors above {LARGE_ERROR}"
+        first = ", ".join(map(str, rows[:_SHOWN])) + (", ..." if rows.size > _SHOWN else "")
+        which = f"motion{'s' * (rows.size > 1)} {first}; `error` of the result has them all"
+        why = ". Impacts multiply errors: to an earlier t they are smaller" if "restitution" in asked else ""
+        warn(f"{told}, in natural units, up to {error[rows].max():.2g}: {which}{why}", ErrorWarning)
 
 
 def broadcast(fields: dict[str, Reals]) -> tuple[tuple[int, ...], list[str]]:

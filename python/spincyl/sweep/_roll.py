@@ -228,9 +228,9 @@ def roll(
         time at which it was given up. Also if motions are invalid although all their numbers are finite; the
         message gives the reason for the first of them.
     ErrorWarning
-        If estimated errors exceed 0.1, as for `spincyl.roll`; the message gives the number of motions. If
-        those of stones become too large before the last time (see the Notes); the message gives the number
-        of stones.
+        If estimated errors exceed 0.1 in natural units, as for `spincyl.roll`; the message gives the number
+        of motions and which are the first of them, counted from 0 in the order of the last axis. If those of
+        stones become too large before the last time (see the Notes); the message gives the number of stones.
 
     Notes
     -----
