@@ -57,7 +57,7 @@ class Ending(IntEnum):
 
 
 class RestsOn(IntEnum):
-    """What a body of revolution lies or stands on at the end of a motion: heads or tails.
+    """Part on which a body of revolution lies or stands at the end of a motion: heads, tails, side or edge.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class ErrorWarning(UserWarning):
 
 
 class FixedStep(NamedTuple):
-    """What a fixed step of RK4 does to a motion.
+    """Effect of a fixed step of RK4 on a motion, and a step that would suffice.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How much of the largest possible dry friction holds a body at rest, as a share from 0 to 1.
+    """Share of the largest possible dry friction that holds a body at rest, from 0 to 1.
 
     Attributes
     ----------

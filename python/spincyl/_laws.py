@@ -163,12 +163,18 @@ class Laws(Circles):
 
     @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of a small nutation, sqrt(g/R); 0 for unstable states, NaN for unsteady ones."""
+        """Angular frequency of a small nutation, sqrt(g/R); 0 for unstable states, NaN for unsteady ones.
+
+        Parameters are those of `stability`.
+        """
         return _core.nutation(self.stability(at, contact))
 
     @elementwise
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Growth rate of a small disturbance, sqrt(g/R); 0 for stable states, NaN for unsteady ones."""
+        """Growth rate of a small disturbance, sqrt(g/R); 0 for stable states, NaN for unsteady ones.
+
+        Parameters are those of `stability`.
+        """
         return _core.growth_rate(self.stability(at, contact))
 
     def standing_spin(self, contact: Contact = "rolling") -> Result:
@@ -226,7 +232,7 @@ class Laws(Circles):
     def slip_slope(
         self, mu: Reals, posture: Posture = "rolling", *, phi: Reals = -np.pi / 2, theta: Reals = None
     ) -> Result:
-        """Slope beyond which the contact of this body slips, in radians.
+        """Slope of the table, in radians, beyond which the body at rest on it slips.
 
         Parameters
         ----------
@@ -270,12 +276,12 @@ class Laws(Circles):
 
     @elementwise
     def tip_slope(self, posture: Posture = "standing", *, phi: Reals = 0.0, theta: Reals = None) -> Result:
-        """Slope beyond which this body tips over, in radians; pi/2 if it never does.
+        """Slope of the table, in radians, beyond which the body at rest on it tips over; pi/2 if never.
 
         A body that stands on its face tips over the edge if tan(slope) > a/Z, with the radius a of the face
-        and the height Z of the centre of mass; one on its side with phi = 0 over its lower circle. Whether it
-        slips before tells the smaller of `slip_slope` and `tip_slope`. Arguments, shapes and errors are those
-        of `slip_slope`.
+        and the height Z of the centre of mass. A body on its side with phi = 0 tips over its lower circle.
+        The body slips before it tips if `slip_slope` is less than `tip_slope`. Arguments, shapes and errors
+        are those of `slip_slope`.
 
         Examples
         --------
@@ -309,12 +315,15 @@ class Laws(Circles):
         return found
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
-        """Inclinations at which steady states become unstable; unit, shape and errors as for `folds`."""
+        """Inclinations, in radians, at which the stability of the steady states changes (kappa = 0).
+
+        Order, shape and errors are those of `folds`. `contact` is "rolling" or "smooth", as for `stability`.
+        """
         law = _core.boundary_rolling if is_rolling(contact) else _core.boundary_smooth
         return self._several(law)
 
     def folds(self) -> Result:
-        """Inclinations at which the steady rate is an extremum, so that two states of equal rate merge.
+        """Inclinations at which the rate of the steady state is an extremum, so that two states merge.
 
         The inclinations are in radians, ascending, along a last axis of length 3 or 5 ("root"; see
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
@@ -323,14 +332,17 @@ class Laws(Circles):
         return self._several(_core.fold)
 
     def ridge(self) -> Result:
-        """Inclinations at which the energy of the steady state is an extremum; details as for `folds`."""
+        """Inclinations, in radians, at which the energy of the steady state is an extremum.
+
+        Order, shape and errors are those of `folds`.
+        """
         return self._several(_core.ridge)
 
     # Quantities of a state.
 
     @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
-        """Kinetic plus potential energy of a state, in M g R; heights are above the table.
+        """Kinetic plus potential energy of a body in a state, in M g R; heights are above the table.
 
         The velocity of the centre follows from rolling and the slip of the state. With `contact="smooth"` the
         centre moves only up and down; a state with a slip then raises ValueError.
@@ -414,7 +426,7 @@ class Laws(Circles):
 
     @elementwise
     def speed_x(self, state: State) -> Result:
-        """Speed of the point X, the highest one of the circle of contact, in sqrt(g R).
+        """Speed of the point X, the highest point of the circle of contact, in sqrt(g R).
 
         X is the highest point of the circle of the body along which it touches the table. With a sharp rim
         and the centre at rest its speed is 2 ell w1.

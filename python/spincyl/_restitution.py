@@ -63,7 +63,7 @@ class Newton(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Poisson(_ImpactLaw):
-    """Poisson's law, for `restitution=`: the normal impulse after compression is e times that of compression.
+    """Poisson's law, for `restitution=`: expansion returns e times the normal impulse of compression.
 
     Compression ends where the normal velocity is zero; if friction presses the point down once more, at the
     last zero. A motion under this law ends where a second circle or a face lands.
@@ -86,7 +86,7 @@ class Poisson(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Walton(_ImpactLaw):
-    """Restitution of a ball that also turns its slip back, for `restitution=`, such as of a superball.
+    """Walton's law of a superball, for `restitution=`: an impact reverses the slip of the ball as well.
 
     The normal velocity after an impact is -e times that before. The slip becomes -`tangential` times that
     before, if the friction that this takes is at most mu times the normal impulse; otherwise the ball slips

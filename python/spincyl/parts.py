@@ -137,7 +137,7 @@ def cone(
     mass: float | None = None,
     density: float | str | None = None,
 ) -> Part:
-    """Solid cone or frustum. One of the two diameters may be 0."""
+    """Solid cone or frustum with a vertical axis. One of the two diameters may be 0."""
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("cone", _SOLID, (r, s, 0.0, 0.0, 0.0, _metres("length", length), 0.0), at, mass, density)
 

@@ -100,11 +100,12 @@ pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) 
             "ell",
             body.ell(),
             (-NO_COUPLE, NO_COUPLE),
-            "two circles on the table, or a ball or disk",
+            "0 for a body on a single circle, as for a disk or a uniform ball",
         )?;
         let alone = body.is_uniform_ball() || phi.cos().abs() < NO_COUPLE;
         if posture == Posture::Rolling && !alone {
-            let expected = "pi/2 or -pi/2: with another direction a body on one circle falls over";
+            let expected =
+                "pi/2 or -pi/2, an axis across the slope: otherwise a body on a single circle falls over";
             return Err(Error::OutOfRange { name: "phi", value: phi, expected });
         }
         let (k, radius) = (body.i3(), body.shape().rim.radius((1.0, ell)));

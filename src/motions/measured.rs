@@ -226,7 +226,7 @@ impl Measured {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
         let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
         let least = 0.01 * FRAC_PI_4 * wall * of.length;
-        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more of a tube in metres")?;
+        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more, and lengths in metres")?;
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 

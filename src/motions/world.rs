@@ -93,7 +93,7 @@ impl Measured {
                 "start",
                 *x,
                 (-f64::MAX, f64::MAX),
-                "a position, a velocity and an angular velocity that are finite",
+                "finite components of position, velocity and angular velocity",
             )?;
         }
         let w = start.angular_velocity.map(|w| scale.angular_velocity(w));
@@ -107,7 +107,7 @@ impl Measured {
             "position",
             gap,
             (-NEAR_THE_TABLE, f64::MAX),
-            "a body above the table, its lowest point 0 R or more high",
+            "a position in which the lowest point of the body is on or above the table",
         )?;
         let rise = v.z - centre_rise(&body, &state);
         let few = NO_RISE * (v.amax() + w.amax() * (1.0 + rim.ell.abs()));

@@ -132,7 +132,7 @@ impl Scene {
         let seconds: Vec<f64> = rows.iter().map(|row| row.time).collect();
         let (answer, scale) = (self.answer(&seconds)?, self.scale()?);
         let Some(first) = answer.rows.first() else {
-            return Err(SceneError::Motion("rows: the known motion ends before the first of them"));
+            return Err(SceneError::Motion("rows: expected a first row before the end of the known motion"));
         };
         let deviations = rows.iter().zip(&answer.rows).map(|(row, known)| {
             let (p, q) = (row.orientation.coords.normalize(), known.orientation.coords);

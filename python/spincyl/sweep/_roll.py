@@ -190,7 +190,7 @@ def roll(
         motion (`Answer.LANES`) `error` is known all the same.
     table : Table, optional
         Table with a slope, as in `spincyl.roll`; its `slope` and `phi0` may be arrays that broadcast with the
-        other arrays. Motions on a slope are integrated, in lanes as those with friction.
+        other arrays. Motions on a slope are integrated.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.

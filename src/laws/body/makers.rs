@@ -31,9 +31,9 @@ impl Body {
     /// negative or thicker than the smaller radius, and for a body that is too flat or too long; and those of
     /// [`profile`](Self::profile).
     pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> Result<Self, Error> {
-        within("bottom", bottom, LENGTH, "a radius of 0 to 1e50")?;
-        within("top", top, LENGTH, "a radius of 0 to 1e50, and one of both radii above 0")?;
-        within("top", bottom.max(top), (1e-50, LENGTH.1), "one of both radii above 0")?;
+        within("bottom", bottom, LENGTH, "0 <= bottom <= 1e50")?;
+        within("top", top, LENGTH, "0 <= top <= 1e50")?;
+        within("top", bottom.max(top), (1e-50, LENGTH.1), "bottom or top of 1e-50 or more")?;
         within("height", height, (1e-50, LENGTH.1), "1e-50 <= height <= 1e50")?;
         let (radii, ends) = ([bottom, top], [0.0, height]);
         let form = match wall {

@@ -127,7 +127,7 @@ impl CircleRow {
             while row.count > 0 {
                 let last = row.circles[row.count - 1];
                 let Some([border, _]) = last.border(circle) else {
-                    return refuse(k as f64, "circles of which none lies inside another");
+                    return refuse(k as f64, "circles with fillets that do not lie inside each other");
                 };
                 // One that touches only at an end, as the inner edge of a tube does, never carries.
                 if (border - PI).abs() < JOINED {

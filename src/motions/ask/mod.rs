@@ -406,7 +406,8 @@ impl Start {
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
-        let expected = "a velocity of the centre that keeps the lowest point on the table; or give a height";
+        let expected =
+            "an upward velocity with which the lowest point stays on the table; for a flight give a height";
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
         let [along, across] = centre_velocity(body, &state, [0.0; 2]);
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
@@ -433,7 +434,7 @@ pub(crate) fn check_conserving(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64,
 /// Returns an error for `stop_at_rolling` without a law of friction.
 fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
-        let expected = "false without a law of friction, where no slip turns into rolling";
+        let expected = "false without a law of friction, since slip ends in rolling only by friction";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
     }
     Ok(())
@@ -442,7 +443,8 @@ fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
 /// Checks the times. Returns the signed span from the initial to the last time.
 fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
-    let expected = "at least one time, in order, all before or all after t0, |t| <= 1e15";
+    let expected =
+        "one or more times, ascending from t0 on or descending from t0 on, |t| <= 1e15";
     let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
     let way = if last < t0 { -1.0 } else { 1.0 };
     let mut before = 0.0;
@@ -473,7 +475,7 @@ pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
         Method::Exact => Ok(FINE),
         Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
         Method::Step(value) => {
-            let expected = "no fixed step with friction or losses: give a tolerance";
+            let expected = "no fixed step for a motion with friction or losses: give a tolerance instead";
             Err(Error::OutOfRange { name: "step", value, expected })
         }
     }
@@ -503,7 +505,7 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
     };
     if ask.resistance == Resistance::WhileRolling && value != 0.0 && never {
         let expected =
-            "0, or a table without a patch and with dry friction, for a resistance only while the body rolls";
+            "0, or dry friction without a patch, for rolling resistance that acts only while the body rolls";
         return Err(Error::OutOfRange { name: "delta", value, expected });
     }
     Ok(())
@@ -512,7 +514,8 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
 fn check_method(method: Method, span: f64) -> Result<(), Error> {
     match method {
         Method::Step(step) => {
-            let expected = "a step with the sign of time, at least 1e-12 and 1e-15 of the span";
+            let expected =
+                "a step with the sign of time, of at least 1e-12 and at least 1e-15 of the span of the times";
             let named = |ok: bool| {
                 if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
             };
