@@ -94,20 +94,20 @@ impl StoneRow {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Turns {
-    /// They are not counted.
+    /// Reversals are not counted.
     #[default]
     Uncounted,
-    /// They are counted.
+    /// Reversals are counted.
     Counted,
 }
 
-/// What is the same for all stones of a call.
+/// The options and the times that all stones of a call have in common.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneJob<'a> {
-    /// The options of every motion. What a row has of its own replaces them.
+    /// The options of every motion; the coefficients of a [`StoneRow`] replace them.
     pub ask: Ask,
-    /// Times of the motions, of which the last one counts.
+    /// Times of the motions, in sqrt(a/g); the results are those at the last time.
     pub times: &'a [f64],
     /// Whether reversals of the spin are counted.
     pub turns: Turns,
@@ -169,23 +169,23 @@ impl StoneSummary {
         "known_until",
     ];
 
-    /// How the motion ended; all numbers of an invalid one are NaN.
+    /// The ending of the motion; if it is invalid, all numbers of the summary are NaN.
     pub fn ending(&self) -> Ending {
         Ending::from_code(self.status).unwrap_or(Ending::Invalid)
     }
 
-    /// The last state.
+    /// The state at the end of the motion.
     pub fn state(&self) -> StoneState {
         let [a, b, c, d, e, f, ..] = self.numbers;
         StoneState { vertical: [a, b, c], w: [d, e, f] }
     }
 
-    /// The time of the end.
+    /// The time of the end of the motion, in sqrt(a/g).
     pub fn end(&self) -> f64 {
         self.numbers[6]
     }
 
-    /// The last spin.
+    /// The angular velocity about the vertical at the end, in sqrt(g/a).
     pub fn spin(&self) -> f64 {
         self.numbers[7]
     }
@@ -195,17 +195,17 @@ impl StoneSummary {
         Some(self.numbers[8]).filter(|count| !count.is_nan()).map(|count| count as usize)
     }
 
-    /// The time of the first reversal, if there is one and reversals are counted.
+    /// The time of the first reversal of the spin, in sqrt(a/g), if there is one and reversals are counted.
     pub fn first_reversal(&self) -> Option<f64> {
         Some(self.numbers[9]).filter(|time| !time.is_nan())
     }
 
-    /// The heat of friction.
+    /// The heat of friction, in M g a.
     pub fn dissipated(&self) -> f64 {
         self.numbers[10]
     }
 
-    /// The energy lost to the losses.
+    /// The energy lost to the losses, in M g a.
     pub fn work_lost(&self) -> f64 {
         self.numbers[11]
     }
@@ -220,12 +220,12 @@ impl StoneSummary {
         self.numbers[13]
     }
 
-    /// The time in the air.
+    /// The total time in the air, in sqrt(a/g).
     pub fn air_time(&self) -> f64 {
         self.numbers[14]
     }
 
-    /// The energy lost in impacts.
+    /// The energy lost in impacts, in M g a.
     pub fn lost_in_impacts(&self) -> f64 {
         self.numbers[15]
     }
@@ -240,7 +240,7 @@ impl StoneSummary {
         self.numbers[17]
     }
 
-    /// The time up to which the motion is known.
+    /// The time, in sqrt(a/g), up to which the estimated error of the motion is small.
     pub fn known_until(&self) -> f64 {
         self.numbers[18]
     }

@@ -184,7 +184,7 @@ pub struct Reading {
 pub struct MeasuredMotion {
     /// The motion in natural units.
     pub natural: Motion,
-    /// The body.
+    /// The measured body.
     pub of: Measured,
     /// The requested times in seconds.
     pub seconds: Vec<f64>,
@@ -212,12 +212,12 @@ impl core::fmt::Display for Measured {
 }
 
 impl Measured {
-    /// A body with these natural units.
+    /// Makes a measured body from a body and its natural units in SI.
     pub fn new(body: Body, scale: Scale) -> Self {
         Self { body, scale }
     }
 
-    /// A uniform tube.
+    /// Makes a measured body from the dimensions of a uniform tube.
     ///
     /// # Errors
     /// Those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than 0.01 kg/m^3, a
@@ -230,7 +230,7 @@ impl Measured {
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
-    /// Any axisymmetric body of this size with these moments.
+    /// Makes an axisymmetric body of this size with these moments of inertia.
     ///
     /// ```
     /// use spincyl::measured::{Measured, MeasuredMoments};

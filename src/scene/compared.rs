@@ -54,7 +54,7 @@ pub struct Deviation {
     pub theta: f64,
 }
 
-/// What may be wrong with the numbers of an engine, rather than with the engine.
+/// A probable mistake in the units or the order of an engine's numbers, rather than in the engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Doubt {
@@ -70,13 +70,13 @@ pub enum Doubt {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// The deviations.
+    /// The deviation of the engine at each time.
     pub rows: Vec<Deviation>,
     /// A bound for the error of the known positions in metres. A smaller deviation is no error of the engine.
     pub position_error: f64,
     /// A bound for the error of the known orientations, in radians.
     pub angle_error: f64,
-    /// What may be wrong with the numbers.
+    /// Probable mistakes in the units or the order of the numbers.
     pub doubts: Vec<Doubt>,
 }
 

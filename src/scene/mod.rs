@@ -67,18 +67,18 @@ pub enum SceneError {
     /// The motion cannot be computed.
     #[error(transparent)]
     Model(#[from] Error),
-    /// The text is not the file of a scene.
+    /// The text is not the content of a scene's file, for the reason given.
     #[error("text: {0}")]
     File(String),
-    /// The motion is not one that a scene can have.
+    /// A scene cannot have this motion, for the reason given.
     #[error("{0}")]
     Motion(&'static str),
-    /// A row of an engine is not a row of a trajectory.
+    /// A row of the trajectory of an engine is not valid.
     #[error("rows[{index}]: expected {expected}")]
     Row {
         /// The index of the row.
         index: usize,
-        /// What a row has to be.
+        /// The condition that the row does not meet.
         expected: &'static str,
     },
 }

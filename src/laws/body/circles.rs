@@ -14,8 +14,8 @@ use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 impl Body {
-    /// The inclinations at which one circle of the body follows another, in radians, and the distance of both points of
-    /// contact there, which is 0 at a smooth joint.
+    /// The inclinations at which the body passes from one circle to the next, in radians, and the distance of both points of
+    /// contact there, in R, which is 0 if the body passes without an impact.
     pub fn borders(&self) -> Vec<[f64; 2]> {
         match &self.row {
             Some(row) => row.borders().collect(),
@@ -39,7 +39,7 @@ impl Body {
         Self { ell: depth, fillet, rim, low, theta_end, row, ..self }
     }
 
-    /// The circles of the body, from the end from which it is seen.
+    /// The circles of the body, from its lower end up.
     pub fn circles(&self) -> Vec<Circle> {
         let here = Circle { radius: self.rim.hi, depth: self.ell, fillet: self.fillet };
         match &self.row {
@@ -131,8 +131,8 @@ impl Body {
         Self { row: Some(row), ..*self }.on_circle(at)
     }
 
-    /// The body with this circle carrying, by its number in [`circles`](Self::circles), as told from its lower end. States and
-    /// poses of a motion refer to the body in this way; one circle or two equal rims are the body itself.
+    /// The same body standing on the circle with this index in [`circles`](Self::circles). States and poses of a motion refer
+    /// to the lower end of the returned body. A body of one circle or of two equal rims is returned unchanged.
     ///
     /// ```
     /// use spincyl::{Body, State, body::Circle, pose::Pose};

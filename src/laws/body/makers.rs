@@ -16,9 +16,9 @@ use crate::error::{Error, within};
 const LENGTH: (f64, f64) = (0.0, 1e50);
 
 impl Body {
-    /// Uniform frustum of a cone, from its lower end, of radius `bottom`, to its upper end, of radius `top`, all in one unit
-    /// of length; the body is told in R, the larger of the two. With a `wall` it is hollow and open at both ends, and the
-    /// wall, measured across the axis, is so thick; 0 is a thin wall.
+    /// Uniform frustum of a cone with the radius `bottom` at its lower end and `top` at its upper end, all in one unit of
+    /// length; the unit R of the body is the larger radius. With a `wall` the frustum is hollow and open at both ends, and
+    /// `wall` is the thickness measured across the axis; 0 is a thin wall.
     ///
     /// ```
     /// let cup = spincyl::Body::frustum(0.7, 1.0, 2.0, None)?;
@@ -56,7 +56,7 @@ impl Body {
     }
 
     /// Uniform solid whose outline is a line of straight pieces between these points (radius, height), from its lower end
-    /// to its upper end, all in one unit of length; the body is told in R, its largest radius. The line may go down into
+    /// to its upper end, all in one unit of length; the unit R of the body is its largest radius. The line may go down into
     /// the body, as inside a cup, but must not cross itself; where it begins or ends beside the axis, a flat face closes it.
     ///
     /// ```
@@ -93,7 +93,7 @@ impl Body {
     }
 
     /// Two solid balls of one density and of these radii, the lower one first, which touch (`separation = 1`) or have their
-    /// centres `separation` times the sum of the radii apart on a light rod. The body is told in R, the larger radius.
+    /// centres `separation` times the sum of the radii apart on a light rod. The unit R of the body is the larger radius.
     ///
     /// # Errors
     /// `OutOfRange` for a separation outside [1, 1000], and for radii that are not positive, that exceed 1e50, or of

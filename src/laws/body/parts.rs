@@ -51,7 +51,7 @@ pub enum Form {
         bores: [f64; 2],
         /// Heights of the ends.
         ends: [f64; 2],
-        /// Radius of the fillets.
+        /// Radius of the fillets of both outer edges; 0 unless the solid is a cylinder.
         fillet: f64,
     },
     /// A ball, solid or hollow, or its part between two heights: outer and inner radius, height of the centre, both
@@ -77,16 +77,16 @@ pub enum Form {
     Shell {
         /// Radius of the sphere.
         radius: f64,
-        /// Height of its centre.
+        /// Height of the centre of the sphere.
         centre: f64,
         /// Heights between which the part lies.
         ends: [f64; 2],
     },
     /// A thin ring; a point on the axis if its radius is zero.
     Ring {
-        /// Radius.
+        /// Radius of the ring; 0 for a point on the axis.
         radius: f64,
-        /// Height.
+        /// Height of the ring.
         height: f64,
     },
 }

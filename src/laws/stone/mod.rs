@@ -156,7 +156,7 @@ impl Ellipsoid {
         stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
     }
 
-    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, where x is counted from the
+    /// Mean of `sum (x_i/a_i)^2` over the mass of the stone, which tells how far out the mass lies; x is counted from the
     /// centre of the ellipsoid. The mean is 3/5 for a uniform ellipsoid, 1 for a thin shell, and at most 1 if all mass is
     /// within the ellipsoid; moments with a larger mean need mass outside.
     pub fn reach(&self) -> f64 {

@@ -20,7 +20,7 @@ pub enum MapQuantity {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MapPoint {
-    /// The value.
+    /// The value of the quantity at the point.
     pub value: f64,
     /// Index of the inclination.
     pub theta: usize,

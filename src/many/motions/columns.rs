@@ -298,7 +298,7 @@ coded! {
         LastPhase = 20,
         /// Cosine of the angle from the vertical to the axis of the first rim, at the last time or at the end.
         AxisUp = 21,
-        /// Code of [`RestsOn`](crate::motion::RestsOn), what the body lies or stands on at rest.
+        /// Code of [`RestsOn`](crate::motion::RestsOn), the part on which the body rests at the end.
         RestsOn = 22,
     }
 }
@@ -307,17 +307,17 @@ coded! {
 pub const SUMMARIES: usize = 23;
 
 impl Summary {
-    /// Its name in Python and in tables.
+    /// The name of the summary in Python and in tables.
     pub fn name(self) -> &'static str {
         self.label()[0]
     }
 
-    /// Its unit, such as "sqrt(R/g)"; "1" for a number without one.
+    /// The unit of the summary, such as "sqrt(R/g)"; "1" for a number without a unit.
     pub fn unit(self) -> &'static str {
         self.label()[1]
     }
 
-    /// What it is, in words.
+    /// The description of the summary in words.
     pub fn description(self) -> &'static str {
         self.label()[2]
     }

@@ -76,17 +76,17 @@ pub struct Ask {
     /// both rims, but the motion of a stone ends where its edge lands, and the motion of a body on a patch of contact
     /// ends where a face or its other rim lands.
     pub restitution: Option<f64>,
-    /// The law whose coefficient the restitution is.
+    /// The law of restitution, to which the coefficient `restitution` belongs.
     #[cfg_attr(feature = "serde", serde(default))]
     pub impact_law: ImpactLaw,
-    /// How the table presses on a face on which the body stands.
+    /// The model of the pressure of the table on a face on which the body stands.
     pub face: Face,
-    /// The slope of the table, between -pi/2 and pi/2: x points downhill.
+    /// The slope of the table, in radians, between -pi/2 and pi/2; x points downhill.
     #[cfg_attr(feature = "serde", serde(default))]
     pub slope: f64,
     /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are over the table, and
-    /// the other numbers of a motion are those in the laboratory. A body that comes to rest over a level table, which carries
-    /// it, stops; a face that lands, and a second rim, end a motion.
+    /// the other numbers of a motion are those in the laboratory. A motion ends where a face or a second rim lands, or where
+    /// the body comes to rest on a level table that carries it.
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
@@ -103,7 +103,7 @@ pub struct Ask {
 }
 
 impl Ask {
-    /// The options of an exact motion with this contact up to its first event, without losses, poses and forces.
+    /// Options of an exact motion with this contact up to its first event, without losses, poses and forces.
     pub fn on(table: impl Into<Table>) -> Self {
         Self::default().with_table(table)
     }
@@ -120,7 +120,7 @@ impl Ask {
         Self { losses, ..self }
     }
 
-    /// Returns these options with rolling resistance at these times.
+    /// Returns these options with rolling resistance always or only while the body rolls.
     ///
     /// ```
     /// use spincyl::contact::Friction;
@@ -231,7 +231,7 @@ impl Ask {
     }
 }
 
-/// Where the lowest point of a body is above the table. In files it is the array of both numbers.
+/// Height of the lowest point of a body above the table, and its vertical velocity. In files: the array of both numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -242,12 +242,12 @@ impl Ask {
 pub struct AboveTable {
     /// The height above the table, in R.
     pub height: f64,
-    /// The vertical velocity, in sqrt(g R).
+    /// The upward velocity of the lowest point, in sqrt(g R).
     pub lift: f64,
 }
 
 impl AboveTable {
-    /// This height and this vertical velocity.
+    /// A lowest point at this height, in R, with this vertical velocity, in sqrt(g R).
     pub const fn new(height: f64, lift: f64) -> Self {
         Self { height, lift }
     }
@@ -278,16 +278,16 @@ pub struct Start<S = State> {
     /// ([`stone::roll`](super::stone::roll)).
     #[cfg_attr(feature = "serde", serde(default))]
     pub slip: [f64; 2],
-    /// The initial time.
+    /// The initial time, in sqrt(R/g).
     #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
     /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
     /// the air; this needs a restitution.
     pub aloft: Option<AboveTable>,
-    /// The direction phi to which the axis leans at first, from the x axis.
+    /// The direction phi to which the axis leans at first, in radians from the x axis.
     #[cfg_attr(feature = "serde", serde(default))]
     pub heading: f64,
-    /// The first place of the contact point.
+    /// The initial contact point (x, y), in R.
     #[cfg_attr(feature = "serde", serde(default))]
     pub place: [f64; 2],
 }
@@ -443,8 +443,7 @@ fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
 /// Checks the times. Returns the signed span from the initial to the last time.
 fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
-    let expected =
-        "one or more times, ascending from t0 on or descending from t0 on, |t| <= 1e15";
+    let expected = "one or more times, ascending from t0 on or descending from t0 on, |t| <= 1e15";
     let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
     let way = if last < t0 { -1.0 } else { 1.0 };
     let mut before = 0.0;
