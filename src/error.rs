@@ -73,7 +73,7 @@ pub enum Error {
     },
     /// The motion cannot be computed from this state on: rounding errors outweigh the terms of the equations.
     #[error(
-        "theta = {theta:?}: rounding errors outweigh the motion here, so it cannot be continued: give earlier times"
+        "theta = {theta:?}: rounding errors outweigh the motion here, so it cannot be continued: give earlier times or another state"
     )]
     Lost {
         /// The inclination, in radians.

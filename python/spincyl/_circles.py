@@ -34,7 +34,7 @@ CIRCLE_COLUMNS = [[f"{name}{k}" for name in ("radius", "height", "fillet")] for 
 
 @compared_by_value
 class Apex(NamedTuple):
-    """How a body rolls on two neighbouring circles round its apex, the point where its axis meets the table.
+    """Rolling of a body on two circles round its apex, the point where its axis meets the table.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Circles:
 
     @property
     def borders(self) -> Floats:
-        """(n - 1,) inclinations in radians at which the body passes from each of its `circles` to the next."""
+        """(n - 1,) inclinations in radians at which the body passes from a circle of `circles` to the next."""
         return self._told()[1][:, 0].copy()
 
     @property
@@ -212,7 +212,7 @@ class Circles:
 
 
 def rows_of(name: str, given: Iterable[Sequence[float]], *widths: int, metre: str = "") -> list[list[float]]:
-    """Rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
+    """Check rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
     try:
         rows = [list(row) for row in given]
     except TypeError:

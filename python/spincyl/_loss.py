@@ -322,7 +322,7 @@ def command_line_name(kind: type[Law]) -> str:
 
 
 def divided_by_unit(value: Reals, unit: float) -> Reals:
-    """A coefficient in natural units. Overflow gives inf without a warning: the law refuses it."""
+    """Convert a coefficient to natural units; overflow gives inf without a warning, which the law rejects."""
     with np.errstate(over="ignore"):
         return value / unit
 

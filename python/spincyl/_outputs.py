@@ -29,7 +29,7 @@ _EXCLUDES = {
 
 
 class Number(property):
-    """An output at each time, in the units of the motion; AttributeError if it was not computed."""
+    """Descriptor of an output at each time, in the units of the motion; AttributeError if not computed."""
 
     def __init__(self, needs: str, said: str) -> None:
         super().__init__(lambda m: output_in_units(m, self._name, needs))
@@ -95,7 +95,7 @@ def _given(m: "Motion", setting: str) -> bool:
 
 
 class Outputs(Hinting):
-    """Outputs of a motion at each time that are computed if they were asked for."""
+    """Base of motions: the optional outputs at each time."""
 
     contact_point = Number(
         POSE,

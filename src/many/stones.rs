@@ -41,7 +41,7 @@ pub struct StoneRow {
 }
 
 impl StoneRow {
-    /// A stone on a level table without a slip, with the friction and the losses of all.
+    /// A stone on a level table without a slip, with the friction and the losses of the job.
     pub fn new(stone: &Ellipsoid, state: StoneState) -> Self {
         let StoneState { vertical: [a, b, c], w: [d, e, f] } = state;
         Self {
@@ -55,13 +55,13 @@ impl StoneRow {
         }
     }
 
-    /// Returns this row with this slip along x and y.
+    /// Returns this row with this slip along x and y, in sqrt(g a).
     #[must_use]
     pub fn with_slip(self, x: f64, y: f64) -> Self {
         Self { slip: [x, y], ..self }
     }
 
-    /// Returns this row with friction of its own, of the kind that all have.
+    /// Returns this row with its own coefficients of friction; the law of friction is that of the job.
     #[must_use]
     pub fn with_friction(self, friction: Friction) -> Self {
         let coefficients = match friction {
@@ -71,19 +71,19 @@ impl StoneRow {
         Self { coefficients: Some(coefficients), ..self }
     }
 
-    /// Returns this row with losses of its own.
+    /// Returns this row with its own losses, in place of those of the job.
     #[must_use]
     pub fn with_losses(self, losses: Losses) -> Self {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns this row on a table with this slope, with the angle phi at the start.
+    /// Returns this row on a table with this slope and with the angle phi at the start, both in radians.
     #[must_use]
     pub fn with_slope(self, slope: f64, phi: f64) -> Self {
         Self { slope: Some([slope, phi]), ..self }
     }
 
-    /// Returns this row in the air, with the height of the lowest point and its vertical velocity.
+    /// Returns this row in the air, with the height of the lowest point, in a, and its vertical velocity, in sqrt(g a).
     #[must_use]
     pub fn with_aloft(self, height: f64, lift: f64) -> Self {
         Self { aloft: Some([height, lift]), ..self }
@@ -132,7 +132,7 @@ impl<'a> StoneJob<'a> {
     }
 }
 
-/// The result of one motion of many.
+/// The result of the motion of one stone of many.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneSummary {

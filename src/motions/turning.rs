@@ -127,7 +127,7 @@ pub fn turning_spin(
 }
 
 /// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
-/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or something on the way is stable.
+/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or stable in between.
 ///
 /// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
 /// few roundings.

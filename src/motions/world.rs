@@ -79,8 +79,8 @@ impl WorldStart {
 }
 
 impl Measured {
-    /// The start in natural units of a body that starts there in the world: its state, slip, direction and place. A body whose
-    /// lowest point is more than 1e-9 R above the table, or rises, starts in the air.
+    /// Converts a start in the world to a start in natural units: state, slip, direction and place. A body whose lowest point
+    /// is more than 1e-9 R above the table, or rises, starts in the air.
     ///
     /// # Errors
     /// `OutOfRange` for a body below the table, for one on the table that moves into it, and for numbers that are not finite.
@@ -119,8 +119,8 @@ impl Measured {
         Ok(found.with_heading(phi).with_place([x + lever * cos, y + lever * sin]))
     }
 
-    /// The motion of a body that starts there in the world, at these times in seconds; its readings are in the world. Options
-    /// are in natural units, and `go_on` is as for [`roll`](Self::roll).
+    /// Computes the motion of the body from a start in the world, at these times in seconds; its readings are along the axes
+    /// of the world. Options are in natural units, and `go_on` is as for [`roll`](Self::roll).
     ///
     /// # Errors
     /// Those of [`start_in_world`](Self::start_in_world) and of [`roll`](Self::roll).

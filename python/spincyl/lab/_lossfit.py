@@ -352,7 +352,7 @@ def remark(found: FittedLoss) -> str:
 
 
 def notes(found: LossFit) -> list[str]:
-    """Notes below the table."""
+    """The notes below the table of fitted laws."""
     which = "with the centre at rest, or by rolling" if found.centre == "either" else CENTRE[found.centre]
     said = [f"{len(found.t)} points; drift {which}"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]

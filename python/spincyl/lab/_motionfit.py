@@ -28,7 +28,7 @@ _LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 
 @compared_by_value
 class MotionFit(NamedTuple):
-    """Numbers of a motion fitted to a measured one; returned by `fit_motion`.
+    """Result of `fit_motion`: the numbers of a motion that fit a measured motion best.
 
     Methods: ``correlation(a, b)`` and ``report()``.
 

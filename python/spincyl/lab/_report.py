@@ -50,7 +50,7 @@ def written(value: float) -> str:
 
 
 def counted(many: int) -> str:
-    """A count, in words if it is small."""
+    """A count as text: a word if it is small, else digits."""
     words = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return words[many] if many < len(words) else str(many)
 

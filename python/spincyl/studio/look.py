@@ -108,12 +108,12 @@ def _rise(reach: float, slope: float) -> float:
 
 
 def held(reach: float, top: float) -> float:
-    """Half the height that the camera has to show."""
+    """Half of the height that has to fit into the camera's view."""
     return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
 
 
 def opened(t: float, turns: float, along: Floats, turned: Floats, *, before: bool) -> tuple[float, float]:
-    """Begin and end of an exposure that lasts for a number of turns after `t`, or before `t`.
+    """Beginning and end of an exposure that lasts for a number of turns after `t`, or before `t`.
 
     `turned` is the number of turns about the vertical at the times `along`. It stays within the motion.
     """

@@ -253,30 +253,30 @@ impl<'a> MotionStarts<'a> {
 coded! {
     /// A summary of a motion in one number, from time 0 to the end or the last time.
     pub enum Summary {
-        /// Least inclination.
+        /// Least inclination, in radians.
         ThetaMin = 0,
-        /// Greatest inclination.
+        /// Greatest inclination, in radians.
         ThetaMax = 1,
         /// Least normal force, per weight.
         NormalMin = 2,
         /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
         FrictionCoefficientMax = 3,
-        /// Period of the nutation; infinite for a motion without a period.
+        /// Period of the nutation, in sqrt(R/g); infinite for a motion without a period.
         Period = 4,
         /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
         PrecessionPerPeriod = 5,
-        /// Time of the end: that of the event, or else the last time.
+        /// Time of the end, in sqrt(R/g): that of the event, or else the last time.
         End = 6,
-        /// Total time of slipping.
+        /// Total time of slipping, in sqrt(R/g).
         SlipTime = 7,
         /// The heat made by friction, in M g R.
         Dissipated = 8,
         /// The energy lost to the losses, in M g R.
         WorkLost = 9,
-        /// Number of phases.
+        /// Number of phases of slipping, rolling, flying and lying.
         Phases = 10,
-        /// Time at which the last phase of rolling begins; this and the next four numbers are NaN if the body never
-        /// rolls.
+        /// Time at which the last phase of rolling begins, in sqrt(R/g); this and the next four numbers are NaN if the
+        /// body never rolls.
         RollingTime = 11,
         /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
@@ -290,7 +290,7 @@ coded! {
         Impacts = 16,
         /// Number of times at which the body lands and stays on the table for a while.
         Landings = 17,
-        /// Time in the air.
+        /// Total time in the air, in sqrt(R/g).
         AirTime = 18,
         /// Energy lost in impacts, in M g R.
         LostInImpacts = 19,
