@@ -77,7 +77,7 @@ class Circles:
 
     @property
     def borders(self) -> Floats:
-        """(n - 1,) inclinations in radians at which the body passes from a circle of `circles` to the next."""
+        """(n - 1,) inclinations, in radians, at which the body passes from each circle to the next one."""
         return self._told()[1][:, 0].copy()
 
     @property

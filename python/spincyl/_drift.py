@@ -310,7 +310,7 @@ def drift(
             below = f"below theta = {np.max(fills):.2g}"
             message = (
                 f"the film of AirFilm fills the gap {below} only, and this drift starts above that: "
-                "see loss.BoundaryLayer"
+                "use loss.BoundaryLayer there"
             )
             warnings.warn(message, DriftWarning, stacklevel=2)
     if shape == ():
@@ -333,7 +333,7 @@ def _nan_unless_at_rest(
     rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
         own = body.steady(state.theta)
-        message = f"state = {state!r}: centre='rest' needs the state whose centre rests, {own!r}"
+        message = f"state = {state!r}: expected {own!r}, whose centre is at rest, or give centre='rolling'"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)
     return columns | {"theta": np.ascontiguousarray(theta, np.float64)}

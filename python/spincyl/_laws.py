@@ -75,7 +75,9 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = "stable() is False: on one point of its rim, which it is for, the body is not steady here"
+            why = (
+                "stable() is for a body on one point of its rim, where this state is not steady: it is False"
+            )
             warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 
@@ -310,7 +312,7 @@ class Laws(Circles):
             found = np.vectorize(of_circles, otypes=[float])(theta, mu, code, phi)[()]
         if is_scalar(found) and np.isnan(found):
             refuse_bad_value("mu", mu, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
-            needs = "one that this body can have; on one rim only a disk or a ball rolls, with its axis level"
+            needs = "a posture of this body; on one rim only a disk or a ball rolls, with its axis level"
             raise ValueError(f"posture = {posture!r}: expected {needs}")
         return found
 

@@ -286,7 +286,7 @@ def roll(
     hops = restitution is not None
     given_up_too = hops and m.status == Ending.BOUNDED  # which has a warning of its own
     if not stone and step is None and not given_up_too and not m.error <= LARGE_ERROR:
-        why = "in natural units: its last states are not known"
+        why = "in natural units: its last states are unreliable; give earlier times"
         if hops:
             why = (
                 "in natural units: impacts multiply errors, and after some of them its states are not known;"

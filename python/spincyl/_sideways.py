@@ -55,5 +55,5 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     given = body._at(*numbers_without_slip(state, "expected a state without slip"))
     drift, resonance = _core.slope_drift(*given), _core.slope_resonance(*given)
     if is_scalar(resonance) and np.isnan(resonance):
-        raise ValueError(f"state = {state!r}: expected a steady state of this body, which precesses")
+        raise ValueError(f"state = {state!r}: expected a steady state of this body with a precession")
     return drift, resonance

@@ -41,7 +41,7 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
     if out is None:
         return dict.fromkeys(want)
     if not isinstance(out, Mapping):
-        raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
+        raise TypeError(f"out: expected an earlier result of this function, not {type(out).__name__}")
     for name in want:
         if name not in out:
             there = f"out has only {list(out)}" if out else "out is empty"

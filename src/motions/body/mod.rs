@@ -206,7 +206,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if !body.lands_on_rims() {
-            let expected = "a body that lands on its rims, for a start in the air: the shape of the part that lands here is unknown";
+            let expected = "a body that lands on its rims, for a start in the air: another part of this one lands, and its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
         let (angle, landings) = (start.state.theta.sin_cos(), body.landings());
@@ -214,7 +214,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             let rim = landings.rims[landings.lowest(k, angle.1)];
             let other = height + body.shape().rim.less(&rim).height(angle);
             let value = if other < -1e-15 { -height } else { height };
-            within("height", value, (0.0, 1e6), "all rims on or above the table")?;
+            within("height", value, (0.0, 1e6), "all rims above the table, or on it")?;
         }
     }
     if ask.table.rubs() || start.aloft.is_some() || on_face(body, &start.state) {

@@ -40,7 +40,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
     if frustum:
         return frustum | size
     if body.rims is not None and body.rims[0, 0] + fillet != 1:
-        why = "expected a frustum, or a lowest circle of outer radius R, on which alone a page moves it"
+        why = "expected a frustum, or a body whose lowest circle has the outer radius R"
         raise ValueError(f"body: {why}")
     if not np.isnan(bore):
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
