@@ -50,7 +50,7 @@ pub(crate) struct Reduced<T> {
 }
 
 impl<T: Real> Reduced<T> {
-    /// `round` says whether the body has a fillet; in lanes all bodies have a fillet or none has one.
+    /// `round` says whether the body has a fillet; in SIMD lanes all bodies have a fillet or none has one.
     #[inline(always)]
     pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
         let (shape, zero) = (*shape, shape.i1.splat(0.0));

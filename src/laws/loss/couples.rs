@@ -173,7 +173,7 @@ pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
     /// The direction of (w_h, w2), where it is fixed: (0, 1) or (0, -1) for a body that only rocks, and the direction
-    /// in which rolling and rocking begin; otherwise 0, and in lanes always.
+    /// in which rolling and rocking begin; otherwise 0, and in SIMD lanes always.
     pub rolling: f64,
     pub rocking: f64,
     pub holds: Holds,
