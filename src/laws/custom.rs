@@ -90,7 +90,7 @@ pub struct Push {
 }
 
 impl Push {
-    /// This force along x and y, and this couple along e1, e2, e3.
+    /// A push with this force along x and y, in M g, and this couple along e1, e2, e3, in M g R.
     pub fn new(force: Vector2<f64>, couple: Vector3<f64>) -> Self {
         Self { force, couple }
     }

@@ -133,7 +133,7 @@ impl MeasuredMoments {
         Self { height, fillet: 0.0, i1, i3 }
     }
 
-    /// Returns these numbers with this radius of the edge, in metres.
+    /// Returns these numbers with this radius of the rounded edge, in metres.
     #[must_use]
     pub fn with_fillet(self, fillet: f64) -> Self {
         Self { fillet, ..self }

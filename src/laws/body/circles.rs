@@ -204,17 +204,17 @@ impl Body {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(crate) struct View {
-    /// Whether the body is seen from its upper end.
+    /// Whether the state refers to the upper end of the body.
     pub over: bool,
     /// The numbers of the circle that carries and of the one that lands at theta_end; None for a body with one circle or
     /// two equal rims.
     pub circles: Option<[u8; 2]>,
-    /// Both borders of the circle, as seen and as told from the lower end.
+    /// Both borders of the circle, for inclinations as in the state and for inclinations of the lower end.
     pub borders: [[f64; 2]; 2],
 }
 
 impl View {
-    /// The state as told from the lower end of the body.
+    /// The inclination of the lower end of the body.
     pub fn tells(&self, theta: f64) -> f64 {
         let border = self.borders.iter().find(|[seen, _]| *seen == theta);
         border.map_or(PI - theta, |[_, told]| *told)

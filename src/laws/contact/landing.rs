@@ -67,7 +67,7 @@ pub enum Outcome {
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the rim of before.
+    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the previous rim.
     pub state: State,
     /// The slip of the rim to which `state` refers, along e_h and along e2, in sqrt(g R).
     pub slip: [f64; 2],

@@ -114,7 +114,7 @@ impl Rubbing<Dual<f64>> {
     }
 }
 
-/// The friction of a patch, as shares of what it can be.
+/// The friction of a patch, as shares of the largest friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PatchShares {

@@ -286,7 +286,7 @@ impl<G> Couples<f64, G> {
         self
     }
 
-    /// These losses with another couple beside them.
+    /// These losses and another couple, given by `given`.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {
         let Self { coefficients, present, ways, pull, om, .. } = self;
@@ -360,7 +360,7 @@ impl<T: Real, G: Copy> Couples<T, G> {
         Self { om: turns.then_some(om), ..self }
     }
 
-    /// These losses in another type of number.
+    /// Converts the losses to another type of number.
     #[inline(always)]
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U, G> {
         let ways = self.ways.map(|ways| Ways {

@@ -340,7 +340,7 @@ impl Losses {
         Ok(())
     }
 
-    /// Checks the coefficients, and that the body has what each law acts on.
+    /// Checks the coefficients, and that the body has a face, a rim or another part on which each law acts.
     ///
     /// # Errors
     /// Those of [`check`](Self::check), and `OutOfRange` with the name "fillet" for a ball under a law that needs a

@@ -123,7 +123,7 @@ impl<'a> MotionStarts<'a> {
         Self { slopes: Some([slope, phi]), ..self }
     }
 
-    /// Returns these starts with slips along the lean and across it, in sqrt(g R). Without them there is no slip, and
+    /// Returns these starts with slips along e_h and along e2, in sqrt(g R). Without them there is no slip, and
     /// the centre of a body on its face is at rest under friction.
     #[must_use]
     pub fn with_slips(self, along_lean: &'a [f64], across_lean: &'a [f64]) -> Self {
@@ -145,7 +145,7 @@ impl<'a> MotionStarts<'a> {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns these starts in the air, with the heights of the lowest points and their vertical velocities.
+    /// Returns these starts in the air, with the heights of the lowest points, in R, and their upward velocities.
     #[must_use]
     pub fn with_aloft(self, height: &'a [f64], lift: &'a [f64]) -> Self {
         Self { aloft: Some([height, lift]), ..self }
@@ -464,44 +464,44 @@ impl<'a> MotionOutput<'a> {
         }
     }
 
-    /// Returns these arrays with those of the states, row-major (motion, time); NaN after the end of a motion.
+    /// Returns this output with arrays of the states, row-major (motion, time); NaN after the end of a motion.
     #[must_use]
     pub fn with_states(self, states: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
         Self { states: Some(states.into().into()), ..self }
     }
 
-    /// Returns these arrays with those of the slips along the lean and across it, in the layout of the states.
+    /// Returns this output with arrays of the slips along e_h and along e2, in the layout of the states.
     #[must_use]
     pub fn with_slips(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
         Self { slips: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these arrays with that of the rims from which the states are seen, 0 or 1, in their layout; only for
+    /// Returns this output with an array of the rims, 0 or 1, to which the states refer, in their layout; only for
     /// motions with a restitution.
     #[must_use]
     pub fn with_rims(self, rims: &'a mut [f64]) -> Self {
         Self { rims: Some(rims), ..self }
     }
 
-    /// Returns these arrays with those of the states at the last time, or at the end.
+    /// Returns this output with arrays of the states at the last time, or at the end.
     #[must_use]
     pub fn with_last(self, last: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
         Self { last: Some(last.into().into()), ..self }
     }
 
-    /// Returns these arrays with those of the slips at the last time, or at the end, along the lean and across it.
+    /// Returns this output with arrays of the slips at the last time, or at the end, along e_h and along e2.
     #[must_use]
     pub fn with_last_slip(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
         Self { last_slip: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these arrays with that of the rims from which the last states are seen.
+    /// Returns this output with an array of the rims to which the last states refer.
     #[must_use]
     pub fn with_last_rim(self, last_rim: &'a mut [f64]) -> Self {
         Self { last_rim: Some(last_rim), ..self }
     }
 
-    /// Returns these arrays with that of this summary.
+    /// Returns this output with an array of this summary.
     #[must_use]
     pub fn with_summary(mut self, of: Summary, column: &'a mut [f64]) -> Self {
         self.summary[of as usize] = Some(column);
