@@ -64,13 +64,13 @@ class RestsOn(IntEnum):
     NONE
         The body is not at rest, or the motion ended before the body came to rest.
     FACE
-        Its first face, at the rim to which the initial state refers, or at the lower end of a body of
+        The first face, at the rim to which the initial state refers, or at the lower end of a body of
         several circles; `Motion.axis_up` is then 1. The code is the same if the motion ended with
         `Ending.FACE`, after which the body still spins or bounces on that face.
     OTHER_FACE
-        The face at its other end; `Motion.axis_up` is then -1.
+        The face at the other end of the body; `Motion.axis_up` is then -1.
     SIDE
-        Its side: both rims, any two circles, or a rim and another part of the body.
+        The side: both rims, any two circles, or a rim and another part of the body.
     EDGE
         A rim, at rest: the body is balanced, or held by dry losses. A ball rests at any inclination.
     """

@@ -183,7 +183,7 @@ class Laws(Circles):
         """Least w3, in sqrt(g/R), with which a ball stands stably on its pole, like a sleeping top.
 
         The result is 0 for a ball that is stable at rest, and NaN for other bodies. Its relative error is at
-        most 4 * 2^-53.
+        most 4 * 2^-53. `contact` is "rolling" or "smooth".
         """
         law = _core.standing_rolling if is_rolling(contact) else _core.standing_smooth
         return law(*self._numbers)
@@ -402,19 +402,22 @@ class Laws(Circles):
 
     @elementwise
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
-        """Angular acceleration theta'' of a state, in g/R; 0 if the state is steady."""
+        """Angular acceleration theta'' of the body in a state, in g/R; 0 if the state is steady.
+
+        The state has no slip; `contact` is "rolling" or "smooth".
+        """
         law = _core.acceleration if is_rolling(contact) else _core.acceleration_smooth
         found = law(*self._at(*numbers_without_slip(state, _ROLLS)))
         return found if self.rims is None else self._sign(state.theta) * found
 
     @elementwise
     def angular_momentum(self, state: State) -> Result:
-        """Magnitude of the angular momentum about the centre of mass, in M R^2 sqrt(g/R)."""
+        """Magnitude of the angular momentum of a state about the centre of mass, in M R^2 sqrt(g/R)."""
         return _core.angular_momentum(*self._at(*numbers(state)))
 
     @elementwise
     def beta(self, state: State) -> Result:
-        """Angle from the symmetry axis to the angular momentum, in radians."""
+        """Angle from the symmetry axis to the angular momentum of a state, in radians."""
         return _core.beta(*numbers(state), *self._raw)
 
     @elementwise
@@ -437,5 +440,5 @@ class Laws(Circles):
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
-        """Radius of the circle on which the centre moves, in R; 0 at rest, infinite for a straight line."""
+        """Radius of the circle on which the centre moves in a state, in R; infinite for a straight line."""
         return _core.centre_radius(*self._at(*numbers_without_slip(state, _ROLLS)))

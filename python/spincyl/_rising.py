@@ -23,8 +23,8 @@ def rising_spin(
         Single spheroid whose third semi-axis is the longest, with its mass symmetric about this axis, as made
         by `Ellipsoid.egg`.
     contact : Coulomb or Viscous, optional
-        Law of friction, with single numbers. Default: the estimate, which needs no law of friction and is not
-        exact for any.
+        Law of friction, with single numbers. Default: no law; the result is then the estimate, which is not
+        exact for any law of friction.
     lean : float, optional
         Initial angle between the axis and its position when the egg rests on its side, in radians, from 1e-6
         to 1. Used only with a contact.

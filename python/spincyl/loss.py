@@ -319,7 +319,7 @@ class BoundaryLayer(Law):
         density: Reals = _AIR_DENSITY,
         viscosity: Reals = _AIR_VISCOSITY,
     ) -> Self:
-        """Make the law from the number `C`, of order 0.1, and the air's density (kg/m^3) and viscosity (Pa s).
+        """Make the law from the number `C`, of order 0.1, and density (kg/m^3) and viscosity (Pa s) of air.
 
         `scale` is a measured body with a known mass, or a `Scale`.
         """

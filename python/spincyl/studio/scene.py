@@ -144,8 +144,8 @@ class Scene:
         OSError
             If the file cannot be read.
         ValueError
-            If it is not the file of a scene, or if its answer differs by more than its errors from the motion
-            that it is computed from.
+            If the file is not that of a scene, or if the known motion in the file differs from the motion
+            computed again by more than the errors of both.
 
         Examples
         --------

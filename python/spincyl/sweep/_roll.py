@@ -63,7 +63,7 @@ class Answer(IntEnum):
     Attributes
     ----------
     NONE
-        None: see `Status.INVALID`.
+        No method: the body, the state or the step is invalid (`Status.INVALID`).
     LANES
         The first integrals, eight motions at a time. With a law of friction or a restitution: the body rolls
         from the start to the end.
