@@ -106,7 +106,7 @@ _INSTEAD = {
 
 
 def proposal(name: str, known: Iterable[str]) -> str:
-    """A proposal in place of a name, after a colon; empty if no known name is similar."""
+    """Text that proposes a known name similar to a wrong one, after a colon; empty if none is similar."""
     names = [x for x in known if not x.startswith("_")]
     if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
         return ": semi_axes= are half of length, width and height of the whole ellipsoid"

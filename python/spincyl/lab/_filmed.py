@@ -34,7 +34,7 @@ _WILD = 4.0  # standard errors from which on a difference is left out, since a m
 
 
 class Scatter(NamedTuple):
-    """Standard errors in a single frame, in metres."""
+    """Standard errors of the measured values in a single frame of a film, in metres."""
 
     along: float  #: of the length of the line
     across: float  #: of its direction times its length

@@ -18,7 +18,7 @@ _FIRST_ERROR = 0.01  # first guess of the relative error of values
 
 
 class Several(ValueError):
-    """The measured spin-down may start from several inclinations."""
+    """Error about a measured spin-down that may start from several inclinations."""
 
 
 class SpinDown(NamedTuple):

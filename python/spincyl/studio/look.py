@@ -26,7 +26,7 @@ class Look(NamedTuple):
 
 
 def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
-    """The look of a view from its arguments; an error names a wrong argument."""
+    """The settings of a view's picture from the arguments of `view`; an error names a wrong argument."""
     drawn = None if drawn is None else known_words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
