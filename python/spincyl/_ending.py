@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Ending(IntEnum):
-    """How a motion ended: the status of a `Motion`.
+    """Code of the way in which a motion ended: the status of a `Motion`.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def message(m: "Motion") -> str:
-    """How a motion ended and how it was computed, in words."""
+    """Text about a motion: how it ended, how it was computed, and its estimated errors."""
     why = MESSAGES[m.status][0]
     if m._limit is not None:
         why += f", since {m._limit[1]}"

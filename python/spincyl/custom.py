@@ -173,7 +173,7 @@ class Moment:
     time : float
         Time, in sqrt(R/g), or in s for a measured body.
     theta : float
-        Inclination of the axis, in radians. A body with two rims is seen from the lower one.
+        Inclination of the axis, in radians; for a body with two rims that of the lower one.
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray

@@ -304,7 +304,7 @@ pub(crate) fn many_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, how.0)?;
-    within("slope", how.0.slope, (0.0, 0.0), "0: the slopes of many stones are in their rows")?;
+    within("slope", how.0.slope, (0.0, 0.0), "0: give the slopes of many stones by `StoneRow::with_slope`")?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let done = match laws {

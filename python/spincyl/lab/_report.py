@@ -45,7 +45,7 @@ def with_error(value: float, error: float, joint: str = "+-") -> str:
 
 
 def written(value: float) -> str:
-    """A number with six digits."""
+    """A number as text with six digits."""
     return f"{value:.6g}"
 
 

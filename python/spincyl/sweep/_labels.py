@@ -19,7 +19,7 @@ _OF_CIRCLES = {name for names in CIRCLE_COLUMNS for name in names}
 
 
 class Status(IntEnum):
-    """How a motion of a sweep ended.
+    """Code of the way in which a motion of a sweep ended.
 
     Attributes
     ----------

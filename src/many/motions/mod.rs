@@ -136,19 +136,23 @@ impl<'a> Job<'a> {
             return unknown(
                 law.parameter(),
                 coefficient,
-                "0: losses of many motions are columns of their starts",
+                "0: give the losses of many motions by `MotionStarts::with_losses`",
             );
         }
         for (name, value) in [("slope", ask.slope), ("turning", ask.turning)] {
             if value != 0.0 {
-                return unknown(name, value, "0: the tables of many motions are columns of their starts");
+                return unknown(
+                    name,
+                    value,
+                    "0: give the slopes of many motions by `MotionStarts::with_slopes`",
+                );
             }
         }
         if let Method::Tolerance(tol) = ask.method {
-            return unknown("method", tol, "no tolerance, which is `tol` of the job");
+            return unknown("method", tol, "exact or a fixed step: give a tolerance by `Job::with_tol`");
         }
         if ask.pose || ask.force {
-            return unknown("pose, force", 1.0, "false: many motions have states only");
+            return unknown("pose, force", 1.0, "false: poses and forces are only for single motions");
         }
         if !flows {
             within("tol", self.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;

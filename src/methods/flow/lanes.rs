@@ -57,7 +57,7 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
-    /// Number of crawling steps that are allowed.
+    /// Number of steps that may hardly advance the time.
     pub patience: u64,
     /// Number of evaluations that the lane counts at its start, besides those that it makes ([`evaluations_before_limit`]).
     pub made: u64,
