@@ -142,7 +142,7 @@ def times_of(t: Reals) -> Floats:
 
 
 def checked_max_nfev(most: int | None) -> int | None:
-    """The argument `max_nfev`, checked."""
+    """Return the argument `max_nfev` as an int or None, or raise an error that names it."""
     return most if most is None else whole("max_nfev", most, 1, 2**63 - 1)
 
 

@@ -60,13 +60,13 @@ pub(super) struct Known {
     pub energy: f64,
     /// The largest ratio of friction to normal force.
     pub needed: f64,
-    /// Of all points of contact together.
+    /// The normal force of all points of contact together.
     pub normal: f64,
     /// NaN on both rims.
     pub force: Vector3<f64>,
     /// NaN where there is not one point of contact.
     pub point: Vector3<f64>,
-    /// Of the lowest point.
+    /// The height of the lowest point.
     pub height: f64,
 }
 

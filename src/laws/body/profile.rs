@@ -110,7 +110,7 @@ pub(crate) struct CircleRow {
     count: usize,
     /// The circle that carries.
     at: usize,
-    /// Whether the body is seen from its upper end.
+    /// Whether the states refer to the upper end of the body.
     over: bool,
 }
 
@@ -238,7 +238,7 @@ impl CircleRow {
         if self.over { self.count - 1 - self.at } else { self.at }
     }
 
-    /// Whether the body is seen from its upper end.
+    /// Whether the states refer to the upper end of the body.
     pub fn is_over(&self) -> bool {
         self.over
     }
