@@ -303,7 +303,7 @@ pub struct Expected {
     pub impacts: Option<Vec<SceneImpact>>,
     /// The phases and the times at which they begin.
     pub phases: Vec<ScenePhase>,
-    /// How the motion ends.
+    /// The ending of the known motion, with its time and its reason.
     pub ending: SceneEnding,
 }
 
@@ -331,7 +331,7 @@ pub struct ScenePhase {
     pub kind: String,
 }
 
-/// How the motion ends.
+/// The ending of the known motion, with its time and its reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneEnding {

@@ -92,7 +92,7 @@ def slopes_at(column: Any, t: Floats, second: float) -> Sloped | None:
 
 
 def slopes(t: Floats, window: int) -> tuple[Any, Floats]:
-    """Rows of the frames near each frame, and weights whose sum is the slope at the frame; NaN at a gap."""
+    """Rows of the frames near each frame, and their weights in the slope at the frame; NaN at a gap."""
     many = min(window, t.size)
     at = np.arange(t.size)[:, np.newaxis]
     rows = np.clip(at - many // 2, 0, t.size - many) + np.arange(many)

@@ -58,7 +58,7 @@ impl<T: Real> Kinematics<T> {
         self
     }
 
-    /// w_h, the rolling.
+    /// The component w_h of the angular velocity along e_h: the rolling.
     #[inline(always)]
     pub fn rolling(&self) -> T {
         -(self.angle.0 * self.spin)
