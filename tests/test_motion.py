@@ -257,7 +257,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"want": 5}, TypeError, "want: expected 'pose', 'force' or both, not int"),
         ({"want": None}, TypeError, "want: expected"),
         ({"beyond": "no"}, TypeError, "beyond: expected True or False, not str"),
-        ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected at least one time, in order"),
+        ({"t": [0, 2, 1]}, ValueError, "t = 1.0: expected one or more times, ascending"),
         ({"t": [[0, 1]]}, ValueError, r"t: expected a number or a one-dimensional array, not shape \(1, 2\)"),
         ({"t": "now"}, TypeError, "t: expected real numbers"),
         ({"t": 1j}, TypeError, "t: expected real numbers"),
