@@ -253,7 +253,7 @@ def test_a_step_that_would_lie_is_refused_and_a_doubtful_one_warned_of():
         ({"state": sc.State(1.0, 1e308, 0.0, 1.0)}, ValueError, "w1 = 1e308: expected at most 1e6"),
         ({"body": sc.Body.solid(1e7)}, ValueError, "ell = 10000000.0: expected -1 < ell <= 1e6"),
         ({"t": []}, ValueError, "t: expected at least one time"),
-        ({"t": [np.nan, 1.0]}, ValueError, "t = NaN: expected at least one time"),
+        ({"t": [np.nan, 1.0]}, ValueError, "t = NaN: expected one or more times"),
         ({"want": 5}, TypeError, "want: expected 'pose', 'force' or both, not int"),
         ({"want": None}, TypeError, "want: expected"),
         ({"beyond": "no"}, TypeError, "beyond: expected True or False, not str"),
