@@ -72,7 +72,9 @@ pub enum Error {
         advice: f64,
     },
     /// The motion cannot be computed from this state on: rounding errors outweigh the terms of the equations.
-    #[error("theta = {theta:?}: the motion cannot be computed from here on: rounding errors outweigh it")]
+    #[error(
+        "theta = {theta:?}: rounding errors outweigh the motion here, so it cannot be continued: give earlier times or another state"
+    )]
     Lost {
         /// The inclination, in radians.
         theta: f64,
@@ -90,7 +92,9 @@ pub enum Error {
         limit: f64,
     },
     /// The laws of impact and friction do not determine a unique motion after the other rim lands.
-    #[error("mu = {mu:?}: the landing of the other rim has {outcomes} consistent outcomes, not one")]
+    #[error(
+        "mu = {mu:?}: the laws of impact and friction allow {outcomes} outcomes of the landing of the other rim, not one"
+    )]
     Landing {
         /// The coefficient of friction.
         mu: f64,
@@ -134,7 +138,7 @@ pub enum Error {
     },
     /// The error of the motion is too large to decide whether a body with this spin turns over or rises.
     #[error(
-        "spin = {spin:?}: whether the body turns over is unknown: the estimated error of its motion is {error:.1e}"
+        "spin = {spin:?}: the estimated error of the motion, {error:.1e}, is too large to tell whether the body turns over or rises: give a shorter time t"
     )]
     Undecided {
         /// The spin, as in the result of the search.
@@ -143,7 +147,7 @@ pub enum Error {
         error: f64,
     },
     /// The memory does not suffice for the request.
-    #[error("too little memory: {bytes} bytes are needed at once")]
+    #[error("too little memory: {bytes} bytes are needed at once; compute fewer times or motions")]
     Memory {
         /// The number of bytes that could not be allocated.
         bytes: usize,

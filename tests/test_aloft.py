@@ -201,7 +201,7 @@ def test_the_outcome_of_a_flick_that_goes_on_is_what_the_motion_says():
         ),
         (
             {"restitution": 0.5, "body": sc.Body(1.0, 0.5, 0.5, theta_end=1.2)},
-            "^theta_end = 1.2: expected none",
+            "^theta_end = 1.2: expected a body that lands on its rims",
         ),
     ],
 )

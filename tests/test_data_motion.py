@@ -222,7 +222,7 @@ def test_a_bound_holds_and_a_number_that_is_not_free_stays():
         ({"measured": {"t": [0.0, 0.1, 0.2], "q": [1, 2, 3]}}, "^measured: 'q' is not an output of a motion"),
         (
             {"measured": {"t": [0.0, 0.1, 0.2], "z": [1.0, 2.0]}},
-            "^measured: 'z' has shape \\(2,\\), beside 3 times",
+            "^measured: 'z' has shape \\(2,\\); expected 3 rows",
         ),
         (
             {"measured": {"t": [0.0, np.nan], "z": [1.0, 2.0]}},

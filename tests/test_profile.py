@@ -385,7 +385,7 @@ def test_a_motion_of_a_cup_is_drawn_told_and_saved():
         [0.021, 0.03]
     )
     assert m.to_xarray()["theta"].size == 20
-    with pytest.raises(ValueError, match=r"^body: expected a frustum, or a lowest circle of outer radius R"):
+    with pytest.raises(ValueError, match=r"^body: expected a frustum, or a body whose lowest circle"):
         sc.play(upside_down(BOTTLE))
     with pytest.raises(ValueError, match=r"^contact = 'rolling': a page moves a frustum with friction"):
         sc.play(CUP)

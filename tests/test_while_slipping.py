@@ -118,7 +118,7 @@ def test_stones_and_pages_to_play_with_refuse_it():
 
 def test_a_resistance_that_friction_cannot_balance_is_refused():
     much = RollingResistance(0.1, while_slipping=False)
-    with pytest.raises(ValueError, match=r"^delta = 0\.1: expected less"):
+    with pytest.raises(ValueError, match=r"^delta = 0\.1: expected a smaller arm"):
         sc.roll(BALL, sc.State(np.pi / 2, 0.0, 0.0, 1.0), 1.0, contact=sc.Coulomb(0.05), losses=much)
 
 

@@ -142,7 +142,7 @@ def times_of(t: Reals) -> Floats:
 
 
 def checked_max_nfev(most: int | None) -> int | None:
-    """The argument `max_nfev`, checked."""
+    """Return the argument `max_nfev` as an int or None, or raise an error that names it."""
     return most if most is None else whole("max_nfev", most, 1, 2**63 - 1)
 
 
@@ -157,7 +157,7 @@ def outputs_wanted(want: Want | Iterable[Want]) -> frozenset[Want]:
 
 
 def union_of_wants(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
-    """The union of several arguments `want`, each as `roll` takes it."""
+    """The union of several arguments `want` of `roll`, as a tuple of words."""
     return frozenset().union(*map(outputs_wanted, wants))
 
 
@@ -237,7 +237,7 @@ def ask(
 
 
 def on_table(asked: Asked, table: "Table") -> Asked:
-    """The same question on a table. The motion on a slope depends on phi, which it has in any case."""
+    """The arguments with a table; on a slope the pose is always computed, since phi matters."""
     from spincyl._table import Table
 
     table = instance_of("table", table, Table)

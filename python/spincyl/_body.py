@@ -163,7 +163,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
     def from_metres(
         cls, *, outer_diameter: float, length: float, inner_diameter: float = 0.0, fillet: float = 0.0
     ) -> Self:
-        """Uniform tube from its dimensions; `fillet` is the radius of its rounded outer edges.
+        """Uniform tube from its diameters, its length and the radius `fillet` of its rounded outer edges.
 
         Numbers are in metres, or all in one other unit. Texts such as "60 mm" are also valid.
         """
@@ -217,7 +217,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
         return scale.turns(at.precession if isinstance(at, State) else self.angular_rate(self.rate(at)))
 
     def roll(self, state: State, t: Reals, **how: Any) -> "Motion":
-        """Compute the motion of this body from an initial state; see `spincyl.roll`."""
+        """Compute the motion of this body from an initial state, with the arguments of `spincyl.roll`."""
         found: Motion = function_of_method("Body.roll")(self, state, t, **how)
         return found
 
@@ -293,7 +293,9 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     @elementwise
     def states(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> State:
-        """Steady states with a given rate; parameters, order and shape as in `inclinations`.
+        """Steady states with the centre at rest that have a given rate.
+
+        Parameters, order and shape are those of `inclinations`.
 
         They are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect,
         where the rate determines the state better than theta does.
@@ -307,7 +309,10 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     @elementwise
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
-        """Number of `inclinations` at a given rate: 0 to 5; NaN where the rate is out of range."""
+        """Number of steady states with the centre at rest that have a given rate; NaN if it is out of range.
+
+        Parameters are those of `inclinations`, whose angles it counts.
+        """
         given = self._reduced(of, rate, hertz)
         if self.rims is not None:
             return (~np.isnan(self._several(_core.inclination, given))).sum(-1) + 0.0

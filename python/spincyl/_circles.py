@@ -34,7 +34,7 @@ CIRCLE_COLUMNS = [[f"{name}{k}" for name in ("radius", "height", "fillet")] for 
 
 @compared_by_value
 class Apex(NamedTuple):
-    """How a body rolls on two neighbouring circles round its apex, the point where its axis meets the table.
+    """Rolling of a body on two circles round its apex, the point where its axis meets the table.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Circles:
 
     @property
     def borders(self) -> Floats:
-        """(n - 1,) inclinations in radians at which each of the n `circles` hands over to the next."""
+        """(n - 1,) inclinations, in radians, at which the body passes from each circle to the next one."""
         return self._told()[1][:, 0].copy()
 
     @property
@@ -91,17 +91,22 @@ class Circles:
 
     @property
     def smooth(self) -> NDArray[np.bool_]:
-        """(n - 1,) whether two neighbouring circles meet smoothly: `spans` is 0, and nothing lands."""
+        """(n - 1,) whether the body passes from each circle to the next without an impact: `spans` is 0."""
         found: NDArray[np.bool_] = self.spans == 0
         return found
 
     def apex(self, k: int = 0) -> Apex:
-        """How the body rolls round its apex on the circles k and k + 1 of `circles`.
+        """Rolling of the body round its apex, the point where its axis meets the table, on two circles.
+
+        Parameters
+        ----------
+        k : int
+            Index of the first of the two circles in `circles`, from 0; the second one is k + 1.
 
         Raises
         ------
         ValueError
-            If there are no such circles, or if they touch at a smooth joint.
+            If there are no such circles, or if `smooth` is true for them.
 
         Examples
         --------
@@ -118,7 +123,7 @@ class Circles:
         return Apex(*row[2:5])
 
     def rests(self) -> tuple[int, ...]:
-        """The numbers k of the `circles` on which, together with circle k + 1, the body can lie at rest."""
+        """All indices k for which the body can lie at rest on the circles k and k + 1 of `circles`."""
         return tuple(np.flatnonzero(self._told()[1][:, 5]).tolist())
 
     def _told(self) -> tuple[Floats, Floats]:
@@ -207,7 +212,7 @@ class Circles:
 
 
 def rows_of(name: str, given: Iterable[Sequence[float]], *widths: int, metre: str = "") -> list[list[float]]:
-    """Rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
+    """Check rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
     try:
         rows = [list(row) for row in given]
     except TypeError:

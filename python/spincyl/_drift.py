@@ -103,7 +103,7 @@ class Drift(Hinting):
     _shape: tuple[int, ...]
 
     def time(self, theta: Reals) -> Result:
-        """First time at which the inclination is `theta` (radians); relative error as for `stops_at`.
+        """First time at which the inclination is `theta` (radians), in the unit of `stops_at`.
 
         Raises
         ------
@@ -113,7 +113,7 @@ class Drift(Hinting):
         return self._asked("theta", si("theta", theta, "radian"), 0)[0] * self.body._second
 
     def theta(self, t: Reals) -> Result:
-        """Inclination at a time, in radians; relative error as for `stops_at`.
+        """Inclination at the time `t`, in radians; `t` is in the unit of `stops_at`.
 
         Raises
         ------
@@ -123,19 +123,19 @@ class Drift(Hinting):
         return self._asked("t", t, 1)[0]
 
     def precession(self, t: Reals) -> Result:
-        """Precession phi' at a time, in sqrt(g/R), for a measured body in rad/s; error as for `theta`.
+        """Precession phi' at the time `t`, in sqrt(g/R), for a measured body in rad/s.
 
         With centre="rest" the precession is positive.
         """
         return self._asked("t", t, 1)[3] / self.body._second
 
     def state(self, t: Reals) -> State:
-        """Steady state at a time, in natural units; error as for `theta`."""
+        """Steady state at the time `t`, in natural units; `t` is in the unit of `stops_at`."""
         theta, w1, w3, *_ = self._asked("t", t, 1)
         return State(theta, w1, 0.0 if is_scalar(theta) else np.zeros_like(theta), w3)
 
     def friction_coefficient(self, t: Reals) -> Result:
-        """Coefficient of friction that the steady state at a time needs; error as for `theta`.
+        """Coefficient of friction that the steady state at the time `t` needs.
 
         The coefficient is 0 with centre="rest". With centre="rolling" it is ``|V|`` Omega, where V is the
         velocity of the centre and Omega the precession.
@@ -152,7 +152,7 @@ class Drift(Hinting):
         return self._asked("t", np.zeros(self._shape), 2)[0] * self.body._second
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw inclination and precession against time; see `spincyl.plot.drift`."""
+        """Draw inclination and precession against time, as `spincyl.plot.drift` does, and return the axes."""
         drawn: Axes = function_of_method("Drift.plot")(self, ax)
         return drawn
 
@@ -310,7 +310,7 @@ def drift(
             below = f"below theta = {np.max(fills):.2g}"
             message = (
                 f"the film of AirFilm fills the gap {below} only, and this drift starts above that: "
-                "see loss.BoundaryLayer"
+                "use loss.BoundaryLayer there"
             )
             warnings.warn(message, DriftWarning, stacklevel=2)
     if shape == ():
@@ -333,7 +333,7 @@ def _nan_unless_at_rest(
     rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
         own = body.steady(state.theta)
-        message = f"state = {state!r}: centre='rest' needs the state whose centre rests, {own!r}"
+        message = f"state = {state!r}: expected {own!r}, whose centre is at rest, or give centre='rolling'"
         raise ValueError(message)
     theta = np.where(rests.reshape(-1), columns["theta"], np.nan)
     return columns | {"theta": np.ascontiguousarray(theta, np.float64)}

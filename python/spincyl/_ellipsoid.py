@@ -308,11 +308,17 @@ class Ellipsoid(StoneStarts):
         return Rocking(found[..., :2], found[..., 2:4], eigenvalues)
 
     def growth_rates(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Floats:
-        """Growth rates of the slow and the fast rocking mode, (..., 2), in sqrt(g/a); see `rocking`."""
+        """Growth rates of both rocking modes, (..., 2), the slow one first, in sqrt(g/a).
+
+        Parameters are those of `rocking`.
+        """
         return self.rocking(spin, hertz=hertz).growth
 
     def stable(self, spin: Reals | None = None, *, hertz: Reals | None = None) -> Any:
-        """Whether neither rocking mode grows, a bool for each spin; arguments as for `rocking`."""
+        """Whether a stone that spins upright is stable: neither rocking mode grows.
+
+        Parameters are those of `rocking`; the result is a bool for each spin.
+        """
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _measured(self, told: bool, mass: float | None) -> Self:
@@ -341,11 +347,11 @@ class Ellipsoid(StoneStarts):
         return replace(self, scale=scale)
 
     def spin_limits(self) -> Floats:
-        """Spins, in sqrt(g/a), at which a single stone that spins upright becomes stable or unstable."""
+        """(k,) spins, in sqrt(g/a), at which a single stone that spins upright becomes stable or unstable."""
         return np.array(_core.spin_limits(self._numbers))
 
     def energy(self, state: EllipsoidState, contact: AnyContact = "rolling") -> Result:
-        """Kinetic plus potential energy of a single stone in each state, in M g a, above the table.
+        """Kinetic plus potential energy of a single stone, in M g a; heights are above the table.
 
         The velocity of the centre of mass follows from the slip and the lift of the state.
         """

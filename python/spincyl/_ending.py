@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Ending(IntEnum):
-    """How a motion ended: the status of a `Motion`.
+    """Code of the way in which a motion ended: the status of a `Motion`.
 
     Attributes
     ----------
@@ -57,20 +57,20 @@ class Ending(IntEnum):
 
 
 class RestsOn(IntEnum):
-    """What a body of revolution lies or stands on at the end of a motion: heads or tails.
+    """Part on which a body of revolution lies or stands at the end of a motion: heads, tails, side or edge.
 
     Attributes
     ----------
     NONE
         The body is not at rest, or the motion ended before the body came to rest.
     FACE
-        Its first face, at the rim to which the initial state refers, or at the lower end of a body of
+        The first face, at the rim to which the initial state refers, or at the lower end of a body of
         several circles; `Motion.axis_up` is then 1. The code is the same if the motion ended with
         `Ending.FACE`, after which the body still spins or bounces on that face.
     OTHER_FACE
-        The face at its other end; `Motion.axis_up` is then -1.
+        The face at the other end of the body; `Motion.axis_up` is then -1.
     SIDE
-        Its side: both rims, any two circles, or a rim and another part of the body.
+        The side: both rims, any two circles, or a rim and another part of the body.
     EDGE
         A rim, at rest: the body is balanced, or held by dry losses. A ball rests at any inclination.
     """
@@ -113,7 +113,7 @@ class ErrorWarning(UserWarning):
 
 
 class FixedStep(NamedTuple):
-    """What a fixed step of RK4 does to a motion.
+    """Effect of a fixed step of RK4 on a motion, and a step that would suffice.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ class Event(NamedTuple):
 
 
 class Held(NamedTuple):
-    """How much of the largest possible dry friction holds a body at rest, as a share from 0 to 1.
+    """Share of the largest possible dry friction that holds a body at rest, from 0 to 1.
 
     Attributes
     ----------
@@ -176,7 +176,7 @@ _POSTURE_OF = {RestsOn.FACE: 0, RestsOn.OTHER_FACE: 0, RestsOn.SIDE: 2, RestsOn.
 
 
 def held(m: "Motion") -> Held | None:
-    """How friction holds the body at the end of a motion in natural units; None if it does not."""
+    """The share of friction that holds the body at the end of a motion; None if it is not at rest."""
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own or m._asked.turning:
         return None

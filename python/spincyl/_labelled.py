@@ -29,7 +29,7 @@ AXES: Components = {
 
 
 def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
-    """The values and units of all outputs of a motion but its times."""
+    """The values and units of all outputs of a motion, without its times, by name."""
     found: dict[str, tuple[Any, str]] = {}
     for name in ("theta", "w", "energy", *m._extra):
         factor, said = unit_of_output(name, m.scale)
@@ -39,7 +39,7 @@ def wanted(m: "Motion") -> dict[str, tuple[Any, str]]:
 
 
 def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
-    """The values (n,) and units of all outputs, a column for each component."""
+    """The values (n,) and units of all outputs of a motion, a column for each component, by name."""
     found: dict[str, tuple[Any, str]] = {}
     axes = m._axes
     for name, (values, said) in wanted(m).items():

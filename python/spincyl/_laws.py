@@ -75,7 +75,9 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = "stable() is False: on one point of its rim, which it is for, the body is not steady here"
+            why = (
+                "stable() is for a body on one point of its rim, where this state is not steady: it is False"
+            )
             warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 
@@ -163,19 +165,25 @@ class Laws(Circles):
 
     @elementwise
     def nutation(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Angular frequency of a small nutation, sqrt(g/R); 0 for unstable states, NaN for unsteady ones."""
+        """Angular frequency of a small nutation, sqrt(g/R); 0 for unstable states, NaN for unsteady ones.
+
+        Parameters are those of `stability`.
+        """
         return _core.nutation(self.stability(at, contact))
 
     @elementwise
     def growth_rate(self, at: Reals | State, contact: Contact = "rolling") -> Result:
-        """Growth rate of a small disturbance, sqrt(g/R); 0 for stable states, NaN for unsteady ones."""
+        """Growth rate of a small disturbance, sqrt(g/R); 0 for stable states, NaN for unsteady ones.
+
+        Parameters are those of `stability`.
+        """
         return _core.growth_rate(self.stability(at, contact))
 
     def standing_spin(self, contact: Contact = "rolling") -> Result:
         """Least w3, in sqrt(g/R), with which a ball stands stably on its pole, like a sleeping top.
 
         The result is 0 for a ball that is stable at rest, and NaN for other bodies. Its relative error is at
-        most 4 * 2^-53.
+        most 4 * 2^-53. `contact` is "rolling" or "smooth".
         """
         law = _core.standing_rolling if is_rolling(contact) else _core.standing_smooth
         return law(*self._numbers)
@@ -226,7 +234,7 @@ class Laws(Circles):
     def slip_slope(
         self, mu: Reals, posture: Posture = "rolling", *, phi: Reals = -np.pi / 2, theta: Reals = None
     ) -> Result:
-        """Slope beyond which the contact of this body slips, in radians.
+        """Slope of the table, in radians, beyond which the body at rest on it slips.
 
         Parameters
         ----------
@@ -270,12 +278,12 @@ class Laws(Circles):
 
     @elementwise
     def tip_slope(self, posture: Posture = "standing", *, phi: Reals = 0.0, theta: Reals = None) -> Result:
-        """Slope beyond which this body tips over, in radians; pi/2 if it never does.
+        """Slope of the table, in radians, beyond which the body at rest on it tips over; pi/2 if never.
 
         A body that stands on its face tips over the edge if tan(slope) > a/Z, with the radius a of the face
-        and the height Z of the centre of mass; one on its side with phi = 0 over its lower circle. Whether it
-        slips before tells the smaller of `slip_slope` and `tip_slope`. Arguments, shapes and errors are those
-        of `slip_slope`.
+        and the height Z of the centre of mass. A body on its side with phi = 0 tips over its lower circle.
+        The body slips before it tips if `slip_slope` is less than `tip_slope`. Arguments, shapes and errors
+        are those of `slip_slope`.
 
         Examples
         --------
@@ -304,17 +312,20 @@ class Laws(Circles):
             found = np.vectorize(of_circles, otypes=[float])(theta, mu, code, phi)[()]
         if is_scalar(found) and np.isnan(found):
             refuse_bad_value("mu", mu, lambda x: ~((x >= 0) & (x < np.inf)), "expected 0 <= mu, finite")
-            needs = "one that this body can have; on one rim only a disk or a ball rolls, with its axis level"
+            needs = "a posture of this body; on one rim only a disk or a ball rolls, with its axis level"
             raise ValueError(f"posture = {posture!r}: expected {needs}")
         return found
 
     def boundaries(self, contact: Contact = "rolling") -> Result:
-        """Inclinations at which steady states become unstable; unit, shape and errors as for `folds`."""
+        """Inclinations, in radians, at which the stability of the steady states changes (kappa = 0).
+
+        Order, shape and errors are those of `folds`. `contact` is "rolling" or "smooth", as for `stability`.
+        """
         law = _core.boundary_rolling if is_rolling(contact) else _core.boundary_smooth
         return self._several(law)
 
     def folds(self) -> Result:
-        """Inclinations at which the steady rate is an extremum, so that two states of equal rate merge.
+        """Inclinations at which the rate of the steady state is an extremum, so that two states merge.
 
         The inclinations are in radians, ascending, along a last axis of length 3 or 5 ("root"; see
         `inclinations`), padded with NaN. All are NaN for ell above 1e30 or I1/I3 above 1e60. The error is
@@ -323,14 +334,17 @@ class Laws(Circles):
         return self._several(_core.fold)
 
     def ridge(self) -> Result:
-        """Inclinations at which the energy of the steady state is an extremum; details as for `folds`."""
+        """Inclinations, in radians, at which the energy of the steady state is an extremum.
+
+        Order, shape and errors are those of `folds`.
+        """
         return self._several(_core.ridge)
 
     # Quantities of a state.
 
     @elementwise
     def energy(self, state: State, contact: AnyContact = "rolling") -> Result:
-        """Kinetic plus potential energy of a state, in M g R; heights are above the table.
+        """Kinetic plus potential energy of a body in a state, in M g R; heights are above the table.
 
         The velocity of the centre follows from rolling and the slip of the state. With `contact="smooth"` the
         centre moves only up and down; a state with a slip then raises ValueError.
@@ -388,19 +402,22 @@ class Laws(Circles):
 
     @elementwise
     def acceleration(self, state: State, contact: Contact = "rolling") -> Result:
-        """Angular acceleration theta'' of a state, in g/R; 0 if the state is steady."""
+        """Angular acceleration theta'' of the body in a state, in g/R; 0 if the state is steady.
+
+        The state has no slip; `contact` is "rolling" or "smooth".
+        """
         law = _core.acceleration if is_rolling(contact) else _core.acceleration_smooth
         found = law(*self._at(*numbers_without_slip(state, _ROLLS)))
         return found if self.rims is None else self._sign(state.theta) * found
 
     @elementwise
     def angular_momentum(self, state: State) -> Result:
-        """Magnitude of the angular momentum about the centre of mass, in M R^2 sqrt(g/R)."""
+        """Magnitude of the angular momentum of a state about the centre of mass, in M R^2 sqrt(g/R)."""
         return _core.angular_momentum(*self._at(*numbers(state)))
 
     @elementwise
     def beta(self, state: State) -> Result:
-        """Angle from the symmetry axis to the angular momentum, in radians."""
+        """Angle from the symmetry axis to the angular momentum of a state, in radians."""
         return _core.beta(*numbers(state), *self._raw)
 
     @elementwise
@@ -414,7 +431,7 @@ class Laws(Circles):
 
     @elementwise
     def speed_x(self, state: State) -> Result:
-        """Speed of the point X, the highest one of the circle of contact, in sqrt(g R).
+        """Speed of the point X, the highest point of the circle of contact, in sqrt(g R).
 
         X is the highest point of the circle of the body along which it touches the table. With a sharp rim
         and the centre at rest its speed is 2 ell w1.
@@ -423,5 +440,5 @@ class Laws(Circles):
 
     @elementwise
     def centre_radius(self, state: State) -> Result:
-        """Radius of the circle on which the centre moves, in R; 0 at rest, infinite for a straight line."""
+        """Radius of the circle on which the centre moves in a state, in R; infinite for a straight line."""
         return _core.centre_radius(*self._at(*numbers_without_slip(state, _ROLLS)))

@@ -196,11 +196,11 @@ class Law(Loss):
 
     @property
     def coefficient(self) -> Reals:
-        """The coefficient of the law."""
+        """Coefficient of the law, in natural units; its name and unit are those of the law's parameter."""
         return getattr(self, self._parameter)
 
     def in_si(self, scale: "Scale | Body") -> Reals:
-        """The coefficient in SI, in the unit that the method `from_si` of this law expects."""
+        """Coefficient in SI, in the unit of `from_si`, for a measured body or its `Scale`."""
         small = 2.0**-40  # no law warns of so small a coefficient
         law = type(self).from_si(small, scale=scale)  # type: ignore[attr-defined]
         return self.coefficient / law.coefficient * small
@@ -223,7 +223,7 @@ class Law(Loss):
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """The laws of which it consists: this law alone."""
+        """A tuple of this law alone; for a sum the tuple has each of its laws."""
         return (self,)
 
     def __repr__(self) -> str:
@@ -322,7 +322,7 @@ def command_line_name(kind: type[Law]) -> str:
 
 
 def divided_by_unit(value: Reals, unit: float) -> Reals:
-    """A coefficient in natural units. Overflow gives inf without a warning: the law refuses it."""
+    """Convert a coefficient to natural units; overflow gives inf without a warning, which the law rejects."""
     with np.errstate(over="ignore"):
         return value / unit
 

@@ -50,7 +50,7 @@ def losses_of_stone(losses: object, body: Any) -> Loss:
 
 
 def check_resistance(losses: Loss, contact: AnyContact) -> None:
-    """Raise ValueError for a resistance only while the body rolls on a table on which it never does."""
+    """Raise ValueError for `while_slipping=False` on a table on which the body never rolls."""
     if losses._acts_in_slip:
         return
     patch = contact.patch if isinstance(contact, Coulomb) else 0.0

@@ -125,7 +125,7 @@ def measured(
 
 
 def sized_body(name: str, body: Any, scale: Scale | None) -> tuple[Body, Scale]:
-    """A single body and its scale: the given one, its own, or that of the measures it was made from."""
+    """A single body and its scale: the given scale, or that of the body or of its dimensions."""
     if not isinstance(body, Body):
         raise TypeError(f"{name}: expected a Body, not {type(body).__name__}")
     if not body._single:
@@ -185,7 +185,7 @@ def _seconds(before: str, number: str, second: float) -> str:
 
 
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":
-    """The motion of a measured body from one in natural units; times and step are those of the user.
+    """Convert a motion in natural units to SI for a measured body; times and step are those of the user.
 
     `told` converts the outputs that are computed on access.
     """

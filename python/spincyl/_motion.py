@@ -201,7 +201,7 @@ class Motion(Outputs, Showing):
 
     @property
     def rests_on(self) -> RestsOn:
-        """What the body lies or stands on at the end of the motion; `RestsOn.NONE` if it is not at rest."""
+        """Part on which the body rests at the end of the motion; `RestsOn.NONE` if it is not at rest."""
         return RestsOn(self._rests)
 
     @property
@@ -211,7 +211,7 @@ class Motion(Outputs, Showing):
 
     @property
     def message(self) -> str:
-        """How the motion ended, how it was computed, and its estimated errors, in words."""
+        """Text about the motion: how it ended, how it was computed, and its estimated errors."""
         return message(self)
 
     @property

@@ -39,7 +39,7 @@ class Outlines:
 
     @classmethod
     def profile(cls, circles: Iterable[Sequence[float]], i1: float, i3: float, centre: float = 0.0) -> Self:
-        """Any body of revolution by the circles on which it can stand: a cup, a cone, a bottle, a wheel.
+        """Any body of revolution, from the circles on which it can stand: a cup, a cone, a bottle, a wheel.
 
         Parameters
         ----------
@@ -104,12 +104,12 @@ class Outlines:
 
     @classmethod
     def cone(cls, height: float) -> Self:
-        """Uniform cone that stands on its tip, of a `height` over the radius R of its base."""
+        """Uniform solid cone that stands on its tip; `height` is in units of the radius R of its base."""
         return cls._made(_core.frustum(0.0, 1.0, number("height", height), None))
 
     @classmethod
     def lathe(cls, points: Iterable[Sequence[float]]) -> Self:
-        """Uniform solid of revolution, by its outline of straight lines.
+        """Uniform solid of revolution, from the corners of its outline of straight lines.
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class Outlines:
         diameter: float | None = None,
         mass: float | None = None,
     ) -> Self:
-        """Two solid balls fixed to each other: Hurricane balls.
+        """Two solid balls of one density that are fixed to each other: Hurricane balls.
 
         Parameters
         ----------

@@ -29,7 +29,7 @@ _EXCLUDES = {
 
 
 class Number(property):
-    """An output at each time, in the units of the motion; AttributeError if it was not computed."""
+    """Descriptor of an output at each time, in the units of the motion; AttributeError if not computed."""
 
     def __init__(self, needs: str, said: str) -> None:
         super().__init__(lambda m: output_in_units(m, self._name, needs))
@@ -95,7 +95,7 @@ def _given(m: "Motion", setting: str) -> bool:
 
 
 class Outputs(Hinting):
-    """Outputs of a motion at each time that are computed if they were asked for."""
+    """Base of motions: the optional outputs at each time."""
 
     contact_point = Number(
         POSE,
@@ -146,30 +146,32 @@ class Outputs(Hinting):
         FRICTION,
         """(n,) code of the phase at each time. Needs a law of friction or `restitution=`.
 
-        0 rolling, 1 slipping, 2 flying; on both rims or two circles 3 lying and slipping, 4 pivoting, 5
-        rolling on its side, 6 rolling round its apex; 7 on its face.
+        0 rolling, 1 slipping, 2 flying. On both rims or two circles: 3 lying, both slip; 4 pivoting, one
+        slips; 5 rolling on its side; 6 rolling round its apex. 7 on its face.
         """,
     )
     drilling = Number(
-        PATCH, "(n,) angular velocity about the vertical over the table, sqrt(g/R) or rad/s. Needs a patch."
+        PATCH,
+        "(n,) angular velocity about the vertical, relative to the table, sqrt(g/R) or rad/s. Needs a patch.",
     )
     creep = Number(
-        PATCH, "(n,) slip over `drilling` times the radius of the patch; 0 in rolling. Needs a patch."
+        PATCH, "(n,) creep, slip/(`drilling` times the radius of the patch); 0 in rolling. Needs a patch."
     )
     couple = Number(
         COUPLE,
         """(n,) couple of the table about the vertical, M g R or J. Needs want="force", and a patch or a face.
 
-        On a patch NaN in rolling, where static friction prevents drilling. Without a patch NaN unless the
-        body is on its face, where it is the couple about its axis.
+        With a patch it is NaN in rolling, where static friction prevents the rotation about the vertical.
+        Without a patch it is NaN unless the body is on its face; it is then the couple about the body's axis.
         """,
     )
     pressure = Number(
         FACE,
         """(n, 2) centre of the pressure on the face, in units of the radius of the face; NaN off the face.
 
-        Its distance from the axis along e_h and e2: -Z F/(a N). At the distance 1 the body topples. Needs
-        want="force", and a motion of which some phase is "on its face".
+        The components are along e_h and e2 of `State`: -Z F/(a N), with the height Z of the centre of mass,
+        the friction F, the normal force N and the radius a of the face. At the distance 1 from the axis the
+        body topples. Needs want="force", and a motion with a phase "on its face".
         """,
     )
     lift = Number(
@@ -185,8 +187,8 @@ class Outputs(Hinting):
         ALOFT,
         """(n,) horizontal force on the other rim, M g or N. Needs `restitution=` and want="force".
 
-        While a body rolls round its apex, only the sum of the frictions of both circles is determined: they
-        are shares of it in the ratio of the normal forces.
+        While a body rolls round its apex, only the sum of the frictions of both circles is determined; it is
+        divided in the ratio of the normal forces.
         """,
     )
     work_lost = Number(
@@ -203,10 +205,11 @@ class Outputs(Hinting):
 
     @cached_property
     def held(self) -> Held | None:
-        """Share of the largest dry friction that holds the body at rest; None unless the motion `STOPS`.
+        """Share of the largest dry friction that holds the body at rest; None unless it is at rest.
 
-        The share is 0 on a level table, unless dry losses hold the body on its edge off its balance. It is
-        None for a stone, for a law of your own, and on a table that turns.
+        The body is at rest if the motion ends with `Ending.STOPS`. The share is 0 on a level table, unless
+        dry losses hold the body on its edge away from its balance. It is None for a stone, for a law of your
+        own, and on a table that turns.
         """
         found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found

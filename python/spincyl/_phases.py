@@ -197,7 +197,7 @@ def phases(rows: Floats, state: Callable[..., Any] = state_of_phase) -> tuple[Ph
 
 
 def told_phases(body: "Body", found: Sequence[Phase]) -> tuple[Phase, ...]:
-    """The phases of a body of several circles: a state in the air is told of the lowest circle."""
+    """The phases of a body of several circles; a state in the air refers to the lowest circle."""
     told = list(found)
     for i, (time, kind, state, rim) in enumerate(found):
         if kind == "flying":

@@ -63,7 +63,7 @@ class Newton(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Poisson(_ImpactLaw):
-    """Poisson's law, for `restitution=`: the normal impulse after compression is e times that of compression.
+    """Poisson's law, for `restitution=`: expansion returns e times the normal impulse of compression.
 
     Compression ends where the normal velocity is zero; if friction presses the point down once more, at the
     last zero. A motion under this law ends where a second circle or a face lands.
@@ -86,7 +86,7 @@ class Poisson(_ImpactLaw):
 @compared_by_value
 @dataclass(frozen=True, eq=False, repr=False)
 class Walton(_ImpactLaw):
-    """Restitution of a ball that also turns its slip back, for `restitution=`, such as of a superball.
+    """Walton's law of a superball, for `restitution=`: an impact reverses the slip of the ball as well.
 
     The normal velocity after an impact is -e times that before. The slip becomes -`tangential` times that
     before, if the friction that this takes is at most mu times the normal impulse; otherwise the ball slips
@@ -129,7 +129,7 @@ Restitution: TypeAlias = float | Newton | Poisson | Walton
 
 
 def check_restitution(restitution: object) -> None:
-    """Raise TypeError for what is neither a number nor a law; the range of a number is known to the core."""
+    """Raise TypeError for a restitution that is neither a number nor a law; the core checks the range."""
     if isinstance(restitution, str):
         known = (
             "a number (Stronge's law), sc.Newton(e), sc.Poisson(e) or, for a ball, sc.Walton(e, tangential)"
@@ -150,14 +150,14 @@ def with_coefficient(restitution: Restitution, e: float) -> Restitution:
 
 
 def law_for_core(restitution: Any) -> tuple[str, float] | None:
-    """The name of a law and its tangential restitution; None for that of a number."""
+    """The name of a law of restitution and its tangential coefficient; None for a number."""
     if not isinstance(restitution, _ImpactLaw):
         return None
     return type(restitution).__name__, getattr(restitution, "tangential", 0.0)
 
 
 def restitution_as_words(restitution: Any) -> dict[str, float | str]:
-    """The law as plain numbers and words, by name, for an attribute of a file."""
+    """The law of restitution as plain numbers and words, by name, for an attribute of a file."""
     if not isinstance(restitution, _ImpactLaw):
         return {} if restitution is None else {"restitution": restitution}
     words: dict[str, float | str] = {"restitution": restitution.e, "impact_law": type(restitution).__name__}
@@ -165,7 +165,7 @@ def restitution_as_words(restitution: Any) -> dict[str, float | str]:
 
 
 def restitution_from_words(words: Any) -> Restitution:
-    """The law that such an attribute tells."""
+    """The law of restitution from the plain numbers and words of a file's attribute."""
     laws: dict[str, Any] = {law.__name__: law for law in (Newton, Poisson, Walton)}
     more = {"tangential": words["tangential"]} if "tangential" in words else {}
     law = laws.get(words.get("impact_law", ""))

@@ -23,8 +23,8 @@ def rising_spin(
         Single spheroid whose third semi-axis is the longest, with its mass symmetric about this axis, as made
         by `Ellipsoid.egg`.
     contact : Coulomb or Viscous, optional
-        Law of friction, with single numbers. Default: the estimate, which needs no law of friction and is not
-        exact for any.
+        Law of friction, with single numbers. Default: no law; the result is then the estimate, which is not
+        exact for any law of friction.
     lean : float, optional
         Initial angle between the axis and its position when the egg rests on its side, in radians, from 1e-6
         to 1. Used only with a contact.
@@ -37,7 +37,7 @@ def rising_spin(
     -------
     float
         Initial spin about the vertical, in sqrt(g/a), with the centre at rest. The estimate is inf if no spin
-        makes the egg stable on an end, or if at every spin something on the way to that end is stable. The
+        makes the egg stable on an end, or if at every spin the egg is stable in between, on its way. The
         result of a search is inf if ten times the estimate does not raise the egg within `t` with this
         contact. Error of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`;
         each motion is computed with smaller tolerances until its estimated error lets it decide. An egg that

@@ -145,12 +145,12 @@ def roll(
         Default: the motion ends where the body leaves the table or its other rim or its face lands. With
         a restitution the motion continues: the body may fly, bounce, lie on both rims, stand on its face
         and rise again. An initial state in the air (`dropped`, and for a stone `Ellipsoid.dropped`) needs
-        a restitution. A stone flies, bounces, slips and rolls, until its edge
-        lands (`theta_end`). While the other rim carries the body, theta refers to that rim, and phi is turned
-        by pi: `Motion.rim` tells the rim, and `Motion.axis_up` and `Motion.rests_on` tell heads from tails.
-        With `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only
-        rocks from rim to rim, and so does friction that lifts the body (`Ending.SLIP`): on a real table the
-        contact would slip first.
+        a restitution. A stone flies, bounces, slips and rolls, until its edge lands (`theta_end`). While the
+        other rim carries the body, theta refers to that rim, and phi is turned by pi: `Motion.rim` gives the
+        rim, and `Motion.axis_up` and `Motion.rests_on` distinguish heads from tails. With
+        `contact="rolling"` a landing on both rims ends the motion (`Ending.SIDE`), unless the body only rocks
+        from rim to rim. The motion also ends where friction would lift the body (`Ending.SLIP`): on a real
+        table the contact would slip first.
     losses : Loss, optional
         Loss law of `spincyl.loss`, or several added with `+`. The motion is then integrated with steps of
         eighth order, forward in time only. It may end where the body comes to rest (`Ending.STOPS`).

@@ -18,7 +18,7 @@ class Showing:
     """Plot, sound and film of a motion."""
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
-        """Draw inclination, path and contact force; see `spincyl.plot.motion`."""
+        """Draw inclination, path and contact force, as `spincyl.plot.motion` does, and return the axes."""
         drawn: list[Axes] = function_of_method("Motion.plot")(self, axes)
         return drawn
 

@@ -10,7 +10,7 @@ from spincyl._state import State, numbers_without_slip
 
 @elementwise
 def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
-    """Drift of a steadily rolling body across a slope, to first order in the slope.
+    """Compute the drift of a steadily rolling body across a slope, to first order in the slope.
 
     A body that spins steadily on its rim does not run down a tilted table: the circle on which its centre
     moves, or the resting centre, is carried across the slope.
@@ -25,8 +25,8 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     Returns
     -------
     drift : float or array
-        Velocity of the centre along y over the sine of the slope, in sqrt(g R): positive to the left of one
-        who looks downhill, as for a body that precesses counterclockwise and stably. There is none along x.
+        Velocity of the centre along y over the sine of the slope, in sqrt(g R): positive to the left as one
+        looks downhill, as for a body that precesses counterclockwise and stably. Along x there is no drift.
     resonance : float or array
         Stability kappa over the squared precession. The drift is valid for small slopes while this is
         positive and away from 1: at 1, as for a uniform ball, the body runs downhill, and the drift is NaN or
@@ -55,5 +55,5 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     given = body._at(*numbers_without_slip(state, "expected a state without slip"))
     drift, resonance = _core.slope_drift(*given), _core.slope_resonance(*given)
     if is_scalar(resonance) and np.isnan(resonance):
-        raise ValueError(f"state = {state!r}: expected a steady state of this body, which precesses")
+        raise ValueError(f"state = {state!r}: expected a steady state of this body with a precession")
     return drift, resonance

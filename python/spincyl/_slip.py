@@ -41,7 +41,7 @@ def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
 
 
 def told_of_lowest(body: "Laws", state: State, rim: Any, flies: Any) -> State:
-    """States with slip, height and lift of the circles `rim`, told of the lowest circle where the body flies.
+    """Convert states on the circles `rim`, with slip and flight, to the lowest circle in the air.
 
     From a state of `State`, the circle follows from its inclination alone.
     """

@@ -94,7 +94,8 @@ def tripped(body: Body, velocity: Reals, *, scale: Scale | None = None) -> State
     body : Body
         Single body or family with a face.
     velocity : array_like
-        Velocity of the centre before, 0 or more, in sqrt(g R); for a measured body, or with `scale`, in m/s.
+        Velocity of the centre before the impact, 0 or more, in sqrt(g R); for a measured body, or with
+        `scale`, in m/s.
     scale : Scale, optional
         Scale, if arguments are in SI and the body is not a measured body.
 

@@ -163,10 +163,10 @@ class State(HintingFamily):
 
     @property
     def contact_radius(self) -> Result:
-        """Ratio of the radii of the two circles of the contact point: on the table, and on the body.
+        """Radius of the contact point's circle on the table, over the radius of its circle on the body.
 
-        On a body with a sharp rim the circle has the radius R, and the ratio is the radius on the table in R.
-        If the centre is at rest, the ratio is also the number of still symbols in one turn.
+        On a body with a sharp rim the circle on the body has the radius R. If the centre is at rest, the
+        ratio is also the number of times that the symbol on the rim is seen standing still in one turn.
         """
         return _core.contact_radius(*self._numbers)
 

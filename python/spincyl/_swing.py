@@ -94,7 +94,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
 
 
 def swing_on(body: Body, state: State, contact: Contact, rim: int | None = None) -> Swing:
-    """The nutation on the circle `rim` of a body that has several; default: on the one that carries."""
+    """The nutation of a body of several circles on the circle `rim`; default: the circle that carries it."""
     of, start = numbers_of_one(body, state, several=True)
     numbers_without_slip(
         state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"

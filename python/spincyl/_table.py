@@ -13,7 +13,7 @@ from spincyl._input.reprs import repr_of_call
 class Table(HintingFamily):
     """A table that is level or tilted, and may turn, for `table=` of `roll` and `sweep.roll`.
 
-    On a slope x points downhill in the table, y to the left of one who looks downhill, and z along its
+    On a slope x points downhill in the table, y to the left as one looks downhill, and z along its
     normal. Inclinations and heights are measured from the table, and `Motion.phi` from downhill: on a body
     that leans downhill it is 0, and a body on its side rolls straight down with phi = -pi/2.
 
@@ -41,12 +41,12 @@ class Table(HintingFamily):
     Notes
     -----
     The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
-    (docs/slopes.md). Bodies of revolution roll, slip, fly, bounce and slide on their face there, under every
-    law of friction at a point, and lose energy by all laws but dry friction along the contour and drilling
-    friction together. Stones roll and slip there, with the same losses; their table does not turn. On a table
-    that turns, drilling friction and patches of contact go with no law along the contour; on a tilted one
-    drilling friction does not go with rolling resistance, either. It carries a ball on which friction holds
-    all motions over it: then the motion STOPS.
+    (docs/slopes.md). On a slope a body of revolution rolls, slips, flies, bounces and slides on its face,
+    with every law of friction at a contact point and with all losses, except dry friction along the contour
+    together with drilling friction. A stone rolls and slips on a slope, with the same losses, but not on a
+    table that turns. On a table that turns, a loss along the contour excludes drilling friction and a patch
+    of contact; if that table is also tilted, drilling friction excludes rolling resistance. If friction holds
+    a ball at rest relative to a table that turns, the motion ends with `Ending.STOPS`.
 
     Examples
     --------

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def message(m: "Motion") -> str:
-    """How a motion ended and how it was computed, in words."""
+    """Text about a motion: how it ended, how it was computed, and its estimated errors."""
     why = MESSAGES[m.status][0]
     if m._limit is not None:
         why += f", since {m._limit[1]}"
@@ -51,7 +51,7 @@ def _near_toppling(m: "Motion") -> str:
 
 
 def given_up(m: "Motion") -> str:
-    """Where and why the computation of a motion stopped, and what it had reached."""
+    """Text that says at which time and at which limit the computation of a motion stopped."""
     at = f"t = {m.event.time:.6g}{_unit_of_times(m)}" if m.event else "its start"
     name, why = m._limit or ("", "")
     more = "; max_nfev= allows more" if name == "evaluations" else ""
@@ -72,7 +72,7 @@ def _digits(time: float, error: float) -> int:
 
 
 def end_in_words(m: "Motion") -> str:
-    """The behaviour of the body at the end of the motion, as "slips"; a wide body stands on its edge."""
+    """The behaviour of the body at the end of the motion, in a word or two, such as "slips"."""
     if m.status == Ending.SIDE and not has_two_rims(m.body):
         return "lands on another part"
     if m.status == Ending.SIDE and m.body.ell < 1:

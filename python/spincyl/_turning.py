@@ -25,8 +25,8 @@ def turning_spin(
         Ball whose centre of mass is below its centre: `Body.ball(offset, ...)` with offset < 0. A single
         body; without a contact, also a family.
     contact : Coulomb or Viscous, optional
-        Law of friction, with single numbers. Default: the estimate, which needs no law of friction and is not
-        exact for any.
+        Law of friction, with single numbers. Default: no law; the result is then the estimate, which is not
+        exact for any law of friction.
     lean : float, optional
         Initial inclination, in radians, from 1e-6 to 1. Used only with a contact.
     t : float, optional

@@ -1,4 +1,4 @@
-"""Custom laws: a couple that takes energy, friction that depends on the speed, and what drives a body.
+"""Custom laws: a couple that takes energy, friction that depends on the speed, a force that drives a body.
 
 Each law is a Python function, or a C function (``numba.cfunc``, ctypes, ``scipy.LowLevelCallable``), which is
 called without Python in about a hundredth of the time; a motion calls a law thousands of times.
@@ -148,7 +148,7 @@ class Couple(_Own):
         return type(self)(natural)._beside(self._others)
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Couple in a single state, along e1, e2, e3, and of the laws added to it."""
+        """Couple of this law and of the laws added to it in a single state, along e1, e2, e3, in M g R."""
         w = np.array([state.w1, state.w2, state.w3], dtype=float)
         others = 0.0 if self._others is None else self._others.couple(body, state, normal)
         if self._pointer is None:
@@ -166,14 +166,14 @@ class Couple(_Own):
 
 @dataclass(frozen=True)
 class Moment:
-    """Where a driven body is and how it moves at a time: the argument of the function of a `Drive`.
+    """Position and velocity of a driven body at a time: the argument of the function of a `Drive`.
 
     Attributes
     ----------
     time : float
         Time, in sqrt(R/g), or in s for a measured body.
     theta : float
-        Inclination of the axis, in radians. A body with two rims is seen from the lower one.
+        Inclination of the axis, in radians; for a body with two rims that of the lower one.
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray
@@ -298,7 +298,7 @@ class Drive(_Own):
         raise TypeError(f"losses = {self!r}: a drive depends on a Moment, not on a state; call its function")
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Raises TypeError, as `couple` does."""
+        """Raises TypeError, since a drive depends on more than a state."""
         return self.couple(body, state, normal)
 
 

@@ -100,7 +100,7 @@ class DryContour(Law):
 
     @classmethod
     def from_si(cls, eps: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `eps` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Make the law from `eps` in metres, or a text like "0.1mm", for a measured body or its `Scale`."""
         return marked_as_si(cls(arm_in_radii("eps", eps, scale)), scale)
 
 
@@ -124,7 +124,7 @@ class ViscousContour(Law):
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `c` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
+        """Make the law from `c` in N m s, for a measured body with a known mass, or its `Scale`."""
         return marked_as_si(
             cls(
                 divided_by_unit(
@@ -169,7 +169,7 @@ class RollingResistance(Law):
 
     @classmethod
     def from_si(cls, delta: Reals, *, scale: Scale | Body, while_slipping: bool = True) -> Self:
-        """Law with `delta` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Make the law from `delta` in metres, or a text like "0.1mm", for a measured body or `Scale`."""
         arm = arm_in_radii("delta", delta, scale)
         return marked_as_si(cls(arm, while_slipping=while_slipping), scale)
 
@@ -198,7 +198,7 @@ class Drilling(Law):
 
     @classmethod
     def from_si(cls, length: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `length` in metres, or a text such as "0.1mm"; `scale` is a measured body or a `Scale`."""
+        """Make the law from `length` in metres, or a text like "0.1mm", for a measured body or `Scale`."""
         return marked_as_si(cls(arm_in_radii("length", length, scale)), scale)
 
 
@@ -219,7 +219,7 @@ class AirLinear(Law):
 
     @classmethod
     def from_si(cls, b: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `b` in N m s. `scale` is a measured body with a known mass, or a `Scale`."""
+        """Make the law from `b` in N m s, for a measured body with a known mass, or its `Scale`."""
         return marked_as_si(
             cls(
                 divided_by_unit(
@@ -248,7 +248,7 @@ class AirQuadratic(Law):
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
-        """Law with `b2` in N m s^2. `scale` is a measured body with a known mass, or a `Scale`."""
+        """Make the law from `b2` in N m s^2, for a measured body with a known mass, or its `Scale`."""
         _, seconds, joules = natural_units_in_si(scale, weighed=True)
         return marked_as_si(
             cls(
@@ -281,7 +281,7 @@ class AirFilm(Law):
 
     @classmethod
     def from_si(cls, viscosity: Reals = _AIR_VISCOSITY, *, scale: Scale | Body) -> Self:
-        """Law with `viscosity` in Pa s (default: air). `scale` is a body with a known mass, or a `Scale`."""
+        """Make the law from `viscosity` in Pa s (default: air), for a body with a mass, or its `Scale`."""
         unit = _newton_metre_seconds(scale)
         with np.errstate(over="ignore"):
             found = (
@@ -319,7 +319,7 @@ class BoundaryLayer(Law):
         density: Reals = _AIR_DENSITY,
         viscosity: Reals = _AIR_VISCOSITY,
     ) -> Self:
-        """Law with the number `C`, of order 0.1, and the density (kg/m^3) and viscosity (Pa s) of the air.
+        """Make the law from the number `C`, of order 0.1, and density (kg/m^3) and viscosity (Pa s) of air.
 
         `scale` is a measured body with a known mass, or a `Scale`.
         """

@@ -122,7 +122,10 @@ def cylinder(
     mass: float | None = None,
     density: float | str | None = None,
 ) -> Part:
-    """Solid or hollow cylinder. A `fillet` rounds the outer edges, but does not change mass and moments."""
+    """Solid or hollow cylinder; its `fillet` rounds the outer edges without a change of mass and moments.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^3 or a material.
+    """
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     rest = 0.0, _metres("length", length), _metres("fillet", fillet)
     return _part("cylinder", _SOLID, (r, r, b, b, *rest), at, mass, density)
@@ -137,7 +140,10 @@ def cone(
     mass: float | None = None,
     density: float | str | None = None,
 ) -> Part:
-    """Solid cone or frustum. One of the two diameters may be 0."""
+    """Solid cone or frustum; one of the two diameters may be 0.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^3 or a material.
+    """
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("cone", _SOLID, (r, s, 0.0, 0.0, 0.0, _metres("length", length), 0.0), at, mass, density)
 
@@ -150,7 +156,10 @@ def ball(
     mass: float | None = None,
     density: float | str | None = None,
 ) -> Part:
-    """Solid or hollow ball."""
+    """Solid or hollow ball.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^3 or a material.
+    """
     r, b = _metres("diameter", diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     return _part("ball", _BALL, (r, b, r, 0.0, 2 * r), at, mass, density)
 
@@ -164,7 +173,10 @@ def cap(
     mass: float | None = None,
     density: float | str | None = None,
 ) -> Part:
-    """Solid cap of a ball: its lowest part, of the given `height`; with `upper`, its highest part."""
+    """Solid cap of a ball: its lowest part, of the given `height`; with `upper`, its highest part.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^3 or a material.
+    """
     r, h = _metres("diameter", diameter) / 2, _metres("height", height)
     return _part("cap", _BALL, (r, 0.0, h - r if upper else r, 0.0, h), at, mass, density)
 
@@ -178,7 +190,10 @@ def wall(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin wall, open at both ends, such as a paper cone. The `density` is in kg/m^2."""
+    """Thin wall, open at both ends, such as a paper cone.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^2.
+    """
     r, s = _metres("lower_diameter", lower_diameter) / 2, _metres("upper_diameter", upper_diameter) / 2
     return _part("wall", _WALL, (r, s, 0.0, _metres("length", length)), at, mass, density)
 
@@ -191,7 +206,10 @@ def disk(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin disk, with or without a hole, such as a floor or a lid. The `density` is in kg/m^2."""
+    """Thin disk, with or without a hole, such as a floor or a lid.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m^2.
+    """
     r, b = _metres("outer_diameter", outer_diameter) / 2, _metres("inner_diameter", inner_diameter) / 2
     return _part("disk", _WALL, (b, r, 0.0, 0.0), at, mass, density)
 
@@ -205,7 +223,7 @@ def shell(
     mass: float | None = None,
     density: float | None = None,
 ) -> Part:
-    """Thin spherical wall; the `density` is in kg/m^2.
+    """Thin spherical wall. Lengths are in metres, `mass` is in kg, `density` in kg/m^2.
 
     Default: the whole sphere. With `height`, only its lowest part, of this height; with `upper` as well, only
     its highest part.
@@ -218,12 +236,15 @@ def shell(
 def ring(
     *, diameter: float, at: float | None = None, mass: float | None = None, density: float | None = None
 ) -> Part:
-    """Thin ring, such as a tyre, which can touch the table. The `density` is in kg/m."""
+    """Thin ring, such as a tyre, which can touch the table.
+
+    Lengths are in metres, or texts such as "18mm"; `mass` is in kg, `density` in kg/m.
+    """
     return _part("ring", _RING, (_metres("diameter", diameter) / 2, 0.0), at, mass, density)
 
 
 def point(*, mass: float, at: float | None = None) -> Part:
-    """Point mass on the axis, which never touches the table."""
+    """Point mass on the axis, which never touches the table; `mass` in kg, height `at` in metres."""
     return _part("point", _RING, (0.0, 0.0), at, mass, None)
 
 

@@ -46,20 +46,20 @@ impl<F: Fn(f64) -> f64> FrictionLaw for F {
     }
 }
 
-/// Where a body is, and how it moves, at a time: what a law that drives it may depend on.
+/// Position and velocity of a driven body at a time: the argument of a [`DriveLaw`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Moment {
     /// The time, in sqrt(R/g).
     pub time: f64,
-    /// The inclination and the angular velocity along e1, e2, e3. A body with two rims is told from the lower one.
+    /// The inclination and the angular velocity along e1, e2, e3; for a body with two rims they refer to the lower one.
     pub state: State,
-    /// The slip along the lean and across it, in sqrt(g R); 0 where the body rolls. In the air it is the velocity of the
-    /// lowest point over the table.
+    /// The slip along e_h and along e2, in sqrt(g R); 0 where the body rolls. In the air it is the velocity of the lowest
+    /// point over the table.
     pub slip: [f64; 2],
-    /// The heading phi of the lean over the table, in radians from x to y, and the turn psi about the axis.
+    /// The direction phi to which the axis leans, in radians from x to y.
     pub phi: f64,
-    /// See `phi`.
+    /// The angle psi by which the body has turned about its axis, in radians.
     pub psi: f64,
     /// The place of the contact point on the table, or below the lowest point of a body in the air, in R.
     pub contact_point: Point2<f64>,
@@ -82,7 +82,7 @@ impl Moment {
     }
 }
 
-/// What drives a body: a horizontal force on its centre of mass, and a couple.
+/// A horizontal force on the centre of mass of a body, and a couple, with which a [`DriveLaw`] drives the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Push {
@@ -93,7 +93,7 @@ pub struct Push {
 }
 
 impl Push {
-    /// This force along x and y, and this couple along e1, e2, e3.
+    /// A push with this force along x and y, in M g, and this couple along e1, e2, e3, in M g R.
     pub fn new(force: Vector2<f64>, couple: Vector3<f64>) -> Self {
         Self { force, couple }
     }

@@ -13,7 +13,7 @@ use super::scale::Scale;
 use super::state::State;
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
-/// How a body turns and is pressed on the table, in SI: what a couple in SI depends on.
+/// Inclination, angular velocity and normal force of a body, in SI: the argument of a couple in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TurningInSi {
@@ -25,7 +25,7 @@ pub struct TurningInSi {
     pub normal: f64,
 }
 
-/// A [`Moment`] in SI: what a drive in SI depends on.
+/// A [`Moment`] in SI: the argument of a drive in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MomentInSi {
@@ -35,11 +35,11 @@ pub struct MomentInSi {
     pub theta: f64,
     /// The angular velocity along e1, e2, e3, in rad/s.
     pub w: Vector3<f64>,
-    /// The slip along the lean and across it, in m/s.
+    /// The slip along e_h and along e2, in m/s.
     pub slip: Vector2<f64>,
-    /// The heading of the lean and the turn about the axis, in radians.
+    /// The direction phi to which the axis leans, in radians from x to y.
     pub phi: f64,
-    /// See `phi`.
+    /// The angle psi by which the body has turned about its axis, in radians.
     pub psi: f64,
     /// The place of the contact point in metres.
     pub contact_point: Point2<f64>,

@@ -43,15 +43,15 @@ use core::f64::consts::{FRAC_PI_2, PI};
 const NO_COUPLE: f64 = 1e-14;
 
 coded! {
-    /// How a body is on a table that is tilted.
+    /// The posture of a body at rest on a tilted table.
     pub enum Posture {
-        /// It stands on its face.
+        /// The body stands on its face.
         Standing = 0,
-        /// It lies on two circles, or stands on one with its axis across, and is free to roll.
+        /// The body lies on two circles, or stands on one with its axis across the slope, and is free to roll.
         Rolling = 1,
-        /// It lies on two circles, and dry losses hold it from rolling.
+        /// The body lies on two circles, and dry losses keep it from rolling.
         Lying = 2,
-        /// Dry losses hold it on one circle.
+        /// The body leans on one circle, and dry losses keep it from rolling and falling.
         Edge = 3,
     }
 }
@@ -100,11 +100,12 @@ pub fn slip_slope(body: &Body, theta: f64, mu: f64, posture: Posture, phi: f64) 
             "ell",
             body.ell(),
             (-NO_COUPLE, NO_COUPLE),
-            "two circles on the table, or a ball or disk",
+            "0 for a body on a single circle, as for a disk or a uniform ball",
         )?;
         let alone = body.is_uniform_ball() || phi.cos().abs() < NO_COUPLE;
         if posture == Posture::Rolling && !alone {
-            let expected = "pi/2 or -pi/2: with another direction a body on one circle falls over";
+            let expected =
+                "pi/2 or -pi/2, an axis across the slope: otherwise a body on a single circle falls over";
             return Err(Error::OutOfRange { name: "phi", value: phi, expected });
         }
         let (k, radius) = (body.i3(), body.shape().rim.radius((1.0, ell)));
@@ -153,20 +154,20 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     Ok([a, rim.height(flat)])
 }
 
-/// What a body at rest on a slope needs, as shares of what holds it there; a body whose shares are all below 1 stays.
+/// The shares of friction, losses and weight that hold a body at rest on a slope; if all are below 1, the body stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SlopeShares {
-    /// The share of the friction that keeps it from slipping.
+    /// The share of the largest static friction that is needed to keep the body from slipping.
     pub slipping: f64,
-    /// The share of the losses that keep it from rolling.
+    /// The share of the largest couple of the dry losses that is needed to keep the body from rolling.
     pub rolling: f64,
-    /// The share of the weight that keeps it from tipping.
+    /// The ratio of tan(slope) to that at which the body tips over.
     pub tipping: f64,
 }
 
-/// What a body at rest on a table needs to be held, as a share of what friction, dry losses and its width can hold:
-/// three shares, against slipping, rolling and tipping. The last two arguments are the slope and phi.
+/// The shares of static friction, dry losses and width that are needed to keep a body at rest from slipping, rolling and
+/// tipping; each is 1 where the body lets go. The last two arguments are the slope and phi, in radians.
 ///
 /// # Errors
 /// Those of [`slip_slope`], unless `mu` is infinite, and of [`tip_slope`].

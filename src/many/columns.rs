@@ -102,13 +102,13 @@ impl<'a> BodyColumns<'a> {
 /// Columns of the four numbers of a [`State`](crate::State), to be read or to be written.
 #[derive(Debug, Clone, Copy)]
 pub struct StateColumns<C> {
-    /// Inclination.
+    /// Inclination, in radians.
     pub theta: C,
-    /// Angular velocity along e1.
+    /// Angular velocity along e1, in sqrt(g/R).
     pub w1: C,
-    /// Angular velocity along e2.
+    /// Angular velocity along e2, in sqrt(g/R).
     pub w2: C,
-    /// Angular velocity along the axis.
+    /// Angular velocity along the symmetry axis, in sqrt(g/R).
     pub w3: C,
 }
 

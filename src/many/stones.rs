@@ -41,7 +41,7 @@ pub struct StoneRow {
 }
 
 impl StoneRow {
-    /// A stone on a level table without a slip, with the friction and the losses of all.
+    /// A stone on a level table without a slip, with the friction and the losses of the job.
     pub fn new(stone: &Ellipsoid, state: StoneState) -> Self {
         let StoneState { vertical: [a, b, c], w: [d, e, f] } = state;
         Self {
@@ -55,13 +55,13 @@ impl StoneRow {
         }
     }
 
-    /// Returns this row with this slip along x and y.
+    /// Returns this row with this slip along x and y, in sqrt(g a).
     #[must_use]
     pub fn with_slip(self, x: f64, y: f64) -> Self {
         Self { slip: [x, y], ..self }
     }
 
-    /// Returns this row with friction of its own, of the kind that all have.
+    /// Returns this row with its own coefficients of friction; the law of friction is that of the job.
     #[must_use]
     pub fn with_friction(self, friction: Friction) -> Self {
         let coefficients = match friction {
@@ -71,19 +71,19 @@ impl StoneRow {
         Self { coefficients: Some(coefficients), ..self }
     }
 
-    /// Returns this row with losses of its own.
+    /// Returns this row with its own losses, in place of those of the job.
     #[must_use]
     pub fn with_losses(self, losses: Losses) -> Self {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns this row on a table with this slope, with the angle phi at the start.
+    /// Returns this row on a table with this slope and with the angle phi at the start, both in radians.
     #[must_use]
     pub fn with_slope(self, slope: f64, phi: f64) -> Self {
         Self { slope: Some([slope, phi]), ..self }
     }
 
-    /// Returns this row in the air, with the height of the lowest point and its vertical velocity.
+    /// Returns this row in the air, with the height of the lowest point, in a, and its vertical velocity, in sqrt(g a).
     #[must_use]
     pub fn with_aloft(self, height: f64, lift: f64) -> Self {
         Self { aloft: Some([height, lift]), ..self }
@@ -94,20 +94,20 @@ impl StoneRow {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Turns {
-    /// They are not counted.
+    /// Reversals are not counted.
     #[default]
     Uncounted,
-    /// They are counted.
+    /// Reversals are counted.
     Counted,
 }
 
-/// What is the same for all stones of a call.
+/// The options and the times that all stones of a call have in common.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneJob<'a> {
-    /// The options of every motion. What a row has of its own replaces them.
+    /// The options of every motion; the coefficients of a [`StoneRow`] replace them.
     pub ask: Ask,
-    /// Times of the motions, of which the last one counts.
+    /// Times of the motions, in sqrt(a/g); the results are those at the last time.
     pub times: &'a [f64],
     /// Whether reversals of the spin are counted.
     pub turns: Turns,
@@ -132,7 +132,7 @@ impl<'a> StoneJob<'a> {
     }
 }
 
-/// The result of one motion of many.
+/// The result of the motion of one stone of many.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneSummary {
@@ -169,23 +169,23 @@ impl StoneSummary {
         "known_until",
     ];
 
-    /// How the motion ended; all numbers of an invalid one are NaN.
+    /// The ending of the motion; if it is invalid, all numbers of the summary are NaN.
     pub fn ending(&self) -> Ending {
         Ending::from_code(self.status).unwrap_or(Ending::Invalid)
     }
 
-    /// The last state.
+    /// The state at the end of the motion.
     pub fn state(&self) -> StoneState {
         let [a, b, c, d, e, f, ..] = self.numbers;
         StoneState { vertical: [a, b, c], w: [d, e, f] }
     }
 
-    /// The time of the end.
+    /// The time of the end of the motion, in sqrt(a/g).
     pub fn end(&self) -> f64 {
         self.numbers[6]
     }
 
-    /// The last spin.
+    /// The angular velocity about the vertical at the end, in sqrt(g/a).
     pub fn spin(&self) -> f64 {
         self.numbers[7]
     }
@@ -195,17 +195,17 @@ impl StoneSummary {
         Some(self.numbers[8]).filter(|count| !count.is_nan()).map(|count| count as usize)
     }
 
-    /// The time of the first reversal, if there is one and reversals are counted.
+    /// The time of the first reversal of the spin, in sqrt(a/g), if there is one and reversals are counted.
     pub fn first_reversal(&self) -> Option<f64> {
         Some(self.numbers[9]).filter(|time| !time.is_nan())
     }
 
-    /// The heat of friction.
+    /// The heat of friction, in M g a.
     pub fn dissipated(&self) -> f64 {
         self.numbers[10]
     }
 
-    /// The energy lost to the losses.
+    /// The energy lost to the losses, in M g a.
     pub fn work_lost(&self) -> f64 {
         self.numbers[11]
     }
@@ -220,12 +220,12 @@ impl StoneSummary {
         self.numbers[13]
     }
 
-    /// The time in the air.
+    /// The total time in the air, in sqrt(a/g).
     pub fn air_time(&self) -> f64 {
         self.numbers[14]
     }
 
-    /// The energy lost in impacts.
+    /// The energy lost in impacts, in M g a.
     pub fn lost_in_impacts(&self) -> f64 {
         self.numbers[15]
     }
@@ -240,7 +240,7 @@ impl StoneSummary {
         self.numbers[17]
     }
 
-    /// The time up to which the motion is known.
+    /// The time, in sqrt(a/g), up to which the estimated error of the motion is small.
     pub fn known_until(&self) -> f64 {
         self.numbers[18]
     }
@@ -304,7 +304,7 @@ pub(crate) fn many_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Option<Vec<StoneSummary>>, Error> {
     check_stone(&StoneState { vertical: [0.0, 0.0, 1.0], w: [0.0; 3] }.into(), times, how.0)?;
-    within("slope", how.0.slope, (0.0, 0.0), "0: the slopes of many stones are in their rows")?;
+    within("slope", how.0.slope, (0.0, 0.0), "0: give the slopes of many stones by `StoneRow::with_slope`")?;
     let mut all = room(count)?;
     all.resize(count, StoneSummary::none(Ending::Invalid));
     let done = match laws {

@@ -133,7 +133,7 @@ impl MeasuredMoments {
         Self { height, fillet: 0.0, i1, i3 }
     }
 
-    /// Returns these numbers with this radius of the edge, in metres.
+    /// Returns these numbers with this radius of the rounded edge, in metres.
     #[must_use]
     pub fn with_fillet(self, fillet: f64) -> Self {
         Self { fillet, ..self }
@@ -184,7 +184,7 @@ pub struct Reading {
 pub struct MeasuredMotion {
     /// The motion in natural units.
     pub natural: Motion,
-    /// The body.
+    /// The measured body.
     pub of: Measured,
     /// The requested times in seconds.
     pub seconds: Vec<f64>,
@@ -212,12 +212,12 @@ impl core::fmt::Display for Measured {
 }
 
 impl Measured {
-    /// A body with these natural units.
+    /// Makes a measured body from a body and its natural units in SI.
     pub fn new(body: Body, scale: Scale) -> Self {
         Self { body, scale }
     }
 
-    /// A uniform tube.
+    /// Makes a measured body from the dimensions of a uniform tube.
     ///
     /// # Errors
     /// Those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than 0.01 kg/m^3, a
@@ -226,11 +226,11 @@ impl Measured {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
         let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
         let least = 0.01 * FRAC_PI_4 * wall * of.length;
-        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more of a tube in metres")?;
+        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more, and lengths in metres")?;
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
-    /// Any axisymmetric body of this size with these moments.
+    /// Makes an axisymmetric body of this size with these moments of inertia.
     ///
     /// ```
     /// use spincyl::measured::{Measured, MeasuredMoments};

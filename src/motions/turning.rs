@@ -92,7 +92,7 @@ fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
         "ell",
         top.ell(),
         (-1.0, -f64::MIN_POSITIVE),
-        "below 0: the centre of mass of a tippe top is below its middle",
+        "less than 0: the centre of mass of a tippe top is below the centre of the ball",
     )?;
     let root = |stiff: f64| if stiff > 0.0 { (low / stiff).sqrt() } else { f64::INFINITY };
     let over = (1.0 + low) * (1.0 + low) / (1.0 - low) * root(top.i3() * (1.0 + low) - top.i1());
@@ -127,7 +127,7 @@ pub fn turning_spin(
 }
 
 /// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
-/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or something on the way is stable.
+/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or stable in between.
 ///
 /// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
 /// few roundings.
@@ -303,18 +303,23 @@ impl LyingEgg {
     fn of(egg: &Ellipsoid) -> Result<Self, Error> {
         let ([b, c, a], [x, y, d]) = (egg.axes(), egg.offset());
         let Symmetric([i1, i2, i3, one, two, three]) = egg.inertia;
-        let expected = "two equal semi-axes and a longer third one";
+        let expected = "an egg, whose third semi-axis is longer than the two others, which are equal";
         within("axes", if b == c { a / b } else { f64::NAN }, (1.0 + 1e-9, f64::INFINITY), expected)?;
         for (name, value) in [
             ("offset", x.abs().max(y.abs())),
             ("inertia", (i1 - i2).abs().max(one.abs()).max(two.abs()).max(three.abs())),
         ] {
-            within(name, value, (0.0, 1e-12), "a mass that is symmetric about axis 3")?;
+            within(name, value, (0.0, 1e-12), "0 to 1e-12: the mass of an egg is symmetric about axis 3")?;
         }
         // With a lower centre of mass it stands on that end without any spin.
         let long = a * a - b * b;
         let most = long / a;
-        within("offset", d, (-most, most), "a centre of mass so low that the egg lies")?;
+        within(
+            "offset",
+            d,
+            (-most, most),
+            "a centre of mass so near the middle that the egg at rest lies on its side",
+        )?;
         let cos = -d * b / (long * long - d * d * long).sqrt();
         let square = cos * cos;
         let height = (b * b + long * square).sqrt() + d * cos;

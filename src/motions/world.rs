@@ -79,8 +79,8 @@ impl WorldStart {
 }
 
 impl Measured {
-    /// The start in natural units of a body that starts there in the world: its state, slip, direction and place. A body whose
-    /// lowest point is more than 1e-9 R above the table, or rises, starts in the air.
+    /// Converts a start in the world to a start in natural units: state, slip, direction and place. A body whose lowest point
+    /// is more than 1e-9 R above the table, or rises, starts in the air.
     ///
     /// # Errors
     /// `OutOfRange` for a body below the table, for one on the table that moves into it, and for numbers that are not finite.
@@ -93,7 +93,7 @@ impl Measured {
                 "start",
                 *x,
                 (-f64::MAX, f64::MAX),
-                "a position, a velocity and an angular velocity that are finite",
+                "finite components of position, velocity and angular velocity",
             )?;
         }
         let w = start.angular_velocity.map(|w| scale.angular_velocity(w));
@@ -107,7 +107,7 @@ impl Measured {
             "position",
             gap,
             (-NEAR_THE_TABLE, f64::MAX),
-            "a body above the table, its lowest point 0 R or more high",
+            "a position in which the lowest point of the body is on or above the table",
         )?;
         let rise = v.z - centre_rise(&body, &state);
         let few = NO_RISE * (v.amax() + w.amax() * (1.0 + rim.ell.abs()));
@@ -119,8 +119,8 @@ impl Measured {
         Ok(found.with_heading(phi).with_place([x + lever * cos, y + lever * sin]))
     }
 
-    /// The motion of a body that starts there in the world, at these times in seconds; its readings are in the world. Options
-    /// are in natural units, and `go_on` is as for [`roll`](Self::roll).
+    /// Computes the motion of the body from a start in the world, at these times in seconds; its readings are along the axes
+    /// of the world. Options are in natural units, and `go_on` is as for [`roll`](Self::roll).
     ///
     /// # Errors
     /// Those of [`start_in_world`](Self::start_in_world) and of [`roll`](Self::roll).

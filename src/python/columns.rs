@@ -33,14 +33,15 @@ impl<'py> GivenColumns<'py> {
             match self.column(name)? {
                 Some(column) => all[i] = column,
                 None if i == 0 => return Ok(None),
-                None => return Err(PyValueError::new_err(format!("no column {name}"))),
+                None => return Err(PyValueError::new_err(format!("columns: expected a column {name}"))),
             }
         }
         Ok(Some(all))
     }
 
     pub fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
-        self.some(names)?.ok_or_else(|| PyValueError::new_err(format!("no column {}", names[0])))
+        self.some(names)?
+            .ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {}", names[0])))
     }
 }
 
@@ -79,11 +80,11 @@ pub fn circles_of(given: &GivenColumns<'_>) -> PyResult<Vec<CirclesOfRow>> {
 /// A column of codes that is filled.
 pub fn code_column<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
 }
 
 /// A column of numbers that is filled.
 pub fn numbers<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, f64>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("no column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
 }

@@ -86,7 +86,7 @@ pub fn drift_ask<'py>(
         0 => Question::Time,
         1 => Question::At,
         2 => Question::Stable,
-        _ => return Err(PyValueError::new_err("question: expected 0, 1 or 2")),
+        _ => return Err(PyValueError::new_err("question: expected 0 (time), 1 (state) or 2 (stability)")),
     };
     let of: Vec<usize> = of.as_slice()?.iter().map(|i| *i as usize).collect();
     let x = x.as_slice()?;

@@ -75,7 +75,8 @@ pub fn ensemble<'py>(
         losses: given.some(parameters())?.map(LossColumns),
         aloft: given.some(["height", "lift"])?,
     };
-    let tol = asked.tol.ok_or_else(|| PyValueError::new_err("no option tol"))?;
+    let tol =
+        asked.tol.ok_or_else(|| PyValueError::new_err("tol: expected this option, which is missing"))?;
     let method = asked.step.map_or(Method::Exact, Method::Step);
     let ask = Ask { method, losses: Losses::NONE, ..asked.ask()? };
     let job = Job { ask, times: times.as_slice()?, tol, errors: asked.errors };
@@ -100,7 +101,7 @@ pub fn ensemble<'py>(
     for &kind in Summary::ALL {
         summary[kind as usize] = wanted.take(kind.label()[0]);
     }
-    let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("no column error"))?;
+    let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("out: expected a column error"))?;
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
     let out = MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
     let mut watch = Watch::new(progress);

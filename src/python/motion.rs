@@ -354,7 +354,9 @@ pub fn roll<'py>(
                 stone::roll(&stone, start, times, &ask, || watch.still())
             })
         }
-        _ => Err(PyValueError::new_err("state: expected a state of this kind of body")),
+        _ => Err(PyValueError::new_err(
+            "state: expected a State for a body of revolution, an EllipsoidState for a stone",
+        )),
     }
 }
 

@@ -12,12 +12,13 @@ pub(super) fn contact_of(code: u8) -> PyResult<Contact> {
     match table_of(code)? {
         TableKind::Rolling => Ok(Contact::Rolling),
         TableKind::Smooth => Ok(Contact::Smooth),
-        _ => Err(PyValueError::new_err("contact: an unknown kind")),
+        _ => Err(PyValueError::new_err("contact: expected the code of a contact")),
     }
 }
 
 pub(super) fn table_of(code: u8) -> PyResult<TableKind> {
-    TableKind::from_code(code).ok_or_else(|| PyValueError::new_err("table: an unknown kind"))
+    TableKind::from_code(code)
+        .ok_or_else(|| PyValueError::new_err("table: expected the code of a kind of table"))
 }
 
 /// A struct of options, read from a dictionary; missing options have their defaults.
@@ -106,7 +107,11 @@ fn impact_law_of((name, tangential): &(String, f64)) -> PyResult<ImpactLaw> {
         "Newton" => ImpactLaw::Newton,
         "Poisson" => ImpactLaw::Poisson,
         "Walton" => ImpactLaw::Walton { tangential: *tangential },
-        other => return Err(PyValueError::new_err(format!("impact_law: no law of the name {other:?}"))),
+        other => {
+            return Err(PyValueError::new_err(format!(
+                "impact_law = {other:?}: expected the name of a law of restitution"
+            )));
+        }
     })
 }
 
@@ -141,7 +146,8 @@ impl MotionAsked {
             beyond: self.beyond,
             restitution: self.restitution,
             impact_law: self.impact_law.as_ref().map_or(Ok(ImpactLaw::Stronge), impact_law_of)?,
-            face: Face::from_code(self.face).ok_or_else(|| PyValueError::new_err("face: an unknown kind"))?,
+            face: Face::from_code(self.face)
+                .ok_or_else(|| PyValueError::new_err("face: expected the code of a kind of face"))?,
             slope: self.slope,
             turning: self.turning,
             stop_at_rolling: self.stop_at_rolling,

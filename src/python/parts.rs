@@ -77,7 +77,8 @@ pub fn unequal_balls(radii: [f64; 2], separation: f64) -> PyResult<NumbersOfBody
 pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, [f64; 3])> {
     let part = |(kind, numbers, amount, dense): &Given| {
         let amount = if *dense { Amount::Density(*amount) } else { Amount::Mass(*amount) };
-        let form = form(*kind, numbers).ok_or_else(|| PyValueError::new_err("parts: an unknown form"))?;
+        let form = form(*kind, numbers)
+            .ok_or_else(|| PyValueError::new_err("parts: expected the code of a form"))?;
         Ok(BodyPart { form, amount })
     };
     let parts: Vec<BodyPart> = given.iter().map(part).collect::<PyResult<_>>()?;

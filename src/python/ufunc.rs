@@ -26,7 +26,7 @@ use std::sync::OnceLock;
 /// The largest number of inputs of a function: those of a loss, and the axis of its couple.
 const MOST: usize = super::loss::INPUTS + 1;
 
-/// A quantity of the steady state with the centre at rest, computed in lanes.
+/// A quantity of the steady state with the centre at rest, computed in SIMD lanes.
 #[derive(Clone, Copy)]
 pub enum Quantity {
     Rate,

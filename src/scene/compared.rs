@@ -54,7 +54,7 @@ pub struct Deviation {
     pub theta: f64,
 }
 
-/// What may be wrong with the numbers of an engine, rather than with the engine.
+/// A probable mistake in the units or the order of an engine's numbers, rather than in the engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Doubt {
@@ -70,13 +70,13 @@ pub enum Doubt {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// The deviations.
+    /// The deviation of the engine at each time.
     pub rows: Vec<Deviation>,
     /// A bound for the error of the known positions in metres. A smaller deviation is no error of the engine.
     pub position_error: f64,
     /// A bound for the error of the known orientations, in radians.
     pub angle_error: f64,
-    /// What may be wrong with the numbers.
+    /// Probable mistakes in the units or the order of the numbers.
     pub doubts: Vec<Doubt>,
 }
 
@@ -132,7 +132,7 @@ impl Scene {
         let seconds: Vec<f64> = rows.iter().map(|row| row.time).collect();
         let (answer, scale) = (self.answer(&seconds)?, self.scale()?);
         let Some(first) = answer.rows.first() else {
-            return Err(SceneError::Motion("rows: the known motion ends before the first of them"));
+            return Err(SceneError::Motion("rows: expected a first row before the end of the known motion"));
         };
         let deviations = rows.iter().zip(&answer.rows).map(|(row, known)| {
             let (p, q) = (row.orientation.coords.normalize(), known.orientation.coords);

@@ -30,7 +30,7 @@ pub struct Contents {
     pub expected: Expected,
     /// Bounds of the errors of the known answer at any time.
     pub error: SceneErrors,
-    /// What the answer is computed from, in natural units: with it the answer is known at any time.
+    /// The body, the start and the options from which the answer is computed, in natural units, also at other times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub natural: Option<Natural>,
 }
@@ -72,7 +72,7 @@ pub struct SceneBody {
     pub shape: SceneShape,
 }
 
-/// What can touch the table.
+/// The part of the surface of a body that can touch the table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 #[non_exhaustive]
@@ -89,13 +89,13 @@ pub enum SceneShape {
 pub struct EllipsoidShape {
     #[serde(rename = "type")]
     pub(super) kind: String,
-    /// The largest semi-axis.
+    /// The largest semi-axis, in metres.
     pub radius: f64,
-    /// The semi-axes.
+    /// The semi-axes of the ellipsoid, in metres.
     pub semi_axes: Vector3<f64>,
-    /// The centre of the ellipsoid, from the centre of mass.
+    /// The vector from the centre of mass to the centre of the ellipsoid, in metres.
     pub centre: Vector3<f64>,
-    /// The inclination of axis 3 at which an edge lands; `None` without an edge.
+    /// The inclination of axis 3, in radians, at which an edge lands; `None` without an edge.
     pub lands_at: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ pub struct CirclesShape {
     /// The kind of the body.
     #[serde(rename = "type")]
     pub kind: ShapeKind,
-    /// The unit R of length.
+    /// The unit of length R, in metres.
     pub radius: f64,
     /// The radius of the bore of a tube; `None` for a body of another kind, whose inside is not known.
     pub inner_radius: Option<f64>,
@@ -114,9 +114,9 @@ pub struct CirclesShape {
     pub circles: Vec<SceneCircle>,
     /// The distance from the hull of all circles; `None` if each circle has its own.
     pub swollen_by: Option<f64>,
-    /// Half the length of a body with two equal rims.
+    /// Half the length of a body with two equal rims, in metres.
     pub half_length: Option<f64>,
-    /// The inclination at which something other than the lowest circle lands.
+    /// The inclination, in radians, at which a part other than the lowest circle lands.
     pub lands_at: f64,
     #[serde(rename = "is")]
     pub(super) explained: String,
@@ -148,9 +148,9 @@ pub enum ShapeKind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneCircle {
-    /// The height above the centre of mass, along axis 3.
+    /// The height of the circle above the centre of mass, along axis 3.
     pub height: f64,
-    /// The radius; 0 for a ball or a tip.
+    /// The radius of the circle; 0 for a ball or a tip.
     pub radius: f64,
     /// The radius of the fillet, where the circles differ in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -161,16 +161,16 @@ pub struct SceneCircle {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneTable {
-    /// A point of the table.
+    /// A point of the plane of the table, in metres.
     pub point: Point3<f64>,
-    /// The normal of the table.
+    /// The unit normal of the table, which points up.
     pub normal: Vector3<f64>,
     /// The law of friction.
     pub friction: SceneFriction,
     /// The coefficient of restitution; `None` if nothing strikes the table.
     pub restitution: Option<f64>,
     pub(super) restitution_is: String,
-    /// The losses.
+    /// The loss laws, each with its coefficient.
     pub losses: Vec<SceneLoss>,
     pub(super) symbols: String,
 }
@@ -187,15 +187,15 @@ pub enum SceneFriction {
         mu: f64,
         /// The least coefficient that rolling needs; `None` if impacts need more than any.
         needed: Option<f64>,
-        /// The force.
+        /// The formula of the friction, as text.
         force: String,
     },
     /// No friction.
     #[non_exhaustive]
     Smooth {
-        /// 0.
+        /// The coefficient of friction, which is 0.
         mu: f64,
-        /// The force.
+        /// The formula of the friction, as text.
         force: String,
     },
     /// Dry friction.
@@ -208,7 +208,7 @@ pub enum SceneFriction {
         fixed: Option<f64>,
         /// The radius of the patch of contact in metres.
         patch: f64,
-        /// The force.
+        /// The formula of the friction, as text.
         force: String,
     },
     /// A viscous film.
@@ -216,9 +216,9 @@ pub enum SceneFriction {
     Viscous {
         /// The coefficient in s/m.
         c: f64,
-        /// Its unit.
+        /// The unit of the coefficient, s/m.
         unit: String,
-        /// The force.
+        /// The formula of the friction, as text.
         force: String,
     },
 }
@@ -235,7 +235,7 @@ pub struct SceneLoss {
     pub value: f64,
     /// The unit of the coefficient.
     pub unit: String,
-    /// The couple.
+    /// The formula of the couple on the body, as text.
     pub couple: String,
 }
 
@@ -303,7 +303,7 @@ pub struct Expected {
     pub impacts: Option<Vec<SceneImpact>>,
     /// The phases and the times at which they begin.
     pub phases: Vec<ScenePhase>,
-    /// How the motion ends.
+    /// The ending of the known motion, with its time and its reason.
     pub ending: SceneEnding,
 }
 
@@ -331,15 +331,15 @@ pub struct ScenePhase {
     pub kind: String,
 }
 
-/// How the motion ends.
+/// The ending of the known motion, with its time and its reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneEnding {
-    /// The kind, such as `DONE` or `FACE`.
+    /// The name of the ending, such as `DONE` or `FACE`.
     pub kind: String,
     /// The time in seconds.
     pub time: f64,
-    /// The reason in words.
+    /// The reason why the motion ends, in words.
     pub why: String,
 }
 

@@ -67,18 +67,18 @@ pub enum SceneError {
     /// The motion cannot be computed.
     #[error(transparent)]
     Model(#[from] Error),
-    /// The text is not the file of a scene.
+    /// The text is not the content of a scene's file, for the reason given.
     #[error("text: {0}")]
     File(String),
-    /// The motion is not one that a scene can have.
+    /// A scene cannot have this motion, for the reason given.
     #[error("{0}")]
     Motion(&'static str),
-    /// A row of an engine is not a row of a trajectory.
+    /// A row of the trajectory of an engine is not valid.
     #[error("rows[{index}]: expected {expected}")]
     Row {
         /// The index of the row.
         index: usize,
-        /// What a row has to be.
+        /// The condition that the row does not meet.
         expected: &'static str,
     },
 }
@@ -105,7 +105,7 @@ fn from_start(seconds: &[f64]) -> Result<Vec<f64>, SceneError> {
     all.extend(seconds);
     if !all.windows(2).all(|both| both[0] < both[1]) {
         return Err(SceneError::Motion(
-            "seconds: expected ascending times since the start, since an engine starts there",
+            "seconds: expected times of 0 or more in ascending order, in seconds since the start",
         ));
     }
     Ok(all)
@@ -193,7 +193,7 @@ impl Scene {
             return Ok(());
         }
         let why = format!(
-            "expected: its answer is not that of its natural body, start and options: {:e} m, {:e} rad apart",
+            "expected: the known motion of this file is {:e} m and {:e} rad from that of its body, start and options",
             most.position, most.angle
         );
         Err(SceneError::File(why))
@@ -302,7 +302,7 @@ impl Scene {
     }
 
     fn natural(&self) -> Result<&Natural, SceneError> {
-        let why = "natural: expected a file that tells what its answer is computed from";
+        let why = "natural: expected a file with this key, which has the body, the start and the options of the motion";
         self.contents.natural.as_ref().ok_or(SceneError::Motion(why))
     }
 }

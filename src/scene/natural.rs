@@ -60,13 +60,13 @@ pub(super) struct Known {
     pub energy: f64,
     /// The largest ratio of friction to normal force.
     pub needed: f64,
-    /// Of all points of contact together.
+    /// The normal force of all points of contact together.
     pub normal: f64,
     /// NaN on both rims.
     pub force: Vector3<f64>,
     /// NaN where there is not one point of contact.
     pub point: Vector3<f64>,
-    /// Of the lowest point.
+    /// The height of the lowest point.
     pub height: f64,
 }
 
@@ -151,7 +151,9 @@ impl Natural {
                 let size = [1.0 + Vector3::new(x, y, z).norm(), of.moments()[2]];
                 let bounds = Bounds::of([m.error, m.pose_error, m.force_error], size, most);
                 if m.path.as_ref().is_some_and(|path| path.known_until.is_finite()) {
-                    return Err(SceneError::Motion("motion: it is not known up to its last time"));
+                    return Err(SceneError::Motion(
+                        "motion: expected a motion that is known up to its last time; give earlier times",
+                    ));
                 }
                 told(m, rows, bounds, &ask)
             }
@@ -170,7 +172,9 @@ fn told<S: Moving>(
         return Err(SceneError::Motion("beyond: expected a motion that ends at its event"));
     }
     if !m.error.is_finite() {
-        return Err(SceneError::Motion("motion: its error is unknown"));
+        return Err(SceneError::Motion(
+            "motion: expected a motion whose error can be estimated; this error is not finite",
+        ));
     }
     let path = m.path.as_deref();
     let first = if ask.table == Table::Smooth { Kind::Slipping } else { Kind::Rolling };

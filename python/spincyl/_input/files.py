@@ -15,7 +15,7 @@ from uuid import uuid4
 
 
 def path_of(name: str, value: str | os.PathLike[str]) -> Path:
-    """The path of a file, or an error naming the argument."""
+    """Return the path of a file, or raise an error that names the argument."""
     try:
         found = Path(value)
     except TypeError:

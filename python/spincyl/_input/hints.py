@@ -106,7 +106,7 @@ _INSTEAD = {
 
 
 def proposal(name: str, known: Iterable[str]) -> str:
-    """A proposal in place of a name, after a colon; empty if no known name is similar."""
+    """Text that proposes a known name similar to a wrong one, after a colon; empty if none is similar."""
     names = [x for x in known if not x.startswith("_")]
     if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
         return ": semi_axes= are half of length, width and height of the whole ellipsoid"
@@ -118,13 +118,13 @@ def proposal(name: str, known: Iterable[str]) -> str:
 
 
 def install_command(what: str) -> str:
-    """The command that installs something for the Python that runs, by its path in a virtual environment."""
+    """The command that installs a package for the running Python, by its path in a virtual environment."""
     python = shlex.quote(sys.executable) if sys.prefix != sys.base_prefix and sys.executable else "python"
     return f"{python} -m pip install {what}"
 
 
 def with_hints(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Decorator: the error about an unknown argument proposes known ones."""
+    """Decorator: the error about an unknown argument of a function proposes similar known arguments."""
 
     @wraps(call)
     def helped(*args: _Given.args, **named: _Given.kwargs) -> _Found:
@@ -147,7 +147,7 @@ def raise_with_proposal(call: Callable[..., Any], named: dict[str, Any], error: 
 
 
 def why_no_numbers(value: Any) -> str:
-    """Why texts are no numbers: a decimal comma, or a unit where there can be none."""
+    """The reason why texts are not numbers: a decimal comma, or a unit that is not allowed."""
     if isinstance(value, str):
         return "a text with a unit is one number in SI, and this argument is in natural units or a list"
     first = next(iter(np.asarray(value).flat), "")
@@ -157,7 +157,7 @@ def why_no_numbers(value: Any) -> str:
 
 
 class Hinting:
-    """Base of objects that users hold: the error about a missing attribute says what there is instead."""
+    """Base of public objects: the error about a missing attribute proposes similar attributes."""
 
     if not TYPE_CHECKING:  # type checkers know that there is none
 
@@ -183,7 +183,7 @@ def _instead_of_attribute(thing: object, name: str) -> str:
 
 
 class HintingFamily(Hinting):
-    """Base of bodies and states: the error about an index says how to take one of a family."""
+    """Base of bodies and states: the error about an index says how to take one element of a family."""
 
     if not TYPE_CHECKING:  # type checkers know that there is no index
 

@@ -124,7 +124,7 @@ def is_quantity(value: object) -> bool:
 
 
 def si(name: str, value: Reals, unit: str) -> Reals:
-    """`value` in the unit of SI that pint calls `unit`; a text such as "120mm" or a quantity is converted."""
+    """Convert a number, a text such as "120mm" or a quantity to the SI unit of the name `unit`."""
     if isinstance(value, str):
         return _read(name, value, unit)
     return _magnitude(name, value, unit, f"a number or a quantity in {unit}") if is_quantity(value) else value
@@ -277,7 +277,7 @@ def in_columns(values: Iterable[Reals], shape: tuple[int, ...]) -> list[Floats]:
 
 
 def is_scalar(*values: Reals) -> bool:
-    """Whether all of these are single numbers."""
+    """Whether all values are single numbers."""
     return all(type(v) is float or np.ndim(v) == 0 for v in values)
 
 

@@ -47,7 +47,7 @@ class _Bar:
 def reporting_progress(
     progress: Progress | bool | None, what: str, *, by_default: bool = True
 ) -> Iterator[Progress | None]:
-    """What work is to call with its finished share, or None.
+    """The function that a computation calls with its finished share, from `progress`; None without a report.
 
     `progress` is a function, or True for a bar at once, or False for none. By default a bar is shown after
     two seconds if somebody can see it.
@@ -75,7 +75,7 @@ def reporting_progress(
 
 @contextmanager
 def without_bars() -> Iterator[None]:
-    """Let work within this block show no bar unless it is asked for one."""
+    """Context in which a computation shows no progress bar unless `progress` is true."""
     global _shows_bars
     before, _shows_bars = _shows_bars, False
     try:

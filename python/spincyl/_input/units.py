@@ -120,7 +120,7 @@ def _parts(text: str) -> tuple[str, str]:
 
 
 def has_unit(text: str) -> bool:
-    """Whether there is a unit after the number."""
+    """Whether a text has a unit after its number."""
     return _parts(text)[1] != ""
 
 
@@ -142,7 +142,7 @@ def _one(kind: str) -> str:
 
 
 def quantity(kind: str) -> Callable[[str], float]:
-    """A function that reads a quantity of a kind, such as a length, with or without its unit."""
+    """Make a function that reads a quantity of one kind, such as a length, with or without a unit."""
     units = _UNITS[kind]
 
     def number_in_si(text: str) -> float:
@@ -255,7 +255,7 @@ def whole_text(text: str) -> int:
 
 
 def suspicion_of_units(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """Why millimetres or grams are suspected in the size (length, width) of a body; empty if they are not."""
+    """The reason why a size (length, width) or a density seems to be in millimetres or grams; else empty."""
     why = ""
     if max(sides) > _LENGTHS[1]:
         why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"

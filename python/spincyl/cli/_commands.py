@@ -336,7 +336,7 @@ def delivered(
     rows: Iterable[Row] = (),
     numbers: dict[str, Any] | None = None,
 ) -> None:
-    """Print or write a motion, after rows and numbers of the command itself."""
+    """Print or write a motion, after the rows and numbers that the command adds."""
     piped = args.output == "-"
     if args.json:
         told = motion_numbers(m, scale) | (numbers or {})

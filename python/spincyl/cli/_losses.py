@@ -37,7 +37,7 @@ class Given(NamedTuple):
 
     @property
     def measures(self) -> str:
-        """What the unit of the coefficient measures."""
+        """The kind of quantity that the unit of the coefficient measures."""
         return LAWS[self.coefficient].measures
 
 

@@ -31,7 +31,7 @@ def print_json(value: Any, file: TextIO | None = None) -> None:
 
 
 def body_numbers(body: Body, scale: Scale | None) -> Numbers:
-    """Properties of a shape; with a scale, also the critical rate in hertz."""
+    """Properties of a body's shape, by name; with a scale, also the critical rate in hertz."""
     found: Numbers = {"call": repr(body), "ell": body.ell, "i1": body.i1, "i3": body.i3, "bore": body.bore}
     found |= {"fillet": body.fillet, "theta_end": body.theta_end}
     found |= {"theta_balance": body.theta_balance, "theta_limit": body.theta_limit}
@@ -41,7 +41,7 @@ def body_numbers(body: Body, scale: Scale | None) -> Numbers:
 
 
 def body_rows(body: Body, scale: Scale | None) -> Iterator[Row]:
-    """Properties of a shape, as rows."""
+    """Properties of a body's shape, as rows of a table."""
     n = body_numbers(body, scale)
     if n["fillet"] == 0:
         yield "aspect ratio l/R", f"{n['ell']:.9g}", ""
@@ -87,7 +87,7 @@ def state_numbers(body: Body, state: State, scale: Scale | None, *, weighed: boo
 
 
 def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool = False) -> Iterator[Row]:
-    """Properties of a steady state, as rows."""
+    """Properties of a steady state, as rows of a table."""
     n = state_numbers(body, state, scale, weighed=weighed)
 
     def si(name: str, unit: str) -> str:

@@ -25,7 +25,7 @@ _LEAST_SINE_ERROR = 1e-6  # standard error of the sine of an exact film
 
 
 class Reading(NamedTuple):
-    """One rate that the frames may show."""
+    """A rate of turning that is consistent with the frames of a film."""
 
     direction: Floats  #: unwrapped direction, in radians
     slope: float  #: angular velocity in rad/s
@@ -36,7 +36,7 @@ class Reading(NamedTuple):
 
     @property
     def hertz(self) -> float:
-        """Turns per second."""
+        """The rate in turns per second."""
         return abs(self.slope) / (2 * math.pi)
 
 
@@ -65,7 +65,7 @@ def uniform(t: Floats, direction: Floats) -> tuple[float, float, float]:
 def read(
     t: Floats, direction: Floats, body: Body, *, one: float, line: float, sine: float, sine_err: float
 ) -> Readings:
-    """All rates that look like a direction, unwrapped for the slowest; `one` is the unit of rates in hertz.
+    """All rates that are consistent with the directions in the frames; `one` is the unit of rates in hertz.
 
     `line` is the distance of the ends of the tube as seen from above, in metres. Another rate is taken if it
     alone is possible, and the slowest is far from every steady inclination.

@@ -37,7 +37,7 @@ class Fit(NamedTuple):
 
     @property
     def chi2(self) -> float:
-        """Sum of squares per degree of freedom."""
+        """Sum of the squared residuals in units of their errors, per degree of freedom."""
         return self.squares / self.freedom
 
     @property
@@ -48,7 +48,7 @@ class Fit(NamedTuple):
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """Ratio, its error, factor, its error; the errors follow from the scatter unless `known`."""
+        """The ratio and the common factor, each with its error; errors from the scatter unless `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
@@ -109,7 +109,7 @@ class Balance:
         return theta, w1, 0.0, -w1 * by_w1 / by_w3
 
     def tells(self, names: tuple[str, ...]) -> bool:
-        """Whether the points determine each of these variables, and can tell two of them apart."""
+        """Whether the points determine each of the variables, and can distinguish two of them."""
         if self.places.shape[1] < len(names) + 2 - (len(names) < 2):
             return False
         changes = self._changes(names, self.own)

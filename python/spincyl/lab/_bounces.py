@@ -99,7 +99,7 @@ class Bounces(NamedTuple):
     gravity: float
 
     def report(self) -> str:
-        """Return a report in lmfit's style: what was heard, and the coefficient and heights with errors."""
+        """Return a report in lmfit's style: the bounces, and the coefficient and heights with errors."""
         rows = [("# bounces", f"{self.t.size}, from {self.t[0]:.4g} to {self.t[-1]:.4g} s")]
         for name, times in (("missed", self.missed), ("no bounces", self.extra)):
             if times.size:

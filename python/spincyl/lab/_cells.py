@@ -95,14 +95,14 @@ def missing_in(line: str, delimiter: str | None) -> list[float] | None:
 
 
 class Split(NamedTuple):
-    """A table without its columns of text."""
+    """A table after the removal of its columns of text."""
 
     lines: list[tuple[int, str]]  #: numbered lines of the columns of numbers
     texts: list[tuple[str, tuple[str, ...]]]  #: columns of text: names and cells
 
 
 def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset[str]) -> Split | None:
-    """Separate the columns in which no cell is a number, such as names; None if there are none, or only such.
+    """Separate columns of text, such as names, from columns of numbers; None unless there are both.
 
     The line of names is the first that is as wide as the table. ValueError if a column has numbers and texts.
     """

@@ -54,7 +54,7 @@ def cleaned(name: str) -> tuple[str, str]:
 
 
 class Camera(NamedTuple):
-    """Axes and scale of a film: where a point of the table is in the picture."""
+    """Axes and scale of a film: they convert a place on the table to a pixel of the picture."""
 
     x: float  #: pixel at the origin, to the right from the upper left corner
     y: float  #: the same, down

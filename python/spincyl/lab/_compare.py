@@ -362,7 +362,7 @@ def compare(
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
         raise ValueError(
-            f"theta and rate: no real body has I1/I3 = {ratio:.3g}; give turns a second as hertz="
+            f"theta and rate: no real body has the fitted I1/I3 = {ratio:.3g}; give turns a second as hertz="
         )
     said = doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
     if said:
@@ -415,10 +415,11 @@ def _reduced(
 def _film_beside(body: object, theta: object, more: dict[str, object]) -> FilmComparison:
     """A film beside a motion; TypeError unless there are just these two."""
     if not isinstance(body, Motion):
-        raise TypeError(f"body: expected a motion beside a film, not {type(body).__name__}")
+        raise TypeError(f"body: expected a Motion to compare with the film, not {type(body).__name__}")
     if not isinstance(theta, Filmed):
-        raise TypeError(f"theta: expected a film from from_above beside a motion, not {type(theta).__name__}")
+        known = f"expected a film from from_above to compare with the motion, not {type(theta).__name__}"
+        raise TypeError(f"theta: {known}")
     for name, value in more.items():
         if value is not None:
-            raise TypeError(f"{name}: expected no further argument for a film and a motion")
+            raise TypeError(f"{name}: leave it out if a film is compared with a motion")
     return beside(body, theta)

@@ -34,7 +34,7 @@ _WILD = 4.0  # standard errors from which on a difference is left out, since a m
 
 
 class Scatter(NamedTuple):
-    """Standard errors in a single frame, in metres."""
+    """Standard errors of the measured values in a single frame of a film, in metres."""
 
     along: float  #: of the length of the line
     across: float  #: of its direction times its length
@@ -94,9 +94,9 @@ class Filmed(NamedTuple):
     frames : Columns
         Measured values in each frame: t in seconds; theta in radians, NaN if the line is longer than the
         tube; precession in rad/s, positive if the tube turns counterclockwise in the film, NaN beside a gap;
-        x and y of the centre of the tube, in metres. The column of the precession knows that it is a slope
-        over `window` frames, and `fit_motion` compares it with the same slope of a motion; np.asarray makes
-        it an array of numbers that does not.
+        x and y of the centre of the tube, in metres. The column of the precession contains slopes over
+        `window` frames, and `fit_motion` compares them with the same slopes of a motion; np.asarray of the
+        column is a plain array, which `fit_motion` compares with the precession at each time.
     errors : dict of ndarray, (n,)
         Standard errors of the columns of `frames`: theta, precession, x and y. Together with `frames` they
         can be passed to `fit_motion`.

@@ -338,7 +338,7 @@ def _stops(found: FittedLoss) -> str:
 
 
 def cells(found: FittedLoss) -> tuple[str, str, str, str, str, str]:
-    """A row of the table: name, centre, coefficients, stopping time, chi2, dAIC."""
+    """The cells of a row in the table of laws: name, centre, coefficients, stopping time, chi2, dAIC."""
     told = ", ".join(f"{k:.4g} +- {e:.1g}{unit}" for k, e, unit in printed(found))
     stops = _stops(found).removeprefix("stops at ").removesuffix(" stops")
     return found.name, found.centre, told, stops, f"{found.chi2:.3g}", f"{found.daic:.1f}"
@@ -352,7 +352,7 @@ def remark(found: FittedLoss) -> str:
 
 
 def notes(found: LossFit) -> list[str]:
-    """Notes below the table."""
+    """The notes below the table of fitted laws."""
     which = "with the centre at rest, or by rolling" if found.centre == "either" else CENTRE[found.centre]
     said = [f"{len(found.t)} points; drift {which}"]
     said += [f"errors of {name} from its scatter about the best law" for name in found.estimated]

@@ -28,7 +28,7 @@ _LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 
 @compared_by_value
 class MotionFit(NamedTuple):
-    """Numbers of a motion fitted to a measured one; returned by `fit_motion`.
+    """Result of `fit_motion`: the numbers of a motion that fit a measured motion best.
 
     Methods: ``correlation(a, b)`` and ``report()``.
 
@@ -203,7 +203,7 @@ def fit_motion(
     data = measured_motion(guess, measured, errors)
     many = sum(int(np.isfinite(x).sum()) for x in data.values.values())
     if many <= len(numbers):
-        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers")
+        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers; free fewer")
     fit = _Fit(guess, data, numbers)
     fit.residuals(fit.begin)  # an output that the guess does not have raises its error
     low, high = fit.bounds()

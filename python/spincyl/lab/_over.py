@@ -150,7 +150,9 @@ def _frame_of_film(path: Any, index: int) -> bytes:
     if not path.is_file():
         raise FileNotFoundError(f"frames: there is no file {path}")
     if index < 0:
-        raise ValueError(f"first: the frame drawn would have the number {index} in the film")
+        raise ValueError(
+            f"first: the frame at t would have the number {index} in the file; expected 0 or more"
+        )
     words = [program_of_ffmpeg(), "-loglevel", "error", "-nostdin", "-i", str(path)]
     words += ["-vf", rf"select=eq(n\,{index})", "-frames:v", "1", "-f", "image2pipe", "-c:v", "png", "-"]
     ran = subprocess.run(words, capture_output=True, check=False)

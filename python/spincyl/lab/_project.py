@@ -209,7 +209,7 @@ def _world(own: dict[str, Any], frames: Floats) -> _World:
         raise ValueError("it has no axes and no scale of length (coords)")
     n, x, y, angle, across, up = np.array(rows).T
     if not (across * up).all():
-        raise ValueError("its scale of length is 0")
+        raise ValueError("its scale of length is 0: calibrate it in Tracker")
     # axes keep their position from a frame in which they were moved to the next such frame
     held = np.maximum(np.searchsorted(n, frames, side="right") - 1, 0)
     unit = "px" if (across == 1).all() and (up == 1).all() else _text(own.get("length_unit"))

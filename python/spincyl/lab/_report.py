@@ -45,12 +45,12 @@ def with_error(value: float, error: float, joint: str = "+-") -> str:
 
 
 def written(value: float) -> str:
-    """A number with six digits."""
+    """A number as text with six digits."""
     return f"{value:.6g}"
 
 
 def counted(many: int) -> str:
-    """A count, in words if it is small."""
+    """A count as text: a word if it is small, else digits."""
     words = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return words[many] if many < len(words) else str(many)
 

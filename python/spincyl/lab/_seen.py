@@ -102,7 +102,7 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
         column = _column(name, table[name], units.get(name, ""), unit) / factor
         wide = column.reshape(t.size, -1) if column.shape[:1] == t.shape else column
         if column.shape[:1] != t.shape or wide.shape[1] not in _WIDE.get(name, (1,)) or column.ndim > 2:
-            raise ValueError(f"measured: {name!r} has shape {column.shape}, beside {t.size} times")
+            raise ValueError(f"measured: {name!r} has shape {column.shape}; expected {t.size} rows, as 't'")
         if np.isinf(wide).any():
             raise ValueError(f"measured: {name!r} has an infinite value")
         values[name], factors[name] = wide[order], factor

@@ -20,7 +20,7 @@ _SAME = 1e-6  # of the time between two frames: times closer than this are one
 
 
 class Slopes(np.ndarray[Any, np.dtype[np.float64]]):
-    """Column of slopes over the frames of a film; knows the frames, also when it is sliced or rescaled."""
+    """Column of slopes over the frames of a film, with these frames, also after slicing or rescaling."""
 
     frames: tuple[Floats, int] | None  #: times of all frames, ascending, and the window
 
@@ -67,7 +67,7 @@ class Sloped(NamedTuple):
 
 
 def slopes_at(column: Any, t: Floats, second: float) -> Sloped | None:
-    """The slopes that a column has at ascending times, in units of `second`; None if it is no `Slopes`.
+    """The slopes of a column at ascending times, in units of `second`; None if the column is no `Slopes`.
 
     Raises ValueError if the times are not those of the frames.
     """
@@ -92,7 +92,7 @@ def slopes_at(column: Any, t: Floats, second: float) -> Sloped | None:
 
 
 def slopes(t: Floats, window: int) -> tuple[Any, Floats]:
-    """Rows of the frames near each frame, and weights whose sum is the slope at the frame; NaN at a gap."""
+    """Rows of the frames near each frame, and their weights in the slope at the frame; NaN at a gap."""
     many = min(window, t.size)
     at = np.arange(t.size)[:, np.newaxis]
     rows = np.clip(at - many // 2, 0, t.size - many) + np.arange(many)

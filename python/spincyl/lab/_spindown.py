@@ -18,7 +18,7 @@ _FIRST_ERROR = 0.01  # first guess of the relative error of values
 
 
 class Several(ValueError):
-    """The measured spin-down may start from several inclinations."""
+    """Error about a measured spin-down that may start from several inclinations."""
 
 
 class SpinDown(NamedTuple):
@@ -36,7 +36,7 @@ class SpinDown(NamedTuple):
 
     @property
     def clock(self) -> Floats:
-        """Times since the first one.
+        """Times since the first time.
 
         They are rounded to 1e-12 of the duration, so that the rounding of times far from the origin, which
         some fits amplify, does not matter.
@@ -73,7 +73,7 @@ class SpinDown(NamedTuple):
 
 
 def centres(centre: str | None) -> tuple[str, ...]:
-    """The drifts to fit: the given one, or both."""
+    """The kinds of drift to fit: the given one, or both "rest" and "rolling"."""
     return CENTRES if centre is None else (one_of("centre", centre, CENTRES),)
 
 

@@ -179,7 +179,7 @@ class StopFit(NamedTuple):
         return rows + [("left out", one.told()) for one in self.wild]
 
     def table(self) -> str:
-        """Return a table of the fits: coefficients, and what each law misses the mean times by."""
+        """Return a table of the fits: coefficients, and mean measured times minus those of each law."""
         many = self._many > 1
         head = ["law", "centre", "coefficient"]
         rows = [head + (["misses by (s)", "chi2", "dAIC"] if many else [])]
@@ -210,7 +210,7 @@ class StopFit(NamedTuple):
         return lines
 
     def report(self) -> str:
-        """Return a report in lmfit's style: the times, the coefficients with the parts of their errors, laws.
+        """Return a report in lmfit's style: times, coefficients, and both parts of their errors.
 
         The table of the laws follows if there are several inclinations or laws.
         """

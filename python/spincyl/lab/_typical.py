@@ -75,7 +75,7 @@ def typical() -> Table:
 
 
 def far_from_typical(losses: Any, scale: Any) -> str | None:
-    """Why the coefficients of a fitted law, or of a sum of laws, are probably in another unit.
+    """Text that says which coefficients of a fitted law or sum are probably in another unit.
 
     Empty if one of them is within a factor of 10 of the typical ones; None if no typical ones are known.
     """

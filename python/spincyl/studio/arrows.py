@@ -79,7 +79,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
 
 
 def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
-    """The magnitude of each vector with an arrow of usual length: the largest; for forces the median N."""
+    """The magnitude of each vector whose arrow has the usual length: the largest; for forces the median N."""
     first, last = sorted(span(m))
     of = vectors(m, np.linspace(first, last, _SAMPLES), drawn).of
     sizes = {name: np.linalg.norm(x, axis=-1) for name, x in of.items()}

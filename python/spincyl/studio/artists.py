@@ -13,7 +13,7 @@ _SUPERSAMPLING = 2  # pixels of Agg for one pixel of the film, along each side, 
 
 
 def photo_of(ax: Any, vector: bool) -> Any:
-    """An artist that fills the axes with a picture."""
+    """A matplotlib artist that fills the axes with a picture."""
     from matplotlib.artist import Artist
 
     class Photo(Artist):

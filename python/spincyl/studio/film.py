@@ -77,7 +77,7 @@ def reel(
 
 
 def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound: bool | None = None) -> None:
-    """Write the film, and tell how much of it is done. If `sound` is None, it has a sound if it can."""
+    """Write the film, and report the finished share; a `sound` of None means a sound if possible."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     sound = sound if sound is None else flag("sound", sound)
     if sound and write is _gif:
@@ -124,7 +124,7 @@ def still(what: Reel, path: Path, t: float | None) -> None:
 
 
 def program_of_ffmpeg() -> str:
-    """The path of ffmpeg: that of imageio-ffmpeg, or the one on the search path."""
+    """The path of the program ffmpeg, from imageio-ffmpeg or on the search path."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
 

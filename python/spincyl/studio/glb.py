@@ -24,7 +24,7 @@ _MOST = 1_000_000
 
 
 def glb(motions: Sequence[Motion], labels: Sequence[str], scale: Scale | None, upper: Letter) -> bytes:
-    """The bytes of the file. Between two frames a body turns by at most a quarter of a radian."""
+    """The bytes of the glTF file; between two frames a body turns by at most a quarter of a radian."""
     metre, second = (1.0, 1.0) if scale is None else (scale.metres(1.0), scale.seconds(1.0))
     views: list[dict[str, Any]] = []
     accessors: list[dict[str, Any]] = []

@@ -26,7 +26,7 @@ class Look(NamedTuple):
 
 
 def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
-    """The look of a view from its arguments; an error names a wrong argument."""
+    """The settings of a view's picture from the arguments of `view`; an error names a wrong argument."""
     drawn = None if drawn is None else known_words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
@@ -108,12 +108,12 @@ def _rise(reach: float, slope: float) -> float:
 
 
 def held(reach: float, top: float) -> float:
-    """Half the height that the camera has to show."""
+    """Half of the height that has to fit into the camera's view."""
     return 1.06 * max((0.52 + 0.26) * reach + 0.38 * top, 0.44 * reach + 0.57 * top)
 
 
 def opened(t: float, turns: float, along: Floats, turned: Floats, *, before: bool) -> tuple[float, float]:
-    """Begin and end of an exposure that lasts for a number of turns after `t`, or before `t`.
+    """Beginning and end of an exposure that lasts for a number of turns after `t`, or before `t`.
 
     `turned` is the number of turns about the vertical at the times `along`. It stays within the motion.
     """

@@ -19,7 +19,7 @@ _STRIPE, _LIFT = 0.08, 0.004
 
 
 def profiles_of_parts(body: Body) -> list[Profile]:
-    """The surfaces of the parts, without a point, which has none; or the hull of the circles of a body."""
+    """The surfaces to draw for a body of parts (a point has none), or for the hull of a body's circles."""
     if not body._parts:
         return [Profile("hull", IVORY, corners, normals) for corners, normals in _hull_of_circles(body)]
     drawn = [(name, _surfaces(form, numbers)) for name, form, numbers in body._parts]

@@ -43,7 +43,7 @@ _HIGH = 6
 
 
 def span(m: "Motion") -> tuple[float, float]:
-    """First and last time to show, in the direction of the motion.
+    """First and last time of a motion to show, in the direction of the motion.
 
     Raises
     ------

@@ -143,8 +143,8 @@ class Scene:
         OSError
             If the file cannot be read.
         ValueError
-            If it is not the file of a scene, or if its answer differs by more than its errors from the motion
-            that it is computed from.
+            If the file is not that of a scene, or if the known motion in the file differs from the motion
+            computed again by more than the errors of both.
 
         Examples
         --------
@@ -174,7 +174,7 @@ class Scene:
         most = data["error"]["position"] + apart.position_error, data["error"]["angle"] + apart.angle_error
         allowed = most[0] + _ROUNDING * units.radius, most[1] + _ROUNDING
         if apart.position.max() > allowed[0] or apart.angle.max() > allowed[1]:
-            why = f"its answer is not that of its body, start and table: {apart}"
+            why = f"its answer is not that of its body, start and table, computed again: {apart}"
             raise ValueError(f"path = {str(path)!r}: {why}")
         return found
 
@@ -208,7 +208,7 @@ class Scene:
         known = {".json": self._json, ".xml": self._model, ".urdf": self._body}
         only = path.suffix.lower() in known
         if not only and path.suffix[1:].isalpha():
-            told = f"path = {str(path)!r}: expected a name without ending, or one that ends in"
+            told = f"path = {str(path)!r}: expected a name without ending, or with the ending"
             raise ValueError(f"{told} {', '.join(known)}")
         paths = [path] if only else [path.with_name(path.name + suffix) for suffix in (".json", ".xml")]
         texts = [known[x.suffix.lower()]() for x in paths]

@@ -19,13 +19,13 @@ LAMPS, MANY = 12, 32
 
 
 def lamps(count: int) -> Floats:
-    """Horizontal displacement of the shadow for each point of the lamp, per unit height."""
+    """Horizontal displacement of the shadow per unit of height, for each point of the lamp."""
     far = 0.15 * np.sqrt((np.arange(count) + 0.5) / count)
     return np.array([(0.36 + x * math.cos(2.4 * k), 0.4 + x * math.sin(2.4 * k)) for k, x in enumerate(far)])
 
 
 def layer(count: int) -> float:
-    """Darkness of the shadow from each point of the lamp."""
+    """Darkness of the shadow that each point of the lamp casts."""
     return float(1 - (1 - DARK) ** (1 / count))
 
 
@@ -62,7 +62,7 @@ def _seamless(part: Part) -> tuple[Floats, np.ndarray]:
 
 
 def shadows(of: Caster, rotation: Floats, centre: Floats, lamp: Floats) -> list[list[Floats]]:
-    """The closed outlines (n, 3) on the table of the shadow from each point of the lamp."""
+    """The closed outlines (n, 3) of the shadow on the table, for each point of the lamp."""
     places = of.vertices @ rotation.T + centre
     corners = places[of.triangles]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

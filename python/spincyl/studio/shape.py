@@ -209,7 +209,7 @@ def _ball(body: Body) -> list[Profile]:
 
 
 def marks(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The two marks; `upper` is the symbol on the upper end, or the colour of the first mark of a stone."""
+    """The two marks of a body; `upper` is the symbol on the upper end, or a stone's first colour."""
     one_of("upper", upper, ("O", "X"))
     found: list[Part] = _marks(body, upper)
     return found
@@ -227,7 +227,7 @@ _marks.register(Ellipsoid, stone_shape.marks_of_stone)
 
 
 def parts(body: Body | Ellipsoid, upper: Letter = "O") -> list[Part]:
-    """The surface of a body, then its marks."""
+    """The surface of a body and its two marks, in parts of one colour each."""
     return [*map(lathe, profiles(body)), *marks(body, upper)]
 
 

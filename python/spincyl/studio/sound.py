@@ -55,7 +55,7 @@ _PIECE = 1 << 18  # samples that are filtered at a time
 
 
 class Silent(ValueError):
-    """There is nothing to hear, for this reason."""
+    """The motion makes no sound; the message gives the reason."""
 
 
 def sound(
@@ -106,7 +106,7 @@ def write_wave(path: Path, pressure: Floats, rate: int) -> None:
 
 
 class Sources(NamedTuple):
-    """What makes the sound of a motion; times are in seconds from the begin of the sound."""
+    """Sources of the sound of a motion; times are in seconds from the beginning of the sound."""
 
     looks: Floats  #: times at which the contact point is known
     phi: Floats  #: its azimuth there, from that of the listener
@@ -122,7 +122,7 @@ class Sources(NamedTuple):
 
 
 def sources(m: "Motion", first: float, unit: float, lasting: float, listener: float = math.pi) -> Sources:
-    """What is heard of a motion from a time on for some seconds, with `unit` seconds in a unit of time.
+    """The sources of the sound of a motion from a time on; `unit` converts times to seconds.
 
     `listener` is the azimuth at which the contact point is nearest to the one who hears it.
 
@@ -148,7 +148,7 @@ def sources(m: "Motion", first: float, unit: float, lasting: float, listener: fl
 
 
 def pressure(of: Sequence[Sources], count: int, rate: int, compression: float = COMPRESSION) -> Floats:
-    """The pressure at each of some samples, between -1 and 1, of motions heard together."""
+    """The pressure, between -1 and 1, at samples of the sound of several motions together."""
     levels = [it.amplitudes(rate) for it in of]
     most = max(float(x.max()) for pair in levels for x in pair if x.size)
     ring = np.zeros(count)

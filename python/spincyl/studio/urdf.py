@@ -12,7 +12,7 @@ _NO_SHAPE = "urdf: expected a body with sharp rims, a ball, balls or a capsule; 
 
 
 def urdf(data: dict[str, Any]) -> str:
-    """The model of the body of a scene."""
+    """The URDF model of the body of a scene."""
     body = data["body"]
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = ((repr(x) for x in row) for row in body["inertia"])
     touch = "\n".join(

@@ -17,7 +17,7 @@ CONTENT = "content "
 
 
 def is_lazy(*values: object) -> bool:
-    """Whether any of these is backed by dask."""
+    """Whether any of the values is backed by dask."""
     return any(hasattr(v, "dask") or getattr(v, "chunks", None) is not None for v in values)
 
 
@@ -41,7 +41,7 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
     if out is None:
         return dict.fromkeys(want)
     if not isinstance(out, Mapping):
-        raise TypeError(f"out: expected an earlier result, not {type(out).__name__}")
+        raise TypeError(f"out: expected an earlier result of this function, not {type(out).__name__}")
     for name in want:
         if name not in out:
             there = f"out has only {list(out)}" if out else "out is empty"
@@ -52,7 +52,7 @@ def targets(out: Any, want: Iterable[str]) -> dict[str, Any]:
 
 
 def apart(arrays: Mapping[str, np.ndarray], read: Mapping[str, np.ndarray]) -> None:
-    """Refuse results that share memory with each other or with their inputs."""
+    """Raise ValueError for results that share memory with each other or with their inputs."""
     names = list(arrays)
     for i, name in enumerate(names):
         others = {f"out[{other!r}]": arrays[other] for other in names[:i]} | dict(read)

@@ -20,7 +20,7 @@ _OF_CIRCLES = {name for names in CIRCLE_COLUMNS for name in names}
 
 
 class Status(IntEnum):
-    """How a motion of a sweep ended.
+    """Code of the way in which a motion of a sweep ended.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ def broadcast(fields: dict[str, Reals]) -> tuple[tuple[int, ...], list[str]]:
 
 
 def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any], list[str]]:
-    """Fields, and then `more`, with named dimensions; and the names that the plain fields have, in order.
+    """Fields, and then `more`, with named dimensions; and the names of the dimensions of plain fields.
 
     Plain fields are arrays without names: their broadcast dimensions are "motion", or "motion_0" and so on.
     """
@@ -148,7 +148,7 @@ def labelled(fields: dict[str, Reals], more: dict[str, Reals]) -> tuple[list[Any
 
 
 def free(named: list[Any], names: list[str], spread: frozenset[str]) -> None:
-    """Refuse inputs that have a coordinate, or the only dimension, with the name of an output."""
+    """Raise ValueError for inputs whose coordinate, or only dimension, has the name of an output."""
     coords = {c for x in named for c in getattr(x, "coords", ())}
     dims = {d for x in named for d in x.dims}
     for name in names:
@@ -171,7 +171,7 @@ def applied(
     spread: list[bool],
     times: Floats,
 ) -> dict[str, Any]:
-    """The output arrays of `run`, by name; those that are `spread` have a dimension of times."""
+    """The output arrays of `run`, by name; the outputs in `spread` have a dimension of times."""
     lib: Any = optional_library("xarray", "sweep")
     with many_blocks():
         found = lib.apply_ufunc(

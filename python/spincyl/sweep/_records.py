@@ -167,7 +167,7 @@ def _differs(there: Record, here: Record) -> str | None:
 
 
 def in_the_way(store: Store, record: Record, files: dict[str, bytes]) -> str | None:
-    """The first file that `lay_out` or a block would overwrite although it is not of this sweep, by its name.
+    """The name of the first file of another origin that `lay_out` or a block would overwrite.
 
     A file whose bytes are those that `lay_out` writes may lack its record: nothing of it would be lost.
     """
@@ -221,20 +221,20 @@ def _node(raw: bytes | None) -> dict[str, Any] | None:
 
 
 def with_added(there: bytes | None, ours: bytes) -> bytes:
-    """Our metadata with the attributes and arrays that a user has added to those in the store."""
+    """Metadata of this sweep, with the attributes and arrays that a user has added to the store."""
     old, new = _node(there), json.loads(ours)
     found = new if old is None else _joined(old, new, open_=False)
     return ours if found == new else json.dumps(found, indent=2).encode()
 
 
 def says(there: bytes | None, ours: bytes) -> bool:
-    """Whether metadata in the store have all of ours, and at most a user's attributes and arrays besides."""
+    """Whether metadata in the store are those of this sweep, apart from a user's attributes and arrays."""
     old = _node(there)
     return old is not None and _node(ours) is not None and _joined(old, json.loads(ours), open_=False) == old
 
 
 def changed(there: bytes | None, ours: bytes) -> list[str]:
-    """The names of our attributes that metadata in the store have with another value."""
+    """The names of this sweep's attributes whose values in the store are different."""
     old, new = ((_node(raw) or {}).get("attributes") or {} for raw in (there, ours))
     return [name for name, value in new.items() if name in old and old[name] != value]
 

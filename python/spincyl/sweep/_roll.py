@@ -63,7 +63,7 @@ class Answer(IntEnum):
     Attributes
     ----------
     NONE
-        None: see `Status.INVALID`.
+        No method: the body, the state or the step is invalid (`Status.INVALID`).
     LANES
         The first integrals, eight motions at a time. With a law of friction or a restitution: the body rolls
         from the start to the end.
@@ -190,7 +190,7 @@ def roll(
         motion (`Answer.LANES`) `error` is known all the same.
     table : Table, optional
         Table with a slope, as in `spincyl.roll`; its `slope` and `phi0` may be arrays that broadcast with the
-        other arrays. Motions on a slope are integrated, in lanes as those with friction.
+        other arrays. Motions on a slope are integrated.
     threads : int, optional
         Number of threads. Default: the environment variable RAYON_NUM_THREADS, else every core that this
         process may use; 1 in a block of dask.

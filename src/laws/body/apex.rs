@@ -11,12 +11,12 @@
 
 use super::{Body, Border, Circle, landing_angle};
 
-/// How a body rolls round its apex, on two neighbouring circles.
+/// The rolling of a body on two neighbouring circles round its apex, the point where its axis meets the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Apex {
-    /// Distance of the apex from the point of the table under the centre of mass, in R, on which circle the centre moves;
-    /// infinite for two equal circles, which roll straight on.
+    /// Radius of the circle of the centre of mass about the apex, in R; infinite for two equal circles, on which the body
+    /// rolls straight on.
     pub radius: f64,
     /// Distances of both points of contact from the apex, in R.
     pub contacts: [f64; 2],
@@ -28,8 +28,8 @@ pub struct Apex {
 }
 
 impl Body {
-    /// How the body rolls round its apex on circle `k` and the next one; None if they touch at a smooth joint, or if there
-    /// is no next one.
+    /// The rolling of the body round its apex on the circles `k` and `k + 1`; None if the body passes from one to the other
+    /// without an impact, or if there is no circle `k + 1`.
     pub fn apex(&self, k: usize) -> Option<Apex> {
         let [theta, span] = *self.borders().get(k)?;
         let circles = self.circles();

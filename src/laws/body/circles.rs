@@ -14,8 +14,8 @@ use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 impl Body {
-    /// The inclinations at which one circle of the body follows another, in radians, and the distance of both points of
-    /// contact there, which is 0 at a smooth joint.
+    /// The inclinations at which the body passes from one circle to the next, in radians, and the distance of both points of
+    /// contact there, in R, which is 0 if the body passes without an impact.
     pub fn borders(&self) -> Vec<[f64; 2]> {
         match &self.row {
             Some(row) => row.borders().collect(),
@@ -39,7 +39,7 @@ impl Body {
         Self { ell: depth, fillet, rim, low, theta_end, row, ..self }
     }
 
-    /// The circles of the body, from the end from which it is seen.
+    /// The circles of the body, from its lower end up.
     pub fn circles(&self) -> Vec<Circle> {
         let here = Circle { radius: self.rim.hi, depth: self.ell, fillet: self.fillet };
         match &self.row {
@@ -131,8 +131,8 @@ impl Body {
         Self { row: Some(row), ..*self }.on_circle(at)
     }
 
-    /// The body with this circle carrying, by its number in [`circles`](Self::circles), as told from its lower end. States and
-    /// poses of a motion refer to the body in this way; one circle or two equal rims are the body itself.
+    /// The same body standing on the circle with this index in [`circles`](Self::circles). States and poses of a motion refer
+    /// to the lower end of the returned body. A body of one circle or of two equal rims is returned unchanged.
     ///
     /// ```
     /// use spincyl::{Body, State, body::Circle, pose::Pose};
@@ -204,17 +204,17 @@ impl Body {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(crate) struct View {
-    /// Whether the body is seen from its upper end.
+    /// Whether the state refers to the upper end of the body.
     pub over: bool,
     /// The numbers of the circle that carries and of the one that lands at theta_end; None for a body with one circle or
     /// two equal rims.
     pub circles: Option<[u8; 2]>,
-    /// Both borders of the circle, as seen and as told from the lower end.
+    /// Both borders of the circle, for inclinations as in the state and for inclinations of the lower end.
     pub borders: [[f64; 2]; 2],
 }
 
 impl View {
-    /// The state as told from the lower end of the body.
+    /// The inclination of the lower end of the body.
     pub fn tells(&self, theta: f64) -> f64 {
         let border = self.borders.iter().find(|[seen, _]| *seen == theta);
         border.map_or(PI - theta, |[_, told]| *told)

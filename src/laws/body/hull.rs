@@ -112,7 +112,7 @@ impl Hull {
         all
     }
 
-    /// The inclination up to which an edge that carries the body from an inclination on does so, and the edge that touches the
+    /// The inclination up to which an edge carries the body from the inclination `from` on, and the edge that touches the
     /// table there; pi and None if no other one does.
     pub fn after(&self, rim: &Edge, from: f64) -> (f64, Option<Edge>) {
         let others = || self.edges.iter().filter(|edge| !self.same(edge, rim));

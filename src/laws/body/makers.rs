@@ -16,9 +16,9 @@ use crate::error::{Error, within};
 const LENGTH: (f64, f64) = (0.0, 1e50);
 
 impl Body {
-    /// Uniform frustum of a cone, from its lower end, of radius `bottom`, to its upper end, of radius `top`, all in one unit
-    /// of length; the body is told in R, the larger of the two. With a `wall` it is hollow and open at both ends, and the
-    /// wall, measured across the axis, is so thick; 0 is a thin wall.
+    /// Uniform frustum of a cone with the radius `bottom` at its lower end and `top` at its upper end, all in one unit of
+    /// length; the unit R of the body is the larger radius. With a `wall` the frustum is hollow and open at both ends, and
+    /// `wall` is the thickness measured across the axis; 0 is a thin wall.
     ///
     /// ```
     /// let cup = spincyl::Body::frustum(0.7, 1.0, 2.0, None)?;
@@ -31,9 +31,9 @@ impl Body {
     /// negative or thicker than the smaller radius, and for a body that is too flat or too long; and those of
     /// [`profile`](Self::profile).
     pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> Result<Self, Error> {
-        within("bottom", bottom, LENGTH, "a radius of 0 to 1e50")?;
-        within("top", top, LENGTH, "a radius of 0 to 1e50, and one of both radii above 0")?;
-        within("top", bottom.max(top), (1e-50, LENGTH.1), "one of both radii above 0")?;
+        within("bottom", bottom, LENGTH, "0 <= bottom <= 1e50")?;
+        within("top", top, LENGTH, "0 <= top <= 1e50")?;
+        within("top", bottom.max(top), (1e-50, LENGTH.1), "bottom or top of 1e-50 or more")?;
         within("height", height, (1e-50, LENGTH.1), "1e-50 <= height <= 1e50")?;
         let (radii, ends) = ([bottom, top], [0.0, height]);
         let form = match wall {
@@ -56,7 +56,7 @@ impl Body {
     }
 
     /// Uniform solid whose outline is a line of straight pieces between these points (radius, height), from its lower end
-    /// to its upper end, all in one unit of length; the body is told in R, its largest radius. The line may go down into
+    /// to its upper end, all in one unit of length; the unit R of the body is its largest radius. The line may go down into
     /// the body, as inside a cup, but must not cross itself; where it begins or ends beside the axis, a flat face closes it.
     ///
     /// ```
@@ -93,7 +93,7 @@ impl Body {
     }
 
     /// Two solid balls of one density and of these radii, the lower one first, which touch (`separation = 1`) or have their
-    /// centres `separation` times the sum of the radii apart on a light rod. The body is told in R, the larger radius.
+    /// centres `separation` times the sum of the radii apart on a light rod. The unit R of the body is the larger radius.
     ///
     /// # Errors
     /// `OutOfRange` for a separation outside [1, 1000], and for radii that are not positive, that exceed 1e50, or of

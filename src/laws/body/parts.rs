@@ -51,7 +51,7 @@ pub enum Form {
         bores: [f64; 2],
         /// Heights of the ends.
         ends: [f64; 2],
-        /// Radius of the fillets.
+        /// Radius of the fillets of both outer edges; 0 unless the solid is a cylinder.
         fillet: f64,
     },
     /// A ball, solid or hollow, or its part between two heights: outer and inner radius, height of the centre, both
@@ -77,16 +77,16 @@ pub enum Form {
     Shell {
         /// Radius of the sphere.
         radius: f64,
-        /// Height of its centre.
+        /// Height of the centre of the sphere.
         centre: f64,
         /// Heights between which the part lies.
         ends: [f64; 2],
     },
     /// A thin ring; a point on the axis if its radius is zero.
     Ring {
-        /// Radius.
+        /// Radius of the ring; 0 for a point on the axis.
         radius: f64,
-        /// Height.
+        /// Height of the ring.
         height: f64,
     },
 }
@@ -156,7 +156,7 @@ impl Form {
             values.iter().try_for_each(|x| within(name, *x, SIZE, "lengths of 0 to 1e100").map(drop))
         };
         let rises = |ends: [f64; 2], thin: bool| {
-            let expected = "heights of two ends, the lower one first";
+            let expected = "heights of at most 1e100, of the lower end and then of the upper end";
             within("ends", ends[0], (-SIZE.1, SIZE.1), expected)?;
             let least = if thin { ends[0] } else { ends[0].next_up() };
             within("ends", ends[1], (least, SIZE.1), expected).map(drop)
@@ -166,19 +166,24 @@ impl Form {
                 size("radii", &radii)?;
                 rises(ends, false)?;
                 for k in 0..2 {
-                    within("bores", bores[k], (0.0, radii[k]), "inner radii of at most the outer ones")?;
+                    within("bores", bores[k], (0.0, radii[k]), "inner radii from 0 to the outer ones")?;
                 }
                 let most = if radii[0] == radii[1] {
                     (0.5 * (ends[1] - ends[0])).min(radii[0] - bores[0].max(bores[1]))
                 } else {
                     0.0
                 };
-                within("fillet", fillet, (0.0, most), "a fillet that fits into the wall of a cylinder")
-                    .map(drop)
+                within(
+                    "fillet",
+                    fillet,
+                    (0.0, most),
+                    "0 or more, at most half the length and the thickness of the wall; 0 for a cone",
+                )
+                .map(drop)
             }
             Self::Ball { radius, hollow, centre, ends } => {
                 size("radius", &[radius])?;
-                within("hollow", hollow, (0.0, radius), "an inner radius of at most the outer one")?;
+                within("hollow", hollow, (0.0, radius), "an inner radius from 0 to the outer one")?;
                 rises(ends, false)?;
                 Self::cuts(radius, centre, ends)
             }
@@ -201,7 +206,7 @@ impl Form {
     fn cuts(radius: f64, centre: f64, ends: [f64; 2]) -> Result<(), Error> {
         let far = radius + Self::slack(radius, centre);
         ends.iter().try_for_each(|z| {
-            within("ends", z - centre, (-far, far), "heights within the ball, from its centre").map(drop)
+            within("ends", z - centre, (-far, far), "heights that are within the ball").map(drop)
         })
     }
 
@@ -334,7 +339,7 @@ impl Mass {
 }
 
 fn none(value: f64) -> Error {
-    let expected = "parts with a mass, and a rim or a ball on which the body stands";
+    let expected = "parts with a positive mass, one of which has a rim or is a ball, to stand on";
     Error::OutOfRange { name: "parts", value, expected }
 }
 
@@ -395,7 +400,7 @@ pub(super) fn of_masses(
     }
     let (theta_end, _) = hull.after(rim, 0.0);
     if theta_end < LEAST_END {
-        let expected = "parts of which another one lands only at an inclination of 1e-6 radians or more";
+        let expected = "parts such that the body tilts by 1e-6 radians or more before another circle lands";
         return Err(Error::OutOfRange { name: "parts", value: theta_end, expected });
     }
     let radius = match unit(&circles) {

@@ -110,7 +110,7 @@ pub(crate) struct CircleRow {
     count: usize,
     /// The circle that carries.
     at: usize,
-    /// Whether the body is seen from its upper end.
+    /// Whether the states refer to the upper end of the body.
     over: bool,
 }
 
@@ -127,7 +127,7 @@ impl CircleRow {
             while row.count > 0 {
                 let last = row.circles[row.count - 1];
                 let Some([border, _]) = last.border(circle) else {
-                    return refuse(k as f64, "circles of which none lies inside another");
+                    return refuse(k as f64, "circles with fillets that do not lie inside each other");
                 };
                 // One that touches only at an end, as the inner edge of a tube does, never carries.
                 if (border - PI).abs() < JOINED {
@@ -191,14 +191,14 @@ impl CircleRow {
         self.both(k)[0]
     }
 
-    /// The borders of the circle that carries, as told from the lower end of the body; 0 and pi at the ends.
+    /// The borders of the circle that carries the body, as inclinations of the lower end; 0 and pi at the ends.
     pub fn told(&self) -> [f64; 2] {
         let row = if self.over { self.turned() } else { *self };
         let low = if row.at == 0 { 0.0 } else { row.border(row.at - 1) };
         [low, if row.at + 1 < row.count { row.border(row.at) } else { PI }]
     }
 
-    /// The inclinations between which the circle that carries does so.
+    /// The inclinations between which the current circle carries the body.
     pub fn range(&self) -> [f64; 2] {
         let [low, high] = self.told();
         let back = |theta: f64| if theta == PI { 0.0 } else { PI - theta };
@@ -215,7 +215,7 @@ impl CircleRow {
         (1..self.count).map(|k| self.both(k - 1))
     }
 
-    /// The row as seen from the other end.
+    /// The row in the opposite order, for inclinations of the other end.
     pub fn turned(&self) -> Self {
         let mut row = Self { at: self.count - 1 - self.at, over: !self.over, ..*self };
         row.circles[..self.count].reverse();
@@ -223,12 +223,12 @@ impl CircleRow {
         row
     }
 
-    /// The row with another circle carrying, as seen from the same end; None if there is no such circle.
+    /// The row with the circle of this number as the one that carries; None if there is no such circle.
     pub fn at(&self, at: usize) -> Option<Self> {
         (at < self.count).then_some(Self { at, ..*self })
     }
 
-    /// The number of the circle that carries, as seen from the same end.
+    /// The number of the circle that carries the body, from the end at which the row begins.
     pub fn here_is(&self) -> usize {
         self.at
     }
@@ -238,7 +238,7 @@ impl CircleRow {
         if self.over { self.count - 1 - self.at } else { self.at }
     }
 
-    /// Whether the body is seen from its upper end.
+    /// Whether the states refer to the upper end of the body.
     pub fn is_over(&self) -> bool {
         self.over
     }

@@ -75,7 +75,7 @@ impl Delassus {
         s < 1.0 && lift - slow * (1.0 - s) - fast * (1.0 - s.powf(power)) >= 0.0
     }
 
-    /// Whether a slip across the first axis couples to nothing: so it is for a rim, whose first axis is that of the lean.
+    /// Whether a slip across the first axis does not change the normal velocity, as for a rim, whose first axis is e_h.
     pub fn is_lean(&self) -> bool {
         self.level[0][1] == 0.0 && self.couples[1] == 0.0
     }

@@ -38,17 +38,17 @@ use crate::numbers::codes::coded;
 coded! {
     /// The motion of the contact point in an impact.
     pub enum Hit {
-        /// It slips until the impact ends.
+        /// The contact point slips until the impact ends.
         Slips = 0,
-        /// Its slip stops, and it sticks.
+        /// The slip stops, and the contact point sticks.
         Sticks = 1,
-        /// Its slip stops, and friction cannot hold it.
+        /// The slip stops, and begins again, since friction cannot hold the contact point.
         SlipsOn = 2,
-        /// Without friction.
+        /// There is no friction.
         Smooth = 3,
         /// Both rims land at once, or the other rim lands without a bounce; the impulse is the sum over both rims.
         BothRims = 4,
-        /// Its slip follows the drilling of the patch of contact.
+        /// The contact point slips slowly, since the patch of contact drills (turns about the vertical).
         Creeps = 5,
         /// The slip of a ball turns back, by tangential restitution.
         TurnsBack = 6,

@@ -67,7 +67,7 @@ pub enum Outcome {
 pub struct Landed {
     /// The kind of motion that follows.
     pub outcome: Outcome,
-    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the rim of before.
+    /// The state, which refers to the rim on which the body continues; if the body lies on both, to the previous rim.
     pub state: State,
     /// The slip of the rim to which `state` refers, along e_h and along e2, in sqrt(g R).
     pub slip: [f64; 2],
@@ -158,8 +158,13 @@ pub(crate) fn land_at(
     own: &impl SpeedLaw,
 ) -> Result<Landed, Error> {
     let most = 1e100;
-    within("theta", y.theta, (body.theta_end(), body.theta_end()), "theta_end, where another circle lands")?;
-    within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0, for a rim that comes down")?;
+    within(
+        "theta",
+        y.theta,
+        (body.theta_end(), body.theta_end()),
+        "theta_end of the body, where the other rim lands",
+    )?;
+    within("w2", y.w2, (-most, 0.0), "-1e100 <= w2 <= 0, since the other rim has to come down")?;
     for (name, x) in [("w1", y.w1), ("w3", y.w3), ("u_h", slip[0]), ("u_2", slip[1])] {
         within(name, x, (-most, most), "-1e100 to 1e100")?;
     }

@@ -59,7 +59,7 @@ pub(crate) struct Lossy<T, G = ()> {
 /// The accelerations, the contact force and the lost power in one state.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Acted<T> {
-    /// The derivative w'.
+    /// The time derivatives of w1, w2 and w3.
     pub w: [T; 3],
     /// The contact force N, F2, Fh.
     pub force: [T; 3],

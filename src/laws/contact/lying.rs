@@ -29,7 +29,7 @@ use crate::numbers::Real;
 /// A body that lies on two circles, on a table with friction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lying<T> {
-    /// The circle from which the state is seen.
+    /// The circle to which the state refers.
     pub shape: Shape<T>,
     /// Both circles, this one first.
     pub border: Border<T>,
@@ -46,7 +46,7 @@ pub(crate) struct Lying<T> {
 /// Forces and accelerations on both circles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lain<T> {
-    /// N, F_2 and F_h at the circle from which the state is seen, and at the other one.
+    /// N, F_2 and F_h at the circle to which the state refers, and at the other one.
     pub force: [[T; 3]; 2],
     /// w1' and w3'.
     pub w: [T; 2],
@@ -101,7 +101,7 @@ impl Lying<f64> {
 }
 
 impl<T: Real> Lying<T> {
-    /// These laws in another type of number.
+    /// Converts the laws to another type of number.
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Lying<U> {
         Lying {
             shape: self.shape.map(&number),
@@ -255,7 +255,7 @@ impl<T: Real> Lying<T> {
         one + at.depth * by.depth / self.shape.i1 + at.radius * by.radius / self.shape.i3
     }
 
-    /// The slip where the circle from which the state is seen sticks, or the other one.
+    /// The slip where the circle to which the state refers sticks, or the other one.
     pub fn stuck(&self, [w1, w3, ..]: Flat<T>, other: bool) -> [T; 2] {
         let zero = w1.splat(0.0);
         [zero, if other { self.border.span() * drilling_of(self.border.angle, w1, w3) } else { zero }]

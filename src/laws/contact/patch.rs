@@ -114,7 +114,7 @@ impl Rubbing<Dual<f64>> {
     }
 }
 
-/// The friction of a patch, as shares of what it can be.
+/// The friction of a patch, as shares of the largest friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PatchShares {
@@ -124,7 +124,7 @@ pub struct PatchShares {
     pub couple: f64,
 }
 
-/// f and g of a slip that is `k` times eps |w_z|.
+/// The shares f and g of the friction of a patch whose slip is `k` times eps |w_z|.
 pub fn of(k: f64) -> PatchShares {
     if k.is_infinite() {
         return PatchShares { force: 1.0, couple: 0.0 };
@@ -133,8 +133,8 @@ pub fn of(k: f64) -> PatchShares {
     PatchShares { force: k * force, couple }
 }
 
-/// The k at which f(k) equals this share of mu N, which is from 0 to 1; k is infinite for 1. Inside, a cubic gives k;
-/// outside, a search.
+/// The ratio k of the slip to the speed of the patch's rim at which the force of friction is this share of mu N, from 0 to
+/// 1; k is infinite for 1. If the instantaneous centre is inside the patch, a cubic gives k; else a search.
 pub fn slip_for(share: f64) -> f64 {
     if share <= 9.0 * PI / 32.0 {
         let third = (2.0 * 3f64.sqrt() * share / PI).min(1.0).asin() / 3.0;

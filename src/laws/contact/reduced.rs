@@ -50,7 +50,7 @@ pub(crate) struct Reduced<T> {
 }
 
 impl<T: Real> Reduced<T> {
-    /// `round` says whether the body has a fillet; in lanes all bodies have a fillet or none has one.
+    /// The reduced equations of this shape and contact. `round` says whether the body has a fillet, the same in all SIMD lanes.
     #[inline(always)]
     pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
         let (shape, zero) = (*shape, shape.i1.splat(0.0));

@@ -58,7 +58,7 @@ impl<T: Real> Kinematics<T> {
         self
     }
 
-    /// w_h, the rolling.
+    /// The component w_h of the angular velocity along e_h: the rolling.
     #[inline(always)]
     pub fn rolling(&self) -> T {
         -(self.angle.0 * self.spin)
@@ -173,7 +173,7 @@ pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
     /// The direction of (w_h, w2), where it is fixed: (0, 1) or (0, -1) for a body that only rocks, and the direction
-    /// in which rolling and rocking begin; otherwise 0, and in lanes always.
+    /// in which rolling and rocking begin; otherwise 0, and in SIMD lanes always.
     pub rolling: f64,
     pub rocking: f64,
     pub holds: Holds,
@@ -286,7 +286,7 @@ impl<G> Couples<f64, G> {
         self
     }
 
-    /// These losses with another couple beside them.
+    /// These losses and another couple, given by `given`.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {
         let Self { coefficients, present, ways, pull, om, .. } = self;
@@ -360,7 +360,7 @@ impl<T: Real, G: Copy> Couples<T, G> {
         Self { om: turns.then_some(om), ..self }
     }
 
-    /// These losses in another type of number.
+    /// Converts the losses to another type of number.
     #[inline(always)]
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U, G> {
         let ways = self.ways.map(|ways| Ways {

@@ -278,15 +278,15 @@ pub struct Losses {
     pub(crate) coefficients: [f64; COUNT],
 }
 
-/// When rolling resistance acts on a body whose contact point may slip.
+/// The times at which rolling resistance acts on a body whose contact point may slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Resistance {
-    /// Whether the contact point slips or not.
+    /// Rolling resistance acts whether the contact point slips or not.
     #[default]
     Always,
-    /// Only while the contact point does not slip, as in most programs for billiards.
+    /// Rolling resistance acts only while the contact point does not slip, as in most programs for billiards.
     WhileRolling,
 }
 
@@ -340,7 +340,7 @@ impl Losses {
         Ok(())
     }
 
-    /// Checks the coefficients, and that the body has what each law acts on.
+    /// Checks the coefficients, and that the body has a face, a rim or another part on which each law acts.
     ///
     /// # Errors
     /// Those of [`check`](Self::check), and `OutOfRange` with the name "fillet" for a ball under a law that needs a

@@ -144,7 +144,7 @@ impl Ellipsoid {
     }
 
     fn turned(axes: [f64; 3], [a, b, c]: [f64; 3], twist: f64, offset: [f64; 3]) -> Result<Self, Error> {
-        within("twist", twist, (-1e6, 1e6), "an angle in radians")?;
+        within("twist", twist, (-1e6, 1e6), "an angle of at most 1e6 radians")?;
         let (s, co) = twist.sin_cos();
         let mut across = (a - b) * s * co;
         // A twist by a quarter or half of a turn leaves only rounding errors here.
@@ -156,7 +156,7 @@ impl Ellipsoid {
         stone.checked([a, b, c].map(|x| x / (stone.unit * stone.unit)))
     }
 
-    /// How far out the mass of the stone lies: the mean of `sum (x_i/a_i)^2` over its mass, where x is counted from the
+    /// Mean of `sum (x_i/a_i)^2` over the mass of the stone, which tells how far out the mass lies; x is counted from the
     /// centre of the ellipsoid. The mean is 3/5 for a uniform ellipsoid, 1 for a thin shell, and at most 1 if all mass is
     /// within the ellipsoid; moments with a larger mean need mass outside.
     pub fn reach(&self) -> f64 {

@@ -9,7 +9,7 @@ use nalgebra::{Point2, Quaternion, UnitQuaternion};
 pub struct StoneState {
     /// The vertical: the unit vector that points upward.
     pub vertical: [f64; 3],
-    /// The angular velocity.
+    /// The angular velocity along the axes of the ellipsoid, in sqrt(g/a).
     pub w: [f64; 3],
 }
 

@@ -65,7 +65,7 @@ pub struct DriftOutput<'a> {
 }
 
 impl<'a> DriftOutput<'a> {
-    /// These arrays, for the times of the ends, the inclinations there, and the codes of the ends.
+    /// Results in these arrays: the times of the ends, the inclinations at the ends, and the codes of the ends.
     pub fn new(stops_at: &'a mut [f64], ends_at_theta: &'a mut [f64], ended: &'a mut [u8]) -> Self {
         Self { stops_at, ends_at_theta, ended }
     }

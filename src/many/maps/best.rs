@@ -20,7 +20,7 @@ pub enum MapQuantity {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MapPoint {
-    /// The value.
+    /// The value of the quantity at the point.
     pub value: f64,
     /// Index of the inclination.
     pub theta: usize,
@@ -66,7 +66,7 @@ impl<T: SideBySide> ExtremaInLanes<T> {
         Self([(like.splat(f64::INFINITY), like.splat(0.0)); 2])
     }
 
-    /// Compares the numbers in lanes with the extrema so far; a NaN is ignored.
+    /// Compares the numbers in SIMD lanes with the extrema so far; a NaN is ignored.
     #[inline(always)]
     pub fn include(&mut self, x: T, place: f64) {
         let place = x.splat(place);
@@ -76,7 +76,7 @@ impl<T: SideBySide> ExtremaInLanes<T> {
         *greatest = (x.select_lt(greatest.0, x, greatest.0), x.select_lt(greatest.0, place, greatest.1));
     }
 
-    /// The minimum and the maximum over all lanes.
+    /// The minimum and the maximum over all SIMD lanes.
     #[inline(always)]
     pub fn ends(&self) -> [f64; 2] {
         let [least, greatest] = &self.0;

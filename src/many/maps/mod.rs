@@ -130,7 +130,7 @@ impl<'a, F> Portrait<'a, F> {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct TubePoints<'a> {
-    /// Inclination.
+    /// Inclination, in radians.
     pub theta: &'a [f64],
     /// Half length of the tube, in R.
     pub half_length: &'a [f64],

@@ -123,7 +123,7 @@ impl<'a> MotionStarts<'a> {
         Self { slopes: Some([slope, phi]), ..self }
     }
 
-    /// Returns these starts with slips along the lean and across it, in sqrt(g R). Without them there is no slip, and
+    /// Returns these starts with slips along e_h and along e2, in sqrt(g R). Without them there is no slip, and
     /// the centre of a body on its face is at rest under friction.
     #[must_use]
     pub fn with_slips(self, along_lean: &'a [f64], across_lean: &'a [f64]) -> Self {
@@ -145,7 +145,7 @@ impl<'a> MotionStarts<'a> {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns these starts in the air, with the heights of the lowest points and their vertical velocities.
+    /// Returns these starts in the air, with the heights of the lowest points, in R, and their upward velocities.
     #[must_use]
     pub fn with_aloft(self, height: &'a [f64], lift: &'a [f64]) -> Self {
         Self { aloft: Some([height, lift]), ..self }
@@ -253,30 +253,30 @@ impl<'a> MotionStarts<'a> {
 coded! {
     /// A summary of a motion in one number, from time 0 to the end or the last time.
     pub enum Summary {
-        /// Least inclination.
+        /// Least inclination, in radians.
         ThetaMin = 0,
-        /// Greatest inclination.
+        /// Greatest inclination, in radians.
         ThetaMax = 1,
         /// Least normal force, per weight.
         NormalMin = 2,
         /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
         FrictionCoefficientMax = 3,
-        /// Period of the nutation; infinite for a motion without a period.
+        /// Period of the nutation, in sqrt(R/g); infinite for a motion without a period.
         Period = 4,
         /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
         PrecessionPerPeriod = 5,
-        /// Time of the end: that of the event, or else the last time.
+        /// Time of the end, in sqrt(R/g): that of the event, or else the last time.
         End = 6,
-        /// Total time of slipping.
+        /// Total time of slipping, in sqrt(R/g).
         SlipTime = 7,
         /// The heat made by friction, in M g R.
         Dissipated = 8,
         /// The energy lost to the losses, in M g R.
         WorkLost = 9,
-        /// Number of phases.
+        /// Number of phases of slipping, rolling, flying and lying.
         Phases = 10,
-        /// Time at which the last phase of rolling begins; this and the next four numbers are NaN if the body never
-        /// rolls.
+        /// Time at which the last phase of rolling begins, in sqrt(R/g); this and the next four numbers are NaN if the
+        /// body never rolls.
         RollingTime = 11,
         /// The inclination at the time `RollingTime`.
         RollingTheta = 12,
@@ -290,7 +290,7 @@ coded! {
         Impacts = 16,
         /// Number of times at which the body lands and stays on the table for a while.
         Landings = 17,
-        /// Time in the air.
+        /// Total time in the air, in sqrt(R/g).
         AirTime = 18,
         /// Energy lost in impacts, in M g R.
         LostInImpacts = 19,
@@ -298,7 +298,7 @@ coded! {
         LastPhase = 20,
         /// Cosine of the angle from the vertical to the axis of the first rim, at the last time or at the end.
         AxisUp = 21,
-        /// Code of [`RestsOn`](crate::motion::RestsOn), what the body lies or stands on at rest.
+        /// Code of [`RestsOn`](crate::motion::RestsOn), the part on which the body rests at the end.
         RestsOn = 22,
     }
 }
@@ -307,17 +307,17 @@ coded! {
 pub const SUMMARIES: usize = 23;
 
 impl Summary {
-    /// Its name in Python and in tables.
+    /// The name of the summary in Python and in tables.
     pub fn name(self) -> &'static str {
         self.label()[0]
     }
 
-    /// Its unit, such as "sqrt(R/g)"; "1" for a number without one.
+    /// The unit of the summary, such as "sqrt(R/g)"; "1" for a number without a unit.
     pub fn unit(self) -> &'static str {
         self.label()[1]
     }
 
-    /// What it is, in words.
+    /// The description of the summary in words.
     pub fn description(self) -> &'static str {
         self.label()[2]
     }
@@ -464,44 +464,44 @@ impl<'a> MotionOutput<'a> {
         }
     }
 
-    /// Returns these arrays with those of the states, row-major (motion, time); NaN after the end of a motion.
+    /// Returns this output with arrays of the states, row-major (motion, time); NaN after the end of a motion.
     #[must_use]
     pub fn with_states(self, states: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
         Self { states: Some(states.into().into()), ..self }
     }
 
-    /// Returns these arrays with those of the slips along the lean and across it, in the layout of the states.
+    /// Returns this output with arrays of the slips along e_h and along e2, in the layout of the states.
     #[must_use]
     pub fn with_slips(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
         Self { slips: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these arrays with that of the rims from which the states are seen, 0 or 1, in their layout; only for
+    /// Returns this output with an array of the rims, 0 or 1, to which the states refer, in their layout; only for
     /// motions with a restitution.
     #[must_use]
     pub fn with_rims(self, rims: &'a mut [f64]) -> Self {
         Self { rims: Some(rims), ..self }
     }
 
-    /// Returns these arrays with those of the states at the last time, or at the end.
+    /// Returns this output with arrays of the states at the last time, or at the end.
     #[must_use]
     pub fn with_last(self, last: impl Into<StateColumns<&'a mut [f64]>>) -> Self {
         Self { last: Some(last.into().into()), ..self }
     }
 
-    /// Returns these arrays with those of the slips at the last time, or at the end, along the lean and across it.
+    /// Returns this output with arrays of the slips at the last time, or at the end, along e_h and along e2.
     #[must_use]
     pub fn with_last_slip(self, along_lean: &'a mut [f64], across_lean: &'a mut [f64]) -> Self {
         Self { last_slip: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these arrays with that of the rims from which the last states are seen.
+    /// Returns this output with an array of the rims to which the last states refer.
     #[must_use]
     pub fn with_last_rim(self, last_rim: &'a mut [f64]) -> Self {
         Self { last_rim: Some(last_rim), ..self }
     }
 
-    /// Returns these arrays with that of this summary.
+    /// Returns this output with an array of this summary.
     #[must_use]
     pub fn with_summary(mut self, of: Summary, column: &'a mut [f64]) -> Self {
         self.summary[of as usize] = Some(column);

@@ -43,7 +43,7 @@ fn index_of_series(width: f64, tol: f64) -> Option<usize> {
 const TIMES_PER_BREATH: usize = 64;
 
 impl MotionBlock<'_> {
-    /// Computes the motions for which a series or a march is precise enough, on the best lanes of this
+    /// Computes the motions for which a series or a march is precise enough, on the best SIMD lanes of this
     /// machine; returns the other motions.
     pub fn run(
         &self,

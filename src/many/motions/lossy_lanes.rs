@@ -28,7 +28,7 @@ pub(super) struct LossyLanes<T> {
 }
 
 impl<T: SideBySide> LossyLanes<T> {
-    /// Placeholder bodies for lanes without a task.
+    /// Placeholder bodies for SIMD lanes without a task.
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);

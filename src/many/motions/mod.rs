@@ -59,7 +59,7 @@ pub(crate) use customs::{CustomLaws, roll_custom};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// What is the same for all motions of a call: the options, the times and the tolerance.
+/// The options, the times and the tolerance that all motions of a call have in common.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Job<'a> {
@@ -67,7 +67,7 @@ pub struct Job<'a> {
     /// [`Ask::table`], which is then only the kind of contact. [`Ask::method`] is exact, or a fixed step. Losses are
     /// columns of [`MotionStarts`], and poses and forces belong to single motions.
     pub ask: Ask,
-    /// Times of the states, in order and on one side of 0; with friction or losses none is negative.
+    /// Times of the states, in sqrt(R/g), ascending from 0 on or descending from 0 on; with friction or losses ascending.
     pub times: &'a [f64],
     /// The allowed error of a motion; with friction or losses, the tolerance of a step.
     pub tol: f64,
@@ -136,19 +136,23 @@ impl<'a> Job<'a> {
             return unknown(
                 law.parameter(),
                 coefficient,
-                "0: losses of many motions are columns of their starts",
+                "0: give the losses of many motions by `MotionStarts::with_losses`",
             );
         }
         for (name, value) in [("slope", ask.slope), ("turning", ask.turning)] {
             if value != 0.0 {
-                return unknown(name, value, "0: the tables of many motions are columns of their starts");
+                return unknown(
+                    name,
+                    value,
+                    "0: give the slopes of many motions by `MotionStarts::with_slopes`",
+                );
             }
         }
         if let Method::Tolerance(tol) = ask.method {
-            return unknown("method", tol, "no tolerance, which is `tol` of the job");
+            return unknown("method", tol, "exact or a fixed step: give a tolerance by `Job::with_tol`");
         }
         if ask.pose || ask.force {
-            return unknown("pose, force", 1.0, "false: many motions have states only");
+            return unknown("pose, force", 1.0, "false: poses and forces are only for single motions");
         }
         if !flows {
             within("tol", self.tol, (1e-15, 1e-1), "1e-15 <= tol <= 0.1")?;
@@ -166,7 +170,7 @@ impl<'a> Job<'a> {
 coded! {
     /// The method that computed a motion: the code in `MotionOutput::method`.
     pub enum Answer {
-        /// None, because the body or the state is invalid, or the step is too long.
+        /// No method, because the body or the state is invalid, or the step is too long.
         None = 0,
         /// The first integrals, in lanes; with a law of friction or a restitution, where the body rolls from the start
         /// to the end.

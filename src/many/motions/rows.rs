@@ -67,7 +67,7 @@ impl<T: Real> StartLanes<T> {
 }
 
 impl MotionBlock<'_> {
-    /// The bodies and states of these motions in lanes; unused lanes repeat the last motion.
+    /// The bodies and states of these motions in SIMD lanes; unused lanes repeat the last motion.
     pub fn gather<T: SideBySide>(&self, like: T, some: &[usize], round: bool) -> StartLanes<T> {
         let last = some.len() - 1;
         if let Some(first) = first_of_consecutive(some).filter(|_| some.len() == T::COUNT) {

@@ -28,7 +28,7 @@ pub(super) struct Slips<T> {
 }
 
 impl<T: SideBySide> Slips<T> {
-    /// Placeholder bodies for lanes without a task.
+    /// Placeholder bodies for SIMD lanes without a task.
     pub fn new(zero: T, dry: bool) -> Self {
         let one = zero.splat(1.0);
         let shape = Shape::of([zero, one, one, zero]);

@@ -57,7 +57,7 @@ pub(crate) struct Entry<const N: usize, const M: usize> {
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
-    /// Number of crawling steps that are allowed.
+    /// Number of steps that may hardly advance the time.
     pub patience: u64,
     /// Number of evaluations that the lane counts at its start, besides those that it makes ([`evaluations_before_limit`]).
     pub made: u64,
@@ -187,7 +187,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
 }
 
 impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L, N, M> {
-    /// A set with the same initial data in all lanes.
+    /// A set with the same initial data in all SIMD lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
         let way = LaneProgress {
@@ -231,7 +231,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         entry.numbers.into_iter().chain([entry.tol, entry.until]).for_each(put);
     }
 
-    /// Writes the progress of all lanes into the rows, so that single lanes can be filled anew.
+    /// Writes the progress of all SIMD lanes into the rows, so that single lanes can be filled anew.
     pub fn store_rows(&mut self) {
         let (mut row, rows) = (0, &mut self.rows);
         self.way.each(|x| {
@@ -240,7 +240,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         });
     }
 
-    /// Loads all lanes from the rows.
+    /// Loads all SIMD lanes from the rows.
     pub fn load_rows(&mut self, zero: T) {
         let (mut row, rows) = (0, &self.rows);
         let mut next = || {
@@ -279,7 +279,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         self.status = zero;
     }
 
-    /// Marks the lanes without a task as idle.
+    /// Marks the SIMD lanes without a task as idle.
     pub fn mark_idle_lanes(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
         self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);

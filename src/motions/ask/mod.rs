@@ -76,17 +76,17 @@ pub struct Ask {
     /// both rims, but the motion of a stone ends where its edge lands, and the motion of a body on a patch of contact
     /// ends where a face or its other rim lands.
     pub restitution: Option<f64>,
-    /// The law whose coefficient the restitution is.
+    /// The law of restitution, to which the coefficient `restitution` belongs.
     #[cfg_attr(feature = "serde", serde(default))]
     pub impact_law: ImpactLaw,
-    /// How the table presses on a face on which the body stands.
+    /// The model of the pressure of the table on a face on which the body stands.
     pub face: Face,
-    /// The slope of the table, between -pi/2 and pi/2: x points downhill.
+    /// The slope of the table, in radians, between -pi/2 and pi/2; x points downhill.
     #[cfg_attr(feature = "serde", serde(default))]
     pub slope: f64,
     /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are over the table, and
-    /// the other numbers of a motion are those in the laboratory. A body that comes to rest over a level table, which carries
-    /// it, stops; a face that lands, and a second rim, end a motion.
+    /// the other numbers of a motion are those in the laboratory. A motion ends where a face or a second rim lands, or where
+    /// the body comes to rest on a level table that carries it.
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
@@ -103,7 +103,7 @@ pub struct Ask {
 }
 
 impl Ask {
-    /// The options of an exact motion with this contact up to its first event, without losses, poses and forces.
+    /// Options of an exact motion with this contact up to its first event, without losses, poses and forces.
     pub fn on(table: impl Into<Table>) -> Self {
         Self::default().with_table(table)
     }
@@ -120,7 +120,7 @@ impl Ask {
         Self { losses, ..self }
     }
 
-    /// Returns these options with rolling resistance at these times.
+    /// Returns these options with rolling resistance always or only while the body rolls.
     ///
     /// ```
     /// use spincyl::contact::Friction;
@@ -231,7 +231,7 @@ impl Ask {
     }
 }
 
-/// Where the lowest point of a body is above the table. In files it is the array of both numbers.
+/// Height of the lowest point of a body above the table, and its vertical velocity. In files: the array of both numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -242,12 +242,12 @@ impl Ask {
 pub struct AboveTable {
     /// The height above the table, in R.
     pub height: f64,
-    /// The vertical velocity, in sqrt(g R).
+    /// The upward velocity of the lowest point, in sqrt(g R).
     pub lift: f64,
 }
 
 impl AboveTable {
-    /// This height and this vertical velocity.
+    /// A lowest point at this height, in R, with this vertical velocity, in sqrt(g R).
     pub const fn new(height: f64, lift: f64) -> Self {
         Self { height, lift }
     }
@@ -278,16 +278,16 @@ pub struct Start<S = State> {
     /// ([`stone::roll`](super::stone::roll)).
     #[cfg_attr(feature = "serde", serde(default))]
     pub slip: [f64; 2],
-    /// The initial time.
+    /// The initial time, in sqrt(R/g).
     #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
     /// The height of the lowest point of the rim above the table and its vertical velocity, for a body that starts in
     /// the air; this needs a restitution.
     pub aloft: Option<AboveTable>,
-    /// The direction phi to which the axis leans at first, from the x axis.
+    /// The direction phi to which the axis leans at first, in radians from the x axis.
     #[cfg_attr(feature = "serde", serde(default))]
     pub heading: f64,
-    /// The first place of the contact point.
+    /// The initial contact point (x, y), in R.
     #[cfg_attr(feature = "serde", serde(default))]
     pub place: [f64; 2],
 }
@@ -406,7 +406,8 @@ impl Start {
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
-        let expected = "a velocity of the centre that keeps the lowest point on the table; or give a height";
+        let expected =
+            "an upward velocity with which the lowest point stays on the table; for a flight give a height";
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
         let [along, across] = centre_velocity(body, &state, [0.0; 2]);
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
@@ -433,7 +434,7 @@ pub(crate) fn check_conserving(ask: &Ask, t0: f64, times: &[f64]) -> Result<f64,
 /// Returns an error for `stop_at_rolling` without a law of friction.
 fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
     if ask.stop_at_rolling && !ask.table.rubs() {
-        let expected = "false without a law of friction, where no slip turns into rolling";
+        let expected = "false without a law of friction, since slip ends in rolling only by friction";
         return Err(Error::OutOfRange { name: "stop_at_rolling", value: 1.0, expected });
     }
     Ok(())
@@ -442,7 +443,7 @@ fn check_stop_at_rolling(ask: &Ask) -> Result<(), Error> {
 /// Checks the times. Returns the signed span from the initial to the last time.
 fn check_times(t0: f64, times: &[f64]) -> Result<f64, Error> {
     within("t0", t0, (-1e15, 1e15), "|t0| <= 1e15")?;
-    let expected = "at least one time, in order, all before or all after t0, |t| <= 1e15";
+    let expected = "one or more times, ascending from t0 on or descending from t0 on, |t| <= 1e15";
     let &last = times.last().ok_or(Error::OutOfRange { name: "t", value: f64::NAN, expected })?;
     let way = if last < t0 { -1.0 } else { 1.0 };
     let mut before = 0.0;
@@ -473,7 +474,7 @@ pub(crate) fn check_flow(ask: &Ask) -> Result<f64, Error> {
         Method::Exact => Ok(FINE),
         Method::Tolerance(tol) => within("tol", tol, (FINE, 1e-1), "1e-14 <= tol <= 0.1"),
         Method::Step(value) => {
-            let expected = "no fixed step with friction or losses: give a tolerance";
+            let expected = "no fixed step for a motion with friction or losses: give a tolerance instead";
             Err(Error::OutOfRange { name: "step", value, expected })
         }
     }
@@ -503,7 +504,7 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
     };
     if ask.resistance == Resistance::WhileRolling && value != 0.0 && never {
         let expected =
-            "0, or a table without a patch and with dry friction, for a resistance only while the body rolls";
+            "0, or dry friction without a patch, for rolling resistance that acts only while the body rolls";
         return Err(Error::OutOfRange { name: "delta", value, expected });
     }
     Ok(())
@@ -512,7 +513,8 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
 fn check_method(method: Method, span: f64) -> Result<(), Error> {
     match method {
         Method::Step(step) => {
-            let expected = "a step with the sign of time, at least 1e-12 and 1e-15 of the span";
+            let expected =
+                "a step with the sign of time, of at least 1e-12 and at least 1e-15 of the span of the times";
             let named = |ok: bool| {
                 if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
             };

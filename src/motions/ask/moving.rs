@@ -42,32 +42,32 @@ pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     fn at_pace(&self, pace: f64) -> Self;
     /// A force multiplied by `weight`.
     fn force_at(force: &Self::Force, weight: f64) -> Self::Force;
-    /// The same state as seen from the other one of two equal rims; None for a stone.
+    /// The same state with the inclination and the axes of the other one of two equal rims; None for a stone.
     fn seen_from_other_rim(&self) -> Option<Self> {
         None
     }
-    /// A state that is seen from the upper end of a body, as told from its lower end, with this inclination.
+    /// Converts a state that refers to the upper end of a body to its lower end, where it has this inclination.
     fn told(&self, _theta: f64) -> Self {
         *self
     }
-    /// A pose that is seen from the upper end of a body, as told from its lower end.
+    /// Converts a pose that refers to the upper end of a body to its lower end.
     fn pose_told(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
-    /// `pose_told` for a motion whose poses all are told in this way, after a half turn of the laboratory about the
-    /// vertical, so that phi begins with 0.
+    /// Converts a pose as `pose_told`, for a motion whose poses all refer to the upper end, after a half turn of the
+    /// laboratory about the vertical, so that phi begins with 0.
     fn pose_told_from_start(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
-    /// A force that is seen from the upper end of a body, as told from its lower end.
+    /// Converts a force that refers to the upper end of a body to its lower end.
     fn force_told(force: &Self::Force) -> Self::Force {
         *force
     }
-    /// The largest difference between two poses that are told from different circles, whose points of contact differ.
+    /// The largest difference between two poses that refer to different circles, whose points of contact differ.
     fn pose_distance_apart(a: &Self::Pose, b: &Self::Pose) -> f64 {
         Self::pose_distance(a, b)
     }
-    /// The largest difference between two poses that are seen from different rims, `a` from the one that was not down at
+    /// The largest difference between two poses that refer to different rims, `a` to the one that did not touch the table at
     /// the start.
     fn pose_distance_over(a: &Self::Pose, b: &Self::Pose) -> f64 {
         Self::pose_distance(a, b)

@@ -32,9 +32,9 @@ coded! {
         /// The face at the rim to which the initial state refers, or at the lower end of a body of several circles: the axis
         /// of the body points up.
         Face = 1,
-        /// The face at the other end: its axis points down.
+        /// The face at the other end: the axis of the body points down.
         OtherFace = 2,
-        /// Its side: both rims, two circles, or a rim and another part.
+        /// The side: both rims, two circles, or a rim and another part.
         Side = 3,
         /// A rim: the body stands upright or leans, balanced or held by dry losses. A ball rests anywhere.
         Edge = 4,
@@ -105,7 +105,7 @@ pub(crate) fn axis_up(body: &Body, state: &State, rim: u8) -> f64 {
 }
 
 impl Motion {
-    /// What the body lies or stands on at the end of the motion, if it is then at rest.
+    /// The part on which the body rests at the end of the motion; `RestsOn::None` if it is not at rest.
     ///
     /// ```
     /// use spincyl::contact::Friction;

@@ -331,7 +331,7 @@ pub struct Phase<S = State> {
     pub rim: u8,
 }
 
-/// The rim that lands in an impact. In files it is whether this is another rim than the first.
+/// The rim that lands in an impact. In files it is true if this is not the first rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -340,7 +340,7 @@ pub struct Phase<S = State> {
 )]
 #[non_exhaustive]
 pub enum Lands {
-    /// The rim from which the initial state was seen; of several circles the lowest one. A stone has no other.
+    /// The rim to which the initial state refers; of several circles the lowest one. A stone has no other.
     First,
     /// Another rim or circle.
     Other,
@@ -358,7 +358,7 @@ impl From<Lands> for bool {
     }
 }
 
-/// What a body does after an impact. In files it is whether the body stays.
+/// The behaviour of a body after an impact. In files it is true if the body stays on the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -412,7 +412,7 @@ pub struct Strike<S = State> {
     pub couple: f64,
     /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
     pub lost: f64,
-    /// What the body does after the impact.
+    /// Whether the body leaves the table or stays on it after the impact.
     #[cfg_attr(feature = "serde", serde(rename = "stays"))]
     pub after: AfterImpact,
 }
@@ -426,9 +426,9 @@ pub struct Strike<S = State> {
 )]
 #[non_exhaustive]
 pub struct OtherRim {
-    /// The slip of that rim, along the lean and across it.
+    /// The slip of the other rim, along e_h and along e2, in sqrt(g R).
     pub slip: [f64; 2],
-    /// The force on that rim.
+    /// The force of the table on the other rim, in M g.
     pub force: Force,
 }
 
@@ -481,7 +481,7 @@ pub struct Path<S = State> {
     /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
     /// the body leaves the table.
     pub aloft: Vec<AboveTable>,
-    /// The impacts.
+    /// The impacts on the table, in the order of time; empty without a restitution.
     pub impacts: Vec<Strike<S>>,
     /// Slip and force of the other rim at each time, NaN unless the body lies on both; empty if the motion ends where the
     /// body comes to lie on its side.

@@ -20,7 +20,7 @@ pub(crate) struct OutputRow<S: Moving> {
     pub force: Option<(S::Force, f64)>,
     /// The height of the lowest point of the rim and its vertical velocity.
     pub aloft: AboveTable,
-    /// Slip and force of the other rim of a body that lies on both, which is seen from its first rim.
+    /// Slip and force of the other rim of a body that lies on both; the state refers to the first rim.
     pub other_rim: Option<OtherRim>,
 }
 

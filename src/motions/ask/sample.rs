@@ -26,9 +26,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 )]
 #[non_exhaustive]
 pub struct Sample<S: Moving = State> {
-    /// The time.
+    /// The time of the sample, in sqrt(R/g).
     pub time: f64,
-    /// The state.
+    /// The state of the body at this time.
     pub state: S,
     /// The pose, if poses were requested.
     pub pose: Option<S::Pose>,
@@ -38,7 +38,7 @@ pub struct Sample<S: Moving = State> {
     pub slip: Option<[f64; 2]>,
     /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
-    /// The height of the lowest point and its vertical velocity.
+    /// The height of the lowest point above the table and its vertical velocity; both are 0 on the table.
     pub aloft: AboveTable,
     /// Slip and force of the other rim of a body that lies on both.
     pub other_rim: Option<OtherRim>,

@@ -192,7 +192,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     let drills = ask.losses.coefficient(Law::Drilling) != 0.0 && ask.restitution.is_some();
     if ask.slope != 0.0 && drills && body.theta_end() < PI {
         // On two circles it would share in what holds the body along its axis.
-        let expected = "0 with drilling friction and a restitution of a body on two circles";
+        let expected = "0 for a body that can lie on two circles, with drilling friction and a restitution";
         return Err(Error::OutOfRange { name: "slope", value: ask.slope, expected });
     }
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
@@ -202,11 +202,11 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
         within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
         if ask.restitution.is_none() {
-            let expected = "None: a motion that starts in the air needs a restitution";
+            let expected = "None, or a restitution, which a motion that starts in the air needs";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
         if !body.lands_on_rims() {
-            let expected = "none: a part of this body other than a rim may land, and its shape is unknown";
+            let expected = "a body that lands on its rims, for a start in the air: another part of this one lands, and its shape is unknown";
             return Err(Error::OutOfRange { name: "theta_end", value: body.theta_end(), expected });
         }
         let (angle, landings) = (start.state.theta.sin_cos(), body.landings());
@@ -214,7 +214,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
             let rim = landings.rims[landings.lowest(k, angle.1)];
             let other = height + body.shape().rim.less(&rim).height(angle);
             let value = if other < -1e-15 { -height } else { height };
-            within("height", value, (0.0, 1e6), "all rims above the table")?;
+            within("height", value, (0.0, 1e6), "all rims above the table, or on it")?;
         }
     }
     if ask.table.rubs() || start.aloft.is_some() || on_face(body, &start.state) {
@@ -235,5 +235,5 @@ pub(super) fn refuse_slip([along, across]: [f64; 2]) -> Result<(), Error> {
     if value == 0.0 {
         return Ok(());
     }
-    Err(Error::OutOfRange { name: "slip", value, expected: "0 without a law of friction" })
+    Err(Error::OutOfRange { name: "slip", value, expected: "0, or a law of friction as the contact" })
 }

@@ -258,8 +258,8 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
     fn no_unique_force(walk: &BodyWalk<'_, N, G>) -> Error {
         if walk.ask.resists_only_rolling() && walk.at.slip() == [0.0; 2] {
             let value = walk.ask.losses.coefficient(Law::RollingResistance);
-            let expected = "less, or one that acts while the body slips, too: friction cannot hold the contact point of \
-                            this body as it rolls under the resistance, and holds it without";
+            let expected = "a smaller arm, or a resistance that acts while the body slips, too: friction cannot hold the \
+                            contact point of this body as it rolls under the resistance, and could without it";
             return walk.of.own.takes_fault().unwrap_or(Error::OutOfRange { name: "delta", value, expected });
         }
         let (mu, theta) = (walk.friction().strength(), walk.of.state.theta);

@@ -37,7 +37,7 @@ const FIRST_NORMAL: f64 = 0.75;
 /// The laws of a motion.
 #[derive(Clone, Copy)]
 pub(crate) struct OwnLaws<'a> {
-    /// The body as told from its lower end, and whether it is seen from the upper one.
+    /// The body, seen from its lower end, and whether the state refers to the upper end.
     pub body: &'a Body,
     pub over: &'a Cell<bool>,
     pub custom: Custom<'a>,
@@ -45,7 +45,7 @@ pub(crate) struct OwnLaws<'a> {
     pub fault: &'a Cell<Option<Error>>,
     /// The sine, the cosine and w at which the couple was last solved for, and the couple.
     pub last: &'a Cell<([f64; 5], Option<Couple<f64>>)>,
-    /// The time at the start, and the drive where it was asked last.
+    /// The time at the start, and the last value of the drive.
     pub since: f64,
     pub driven: &'a Cell<Option<Driven>>,
 }

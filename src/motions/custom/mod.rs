@@ -131,7 +131,7 @@ pub(crate) fn stone_followed(
     }
     for (name, is_there) in [("couple", custom.couple.is_some()), ("drive", custom.drive.is_some())] {
         if is_there {
-            let expected = "none for a stone, which has no axis";
+            let expected = "no user-defined couple or drive for a stone, which has no axis of symmetry";
             return Err(Error::OutOfRange { name, value: f64::NAN, expected });
         }
     }
@@ -234,16 +234,24 @@ fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
     };
     let held = ask.losses.iter().find(|(law, coefficient)| is_held_by(*law) && *coefficient != 0.0);
     match () {
-        () if ask.table == Table::Smooth => refuse("contact", f64::NAN, "friction, or rolling, with a drive"),
-        () if let Some((_, coefficient)) = held => {
-            refuse("losses", coefficient, "no law that holds a motion at rest, with a drive")
-        }
+        () if ask.table == Table::Smooth => refuse(
+            "contact",
+            f64::NAN,
+            "rolling or a law of friction, not a smooth table, for a motion with a drive",
+        ),
+        () if let Some((_, coefficient)) = held => refuse(
+            "losses",
+            coefficient,
+            "no dry friction along the contour, drilling friction or rolling resistance, with a drive",
+        ),
         () if ask.table.friction().patch() > 0.0 => {
-            refuse("patch", ask.table.friction().patch(), "0 with a drive")
+            refuse("patch", ask.table.friction().patch(), "0 for a motion with a drive")
         }
-        () if body::on_face(body, &start.state) => {
-            refuse("theta", start.state.theta, "a body that stands on a rim, with a drive")
-        }
+        () if body::on_face(body, &start.state) => refuse(
+            "theta",
+            start.state.theta,
+            "a body that stands on a rim, not on its face, for a motion with a drive",
+        ),
         () => Ok(()),
     }
 }
@@ -251,7 +259,7 @@ fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
 /// Returns an error for options that such laws exclude.
 pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error> {
     let refuse = |name: &'static str, value: f64| {
-        Err(Error::OutOfRange { name, value, expected: "none together with a user-defined law" })
+        Err(Error::OutOfRange { name, value, expected: "0 or false together with a user-defined law" })
     };
     let patch = ask.table.friction().patch();
     if patch > 0.0 && custom.friction.is_some() {

@@ -123,22 +123,22 @@ impl Drift {
         }
     }
 
-    /// The inclination at a time; NaN before time 0 and after the end.
+    /// The inclination, in radians, at a time in sqrt(R/g); NaN before time 0 and after the end.
     pub fn theta(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.state.theta)
     }
 
-    /// Omega, the precession phi' at a time, in sqrt(g/R).
+    /// The precession Omega = phi', in sqrt(g/R), at a time in sqrt(R/g).
     pub fn precession(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.precession)
     }
 
-    /// The state at a time.
+    /// The steady state at a time in sqrt(R/g).
     pub fn state(&self, t: f64) -> Option<State> {
         self.at(t).map(|there| there.state)
     }
 
-    /// The coefficient of friction that is needed at a time, |V| Omega: 0 where the centre is at rest.
+    /// The coefficient of friction that the steady state at a time needs, |V| Omega: 0 where the centre is at rest.
     pub fn friction_coefficient(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
     }

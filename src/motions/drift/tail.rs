@@ -115,7 +115,7 @@ impl Tail {
         }
     }
 
-    /// The fractions that are left after a time.
+    /// The fractions of the inclination and of the rates that are left after a time.
     pub fn at(&self, t: f64) -> TailPlace {
         match self {
             Self::Powers(of) => of.at(t),

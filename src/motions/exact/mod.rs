@@ -176,9 +176,9 @@ pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
 pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
     check_body(body)?;
     check_speeds(y)?;
-    within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: a kick that lets the body rise is a w2")?;
+    within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: to let the body rise from its face, give w2")?;
     let expected =
-        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: the body rises on the point to which its state refers";
+        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: with the other sign a body would rise into the table";
     within("w2", y.theta.cos() * y.w2, (f64::MIN, 0.0), expected).map(drop)
 }
 

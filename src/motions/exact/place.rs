@@ -24,13 +24,13 @@ pub struct AnglesPerPeriod {
     pub spin: f64,
 }
 
-/// How the contact point moves on from one nutation to the next.
+/// The drift of the contact point from one nutation to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ContactDrift {
     /// Displacement of the contact point over a whole nutation from the start, in R.
     pub step: f64,
-    /// Radius of the circle through its places after whole nutations, infinite where these lie on a straight line.
+    /// Radius, in R, of the circle on which the contact point lies after each whole nutation; infinite for a straight line.
     pub radius: f64,
 }
 
@@ -51,7 +51,7 @@ impl Swing {
         self.has_pose().then(|| self.half_nutation.turns.map(|half| 2.0 * half))
     }
 
-    /// How the contact point moves on in a whole nutation; None without a period or a pose.
+    /// The drift of the contact point in a whole nutation; None without a period or a pose.
     pub fn drift(&self) -> Option<ContactDrift> {
         let [turn, _] = self.turns_per_period()?;
         let step = self.pose(self.period())?.contact_point.coords.norm();

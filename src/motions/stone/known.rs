@@ -29,7 +29,7 @@ const MARKS: usize = 128;
 pub(crate) struct Recorded {
     /// The reversals of the spin, if they are counted.
     pub turns: Option<Reversals>,
-    /// The time and the room of each end, and of each minimum of a margin close to zero.
+    /// The time of each end and of each minimum of a margin near zero, and the distance of the margin from zero there.
     pub grazes: Vec<[f64; 2]>,
 }
 

@@ -44,16 +44,16 @@ pub(crate) fn check_stone(
     for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
         if !ask.table.rubs() && start.aloft.is_none() {
-            within("slip", u, (0.0, 0.0), "no slip on this table")?;
+            within("slip", u, (0.0, 0.0), "0, or a law of friction as the contact")?;
         }
     }
-    within("turning", ask.turning, (0.0, 0.0), "0 for a stone")?;
+    within("turning", ask.turning, (0.0, 0.0), "0 for a stone, whose table does not turn")?;
     start.check_place()?;
     ask.table.check()?;
     ask.losses.check_for_stone()?;
     if ask.resistance == Resistance::WhileRolling && ask.losses.coefficient(Law::RollingResistance) != 0.0 {
         let value = ask.losses.coefficient(Law::RollingResistance);
-        let expected = "0 for a stone, with a resistance only while the body rolls";
+        let expected = "0 for a stone, or rolling resistance that also acts while the body slips";
         return Err(Error::OutOfRange { name: "delta", value, expected });
     }
     check_patch(ask)?;
@@ -61,7 +61,7 @@ pub(crate) fn check_stone(
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
         within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g a)")?;
         if ask.restitution.is_none() {
-            let expected = "None: a motion that starts in the air needs a restitution";
+            let expected = "None, or a restitution, which a motion that starts in the air needs";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
     }
@@ -69,7 +69,7 @@ pub(crate) fn check_stone(
     let fine = check_flow(ask)?;
     if let Some(&value) = times.last().filter(|t| **t < time) {
         let expected =
-            "times from the start on: the past of a rolling stone is its future with the opposite w";
+            "times after the start; for the past of a rolling stone compute its future with the opposite w";
         return Err(Error::OutOfRange { name: "t", value, expected });
     }
     check_times_after(time, times)?;

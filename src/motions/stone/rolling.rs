@@ -33,11 +33,11 @@ pub struct RollingStone {
     /// The rotation from the axes of the ellipsoid to those of the laboratory, as a quaternion (w, x, y,
     /// z) of length 1.
     pub orientation: [f64; 4],
-    /// The position of the centre of mass, counted from the first contact point.
+    /// The position of the centre of mass relative to the first contact point, in a.
     pub centre: [f64; 2],
-    /// The derivative of the orientation.
+    /// The time derivative of the quaternion `orientation`, in sqrt(g/a).
     pub orientation_rate: [f64; 4],
-    /// The derivative of the position of the centre of mass.
+    /// The velocity of the centre of mass, in sqrt(g a).
     pub centre_velocity: [f64; 2],
     /// The vertical and the angular velocity.
     pub state: StoneState,

@@ -134,13 +134,13 @@ impl Column<[f64; LANES]> {
         Self { sharp: (kinds[0] || !kinds[1]).then(sharp), round: kinds[1].then(round) }
     }
 
-    /// The bodies on sharp rims; the other lanes are NaN.
+    /// The bodies on sharp rims; the other SIMD lanes are NaN.
     pub fn sharp(bodies: &[Option<Body>]) -> Moments<[f64; LANES]> {
         let found = Self::gather(bodies).sharp;
         found.unwrap_or_else(|| Moments::from_numbers([[f64::NAN; LANES]; 12]))
     }
 
-    /// The bodies on rounded rims; the other lanes are NaN.
+    /// The bodies on rounded rims; the other SIMD lanes are NaN.
     pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
         Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 10]))
     }

@@ -58,7 +58,7 @@ impl<T: Lane> QuickTerms<T> {
 }
 
 impl<T: Real> QuickTerms<T> {
-    /// Returns `careful` in the lanes that are uncertain, `quick` elsewhere.
+    /// Returns `careful` in the SIMD lanes that are uncertain, `quick` elsewhere.
     #[inline(always)]
     pub fn where_certain(&self, careful: T, quick: T) -> T {
         let first = self.m.hi.abs().select_lt(self.limit, careful, quick);

@@ -68,7 +68,7 @@ impl RoundedParts<f64> {
 }
 
 impl<T: Lane> RoundedParts<T> {
-    /// The terms, with twice the digits if any lane needs them, and 1 in the lanes that need them, 0 elsewhere.
+    /// The terms, with twice the digits if any lane needs them, and 1 in the SIMD lanes that need them, 0 elsewhere.
     #[inline(always)]
     pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let (terms, bend) = self.terms_and_size(angle);

@@ -9,7 +9,7 @@ _UNFIT = 0, 13, 60
 
 
 def packed(first: bytes, second: bytes) -> str:
-    """Two byte strings as text for a script element.
+    """Compress two byte strings to text for a script element.
 
     A header contains the length of the deflated stream, which a browser needs, and of the first string.
     """
@@ -18,7 +18,7 @@ def packed(first: bytes, second: bytes) -> str:
 
 
 def characters(data: bytes) -> str:
-    """Bytes as text, seven bits in each character.
+    """Encode bytes as text, seven bits in each character.
 
     An unfit character is combined with the next one into a character of 128 or above: two bytes in UTF-8.
     """

@@ -9,7 +9,7 @@ from spincyl.studio.shape import Part, Profile
 
 
 def corners(profile: Profile) -> list[tuple[float, ...]]:
-    """Corners of a profile; for a smooth profile with their normals, rounded to 1e-6."""
+    """Corners of a profile as lists; for a smooth profile with their normals, rounded to 1e-6."""
     if profile.normals is None:
         return profile.corners  # type: ignore[return-value]
     pairs = zip(profile.corners, profile.normals, strict=True)

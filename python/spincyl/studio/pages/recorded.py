@@ -67,13 +67,13 @@ def slips_or_flies(m: Motion) -> bool:
 
 
 def turns(look: Look) -> str:
-    """Number of turns of the first exposure of a page, as text."""
+    """Number of turns of the first exposure of a page, as text for the page."""
     many = look.exposure or 0.0
     return "Infinity" if np.isinf(many) else f"{many:g}"
 
 
 def edges(m: Motion) -> dict[str, Any]:
-    """The notes for times before and after those shown, and for the end of the motion."""
+    """The page's notes at times before and after the motion shown, and at its end."""
     start, last = span(m)
     first, until = sorted((start, last))
     found = {

@@ -27,7 +27,7 @@ TALL = 0.05, 20.0
 
 
 def words_of_body(body: Body) -> dict[str, Any]:
-    """Words for a body: half length, bore and fillet of a tube; the numbers of any other body."""
+    """Words that describe a body in a page's address: the dimensions of a tube, or the numbers of a body."""
     if isinstance(body, Ellipsoid):
         raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
     instance_of("body", body, Body)
@@ -40,7 +40,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
     if frustum:
         return frustum | size
     if body.rims is not None and body.rims[0, 0] + fillet != 1:
-        why = "expected a frustum, or a lowest circle of outer radius R, on which alone a page moves it"
+        why = "expected a frustum, or a body whose lowest circle has the outer radius R"
         raise ValueError(f"body: {why}")
     if not np.isnan(bore):
         return {"ell": ell + fillet, "bore": bore, "fillet": fillet} | size
@@ -85,7 +85,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 
 def words_of_state(state: State) -> dict[str, Any]:
-    """Words for a state: the inclination, and w1, w2, w3 with the slip."""
+    """Words that describe a state in a page's address: the inclination, and w1, w2, w3 with the slip."""
     instance_of("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
@@ -95,7 +95,7 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
-    """Words for a contact, with its coefficient."""
+    """Words that describe a contact in a page's address, with its coefficient."""
     if not isinstance(contact, str) and isinstance(contact, Coulomb | Viscous):
         table_for_core(contact, 0.0)  # raises an error for a custom law
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
@@ -133,7 +133,7 @@ def words_of_slope(table: Table | None) -> dict[str, Any]:
 
 
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
-    """Words for a loss law: its name on the command line, and its coefficient."""
+    """Words that describe a loss law in a page's address: its name and its coefficient."""
     if losses is None:
         return {}
     if not isinstance(losses, Loss):

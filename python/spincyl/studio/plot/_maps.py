@@ -40,7 +40,19 @@ _HALF_PI = np.pi / 2
 
 
 class Landmark(NamedTuple):
-    """A named point of a branch of steady states."""
+    """A named point of a branch of steady states; `landmarks` lists those of a body.
+
+    Attributes
+    ----------
+    letter : str
+        Letter of the point, "A" to "G", as in `landmarks`.
+    meaning : str
+        Meaning of the point in words.
+    theta : float
+        Inclination at the point, in radians.
+    rate : float
+        Reduced rate at the point; infinite for C and D.
+    """
 
     letter: str
     meaning: str

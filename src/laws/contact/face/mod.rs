@@ -23,7 +23,7 @@ use part::{PressedFace, PressedPart};
 use ring::WholeMeans;
 
 coded! {
-    /// How the table presses on a face. Where the pressure of a rigid face is undetermined, this is the choice of a model.
+    /// The model of the pressure of the table on a face, since the pressure on a rigid face is not determined.
     #[derive(Default)]
     pub enum Face {
         /// On its rim alone, as below a tube, a can or a coin: the default.

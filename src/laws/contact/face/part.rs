@@ -113,7 +113,7 @@ impl<T: SideBySide> FaceIntegrals<T> {
         self.add(terms);
     }
 
-    /// The integrals, and what follows from them for a height lam.
+    /// The integrals, and the force and the centre of the pressure that follow from them for a height lam.
     #[inline(always)]
     pub fn pressed(&self, lam: f64) -> PressedFace {
         let total = here(

@@ -65,7 +65,7 @@ impl Aloft {
         if self.angle.0 != 0.0 || self.angle.1 * self.w[1] <= 0.0 { *self } else { self.opposite(shape) }
     }
 
-    /// The same body on a pole, told from the opposite point of its face.
+    /// The same body on a pole, with a state that refers to the opposite point of its face.
     pub fn opposite(&self, shape: &Shape<f64>) -> Self {
         let ((_, c), [w1, w2, w3], [u, v], [phi, psi, x, y]) = (self.angle, self.w, self.slip, self.pose);
         let [radius, lever] = [shape.rim.radius(self.angle), shape.rim.lever(self.angle)].map(|x| 2.0 * x);
@@ -79,7 +79,7 @@ impl Aloft {
         }
     }
 
-    /// The same motion as seen from the other one of two rims, the last one of the body.
+    /// The same motion with a state that refers to the other one of two rims, the last one of the body.
     pub fn on_other_rim(&self, [here, there]: &[Rim<f64>; 2]) -> Self {
         let (angle @ (s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
         let less = here.less(there);

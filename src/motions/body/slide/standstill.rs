@@ -26,7 +26,7 @@ impl<L: Own> Slide<L> {
     }
 
     /// The speed below which the rest of a slip is about that of [`Slide::ends_at_once`], so that a single flow continues a
-    /// slip that lanes have followed up to there; a slip that begins hardly faster is in lanes to its end.
+    /// slip that SIMD lanes have followed up to there; a slip that begins hardly faster is in lanes to its end.
     #[cfg(feature = "many")]
     pub fn over_in_lanes<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let time = (AT_ONCE * self.tol).cbrt() * self.calm(y) / 3.0;

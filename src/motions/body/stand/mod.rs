@@ -122,15 +122,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
         if self.of.turning != 0.0 {
-            let expected = "0 for a body on its face";
+            let expected = "0 for a body on its face, whose table does not turn";
             return Err(Error::OutOfRange { name: "turning", value: self.ask.turning, expected });
         }
         let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
         match next {
             Next::Ends(Ending::Painleve) => Err(Phases::no_unique_force(self)),
             Next::Ends(Ending::Face) => {
-                let expected =
-                    "a law of friction, without laws of the user: a body that moves on its face cannot roll";
+                let expected = "a law of friction, and no user-defined law, for a body that moves on its face: it cannot roll";
                 Err(Error::OutOfRange { name: "theta", value: at.theta, expected })
             }
             next => Ok(next),

@@ -143,7 +143,7 @@ fn floor<T: Real>(x: T) -> T {
 }
 
 impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
-    /// A lower bound of a [`Grip`] from time 0 to `t` for one motion, the same in all lanes; the samples lie side by
+    /// A lower bound of a [`Grip`] from time 0 to `t` for one motion, the same in all SIMD lanes; the samples lie side by
     /// side.
     #[inline(always)]
     pub fn bound<const ROUND: bool>(&self, grip: Grip, t: f64x8<S>) -> f64 {

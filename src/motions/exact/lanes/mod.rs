@@ -285,7 +285,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         if K < RUNTIME_TERMS { K } else { self.terms[1].min(K) }
     }
 
-    /// A number with the same lanes, from which others can be splatted.
+    /// A number with the same SIMD lanes, from which others can be splatted.
     pub fn like(&self) -> T {
         self.theta
     }

@@ -85,7 +85,7 @@ fn truncation_error<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
 }
 
 impl<const K: usize> PeriodAngleSeries<K> {
-    /// The series for a motion that is the same in all lanes; `start` is its place at time 0.
+    /// The series for a motion that is the same in all SIMD lanes; `start` is its place at time 0.
     #[inline(always)]
     pub fn of<S: Simd, const N: usize>(
         swing: &Swings<f64x8<S>, N, K>,

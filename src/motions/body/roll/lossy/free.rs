@@ -225,13 +225,13 @@ impl<T: Real> LossyUnheld<T> {
 }
 
 impl<G: Own> LossyFlow<G> {
-    /// Whether lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
+    /// Whether SIMD lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
     pub fn is_free(&self) -> bool {
         let free = self.moves && !self.holds_drilling();
         free && self.watch && !self.ball && !self.is_patch() && !G::IS
     }
 
-    /// The numbers that lanes need: theta_end, mu, the coefficients of the losses, and the signs
+    /// The numbers that SIMD lanes need: theta_end, mu, the coefficients of the losses, and the signs
     /// of psi' and w_z.
     pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
         let mut all = [0.0; LOSSY_NUMBERS];
