@@ -76,7 +76,7 @@ def main():
     state, share = starts(asked.count)
     body = sc.Body.solid(np.full(asked.count, ELL))
     print(
-        f"Time and errors of {asked.count} whirrs under each loss law, computed by `spincyl` with the tolerance"
+        f"Each row is a loss law, with the CPU time and the errors of {asked.count} whirrs of Euler's disk, computed by `spincyl` with the tolerance"
         f" {asked.tol:g} (`benches/whirr_lanes.py`). A whirr ends when friction\nstops the disk, when its face"
         " lands, or at the last requested time:\n"
     )

@@ -31,6 +31,11 @@ import spincyl as sc
 
 ELL, I1, I3 = TUBE.values()
 FOREVER = 3000.0
+#: the sentences above the table
+ROWS = """\
+Each row is a program with one tolerance, with the CPU time on one thread of a launch until the tube rolls. The error
+of a launch is the largest error of the six numbers at the end of the slip (time, inclination, w1, w2, w3 and heat, in
+natural units). Launches that nearly end in another way have errors above 1e-3, and are counted separately."""
 
 
 def least(run, rounds=5, seconds=6.0):
@@ -353,6 +358,7 @@ def main():
         f"The reference of the errors: {tested.size} launches computed in 80 bits. The {few.size} of them that were"
         f" also computed in 113 bits differ by at most {np.abs(truth[at] - wider).max():.1e}."
     )
+    print(ROWS)
     print(
         "\n| program | tolerance | time per launch (µs) | median error | 99 % of the errors are below | largest"
         " error below 1e-3 | number of launches with an error above 1e-3 | number of launches with a wrong ending |"
