@@ -122,8 +122,9 @@ def test_the_top_turns_over_and_hops_if_it_spins_half_as_fast_again():
 
 def test_the_spoon_spins_on_in_one_direction_and_turns_back_in_the_other():
     spoon, m = on_desk("spoon", "spoon", "m")
-    assert "the stone soon rattles, stops, and turns back; spun in the other direction, it spins five times as long" in said(
-        "spoon"
+    assert (
+        "the stone soon rattles, stops, and turns back; spun in the other direction, it spins five times as long"
+        in said("spoon")
     )
     t = np.linspace(0, 4, 4001)
     soon, late = (sc.roll(spoon, spoon.spinning(hertz=x, pitch=0.02), t) for x in (-0.8, 0.8))

@@ -15,12 +15,12 @@ import spincyl as sc
 MANY = 200
 #: the sentences above the second and the third table
 FIRST_HEAD = (
-    "CPU time of the import of spincyl, and of the first and second call of two functions after it,"
+    "The next table has the CPU time of the import of spincyl, and of the first and second call of two functions,"
     " in a new Python process:"
 )
 SCALING_HEAD = (
-    "How the time of a sweep depends on its size: rates at scattered points (`sc.sweep.points`) and motions to"
-    " t = 20 (`sc.sweep.roll`), on one and on two threads."
+    "The next table shows how the time of a sweep depends on its size, for rates at scattered points"
+    " (`sc.sweep.points`) and for motions to t = 20 (`sc.sweep.roll`), on one and on two threads."
 )
 
 
