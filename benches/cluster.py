@@ -22,7 +22,7 @@ import time
 
 import dask
 import numpy as np
-from cluster_jobs import JOBS, LINES, T, counted, head, lazy, rolled, row, wall, workers
+from cluster_jobs import JOBS, LINES, T, counted, head, kicked, lazy, rolled, row, wall, workers
 from cluster_store import memory, saved, scheduler
 
 import spincyl as sc
@@ -32,7 +32,7 @@ def sizes(seconds):
     """Motions per block of each job, as time and dask's bound on memory allow."""
     found = {}
     for name, start in JOBS.items():
-        sample = np.linspace(0, 1e6, 20_000 if name == "kicked" else 2_000).round()
+        sample = np.linspace(0, 1e6, 20_000 if start is kicked else 2_000).round()
         found[name] = sc.sweep.block_size(lambda x, of=start: rolled(of, x), sample, seconds=seconds)
     return found
 
@@ -86,24 +86,24 @@ def efficiency(client, blocks, count, rounds):
         # without the scheduler, whose time the plan counts separately
         each[name] = used["workers"] - used["scheduler"]
     told = (
-        "initial states, one thread (us)",
-        "`sweep.roll`, two threads (us)",
-        "dask, two threads (us)",
-        "dask, two workers (us)",
+        "time to draw the initial states, one thread (µs)",
+        "time of `sweep.roll`, two threads (µs)",
+        "time of dask, two threads (µs)",
+        "time of dask, two workers (µs)",
     )
     head(
-        "Efficiency: time per motion by the clock",
+        "Time per motion by the clock. Each row is a job, computed in four ways; the efficiency is the shorter time of two threads of one process over the time of two workers:",
         "job",
         "motions per block",
         "number of blocks",
         *told,
-        "efficiency (ratio)",
+        "efficiency (ratio of times)",
     )
     for line in walls:
         row(*line)
-    title = "CPU time per motion of all threads and processes; less affected by other work on the computer"
-    part = "client and scheduler, part of the time with two workers (us)"
-    head(title, "job", *told, part, "efficiency (ratio)")
+    title = "CPU time per motion of all threads and processes, in which other work on the computer counts less. Each row is a job, computed in the same four ways:"
+    part = "part of this time in client and scheduler (µs)"
+    head(title, "job", *told, part, "efficiency (ratio of times)")
     for line in cpus:
         row(*line)
     return each
@@ -112,7 +112,7 @@ def efficiency(client, blocks, count, rounds):
 def graph(blocks):
     """The number and the size of the tasks that the scheduler receives."""
     head(
-        "Sent: the description of a block",
+        "Bytes that the scheduler sends to the workers to describe a block. Each row is a job with blocks of one size:",
         "job",
         "motions per block",
         "tasks per block",
@@ -135,7 +135,7 @@ def spread(client, blocks, count):
     from distributed import get_task_stream
 
     head(
-        "Time of a block on a worker",
+        "Times in which a worker computes a block of the sweep. Each row is a job:",
         "job",
         "number of blocks",
         "median time (s)",
@@ -160,13 +160,19 @@ def plan(blocks, each, used, kept):
     """The time of 1e9 motions, from the figures above: the computing, and the work of the one scheduler."""
     told = (
         "motions per block",
-        "computing time (s)",
-        "scheduler, if results are counted (s)",
-        "scheduler, if results are saved (s)",
+        "time of the workers (s)",
+        "time of the scheduler if results are counted (s)",
+        "time of the scheduler if results are saved (s)",
         "size of the results (GB)",
-        "results made per second (MB/s)",
+        "results per second (MB/s)",
     )
-    head("1e9 motions", "job", "number of workers", "number of blocks", *told)
+    head(
+        "Times and sizes of a sweep of 1e9 motions, computed from the tables above. Each row is a job with a number of workers and of blocks:",
+        "job",
+        "number of workers",
+        "number of blocks",
+        *told,
+    )
     for name in JOBS:
         for workers_, times in ((2, 1), (100, 1), (1000, 1), (1000, 100)):
             size = blocks[name] * times
@@ -210,7 +216,7 @@ def main():
         spread(client, blocks, args.blocks)
         graph(blocks)
         used = scheduler(folder, 60)
-        kept = saved(cluster, folder, max(1, blocks["any start"] // 4), 24)
+        kept = saved(cluster, folder, max(1, blocks["any initial states"] // 4), 24)
     memory(blocks)
     plan(blocks, each, used, kept)
     if args.docs:

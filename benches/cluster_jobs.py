@@ -28,7 +28,7 @@ def any_start(number):
     return sc.Body.solid(0.1 + 2.9 * u), sc.State(0.1 + 1.4 * v, 3 * a - 1.5, 3 * b - 1.5, 3 * c - 1.5)
 
 
-JOBS = {"kicked": kicked, "any start": any_start}
+JOBS = {"kicked steady states": kicked, "any initial states": any_start}
 
 
 def rolled(start, number, **how):
@@ -60,7 +60,7 @@ def row(*cells):
 
 
 def head(title, *cells):
-    say(f"\n**{title}**\n")
+    say(f"\n{title}\n")
     row(*cells)
     say("|" + " --- |" * len(cells))
 

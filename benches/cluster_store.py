@@ -30,10 +30,10 @@ def scheduler(folder, count):
         "saved": lambda n: sc.sweep.save(lazy(kicked, 2 * n, 2), pathlib.Path(folder) / f"small{n}.zarr"),
     }
     head(
-        "The scheduler: cost of one more block, with blocks of two motions",
+        "Time that the scheduler takes for one more block, measured with blocks of two motions. Each row is a use of the results:",
         "use of the results",
         "CPU time of client and scheduler per block (ms)",
-        "time by the clock per block, two workers (ms)",
+        "time by the clock per block with two workers (ms)",
     )
     used = {}
     for name, run in ways.items():
@@ -53,10 +53,10 @@ def memory(blocks):
     told = (
         "results of a block (MB)",
         "memory of an idle worker (MB)",
-        "peak memory above that (MB)",
-        "ratio of this peak to the results",
+        "further memory of a busy worker at its peak (MB)",
+        "further memory over the results of a block",
     )
-    head("Memory of a worker", "job", "motions per block", *told)
+    head("Memory that a worker needs for a block. Each row is a job:", "job", "motions per block", *told)
     for name, start in JOBS.items():
         size = blocks[name]
         with workers() as (_, client):
@@ -88,7 +88,7 @@ def saved(cluster, folder, size, count):
     store, start = pathlib.Path(folder) / "sweep.zarr", any_start
     total = size * count
     head(
-        "Saved by two workers",
+        "A sweep from any initial states that two workers save in 24 blocks. Each row is something that happens meanwhile:",
         "what happens during the saving",
         "time by the clock (s)",
         "bytes per motion",

@@ -103,8 +103,8 @@ def table():
         "exact radius",
         "time of a turn in MuJoCo",
         "exact time of a turn",
-        "largest less smallest inclination in MuJoCo",
-        "precession at which the narrow end rises in MuJoCo, over the exact one",
+        "variation of the inclination in MuJoCo (largest minus smallest)",
+        "precession at which the narrow end rises in MuJoCo, over its exact value",
     ]
     yield head
     yield ["---"] * len(head)

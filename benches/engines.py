@@ -17,7 +17,7 @@ import numpy as np
 
 #: steps between two times of the file
 STEPS = (20, 80, 320)
-SCENES = ("cylinder", "coin_that_slips", "rattleback")
+SCENES = ("rolling_cylinder_of_radius_1_m", "coin_that_slips", "rolling_rattleback")
 
 
 def off(data, poses):
@@ -120,7 +120,7 @@ def main():
         "scene",
         "engine",
         "time step",
-        "largest error of the centre",
+        "largest error of the position of the centre",
         "largest error of the inclination",
     ]
     table = ["| " + " | ".join(head) + " |", "| --- " * len(head) + "|"]
@@ -139,7 +139,7 @@ def main():
                     break
                 centre, theta = off(data, poses)
                 cells = [
-                    f"{1e6 * (t[1] - t[0]) / steps:.3g} us",
+                    f"{1e6 * (t[1] - t[0]) / steps:.3g} µs",
                     f"{1000 * centre:.2g} mm",
                     f"{theta:.2g} rad",
                 ]

@@ -114,11 +114,13 @@ class Case:
 
 def cases():
     can = {"radius": 0.033, "height": 0.112}
-    yield Case("can, set down", **can, mu=0.3, until=0.4, drop=0.003, velocity=0.2, spin=3.0)
-    yield Case("can, pushed", **can, mu=0.3, until=0.7, velocity=1.0, spin=10.0)
-    yield Case("can, tipped by 6 degrees", **can, mu=0.6, until=1.2, tilt=np.radians(6))
-    yield Case("can, pushed, topples", **can, mu=0.7, until=0.2, velocity=2.0)
-    yield Case("puck", radius=0.0381, height=0.0254, mu=0.1, until=1.6, face="disc", velocity=1.0, spin=20.0)
+    yield Case("can that is set down", **can, mu=0.3, until=0.4, drop=0.003, velocity=0.2, spin=3.0)
+    yield Case("can that is pushed", **can, mu=0.3, until=0.7, velocity=1.0, spin=10.0)
+    yield Case("can that is tipped by 6 degrees", **can, mu=0.6, until=1.2, tilt=np.radians(6))
+    yield Case("can that is pushed and topples", **can, mu=0.7, until=0.2, velocity=2.0)
+    yield Case(
+        "sliding puck", radius=0.0381, height=0.0254, mu=0.1, until=1.6, face="disc", velocity=1.0, spin=20.0
+    )
 
 
 def table():
@@ -126,12 +128,12 @@ def table():
     yield [
         "scene",
         "shape in MuJoCo, or spincyl",
-        "time step",
+        "time step of MuJoCo",
         "largest error of the centre",
-        "largest error of the turn",
+        "largest error of the rotation about the vertical",
         "largest error of the inclination",
         "time of rest in MuJoCo",
-        "exact time of rest",
+        "time of rest in spincyl",
         "processor time",
     ]
     yield ["---"] * 9
@@ -152,9 +154,9 @@ def table():
                 yield [
                     case.name,
                     shape,
-                    f"{1e6 * step:g} us",
+                    f"{1e6 * step:g} µs",
                     f"{1e3 * off:.2g} mm",
-                    f"{np.degrees(np.abs(turned).max()):.2g} degrees" if case.spin else "",
+                    f"{float(f'{np.degrees(np.abs(turned).max()):.2g}'):g} degrees" if case.spin else "",
                     f"{np.degrees(steep):.2g} degrees",
                     *moves,
                     f"{1e3 * spent:.0f} ms",

@@ -24,12 +24,12 @@ def scenes():
     """A coin that slips from a push to its rest in rolling, along an axis of the box and across it, and one that rolls."""
     coin = sc.measured(outer_diameter="25.75mm", length="2.2mm", mass=0.0085)
     steady, unit = coin.steady(0.9), coin.scale.seconds(1.0) / coin.scale.radius
-    for name, (x, y) in {"along x": (0.5, 0.0), "at 45 degrees": (0.35, 0.35)}.items():
+    for name, (x, y) in {"along the x axis": (0.5, 0.0), "at 45 degrees to the x axis": (0.35, 0.35)}.items():
         start = coin.with_centre_velocity(steady, x * unit, y * unit)
         m = sc.roll(coin, start, np.linspace(0.0, 0.2, 101), contact=sc.Coulomb(0.2))
-        yield f"coin, pushed {name}", sc.scene(m)
+        yield f"coin that is pushed {name}", sc.scene(m)
     m = sc.roll(coin, steady.kicked(0.05), np.linspace(0.0, 0.2, 101))
-    yield "coin, rolls", sc.scene(m)
+    yield "coin that rolls and nutates", sc.scene(m)
 
 
 def lowest(body, turned):
@@ -94,13 +94,17 @@ def simulated(data, rate, box):
 
 
 def table():
-    yield ["scene", "limit of the friction", *(f"error at {rate / 1000:g} kHz" for rate in RATES)]
+    yield ["scene", "limit of the friction", *(f"error with {rate:g} steps per second" for rate in RATES)]
     yield ["---"] * (2 + len(RATES))
     for name, scene in scenes():
         for box in (False, True):
             off = [scene.compare(*simulated(scene.data, rate, box)) for rate in RATES]
             cells = [f"{1e3 * x.position.max():.2g} mm" for x in off]
-            yield [name, "a box (one for each axis)" if box else "a cone", *cells]
+            yield [
+                name,
+                "a box: one limit for each axis" if box else "a cone: one limit for the force",
+                *cells,
+            ]
 
 
 if __name__ == "__main__":

@@ -31,6 +31,27 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 _TARGETS = (1e-6, 1e-9, 1e-12)
+#: the sentences above the tables
+EXACT = """\
+Each row is a scene, computed by the exact solution up to the time t. The scenes are a tube near its steady state, a cylinder and Euler's disk that nod, a can that rocks from side to side,
+a cylinder of the critical aspect ratio, and a cylinder that leaves an unstable steady state slowly (the "slow saddle"). Errors are in natural units."""
+EACH = """\
+The next table has the time in which each method computes a scene up to the time t with an error of the final state below the allowed error; "-" means that
+none of its settings reaches this error."""
+LISTS = (
+    "The lists below have the points of the curves. Each point has the step or the tolerance, the time of the"
+    " motion, and the error of the final state."
+)
+COSTS = (
+    "Time that RK4 with a fixed step takes for one step of a rolling cylinder, by the outputs that are computed,"
+    " if only the last state or the state after every step is returned:"
+)
+#: heads of the columns with the times of a method
+TIMES = {
+    "RK4, fixed step": "time of RK4 with a fixed step",
+    "steps within tol": "time of RK4 with steps within a tolerance",
+    "SciPy DOP853": "time of SciPy's DOP853",
+}
 
 
 class Scene(NamedTuple):
@@ -73,7 +94,7 @@ def scenes() -> list[Scene]:
         Scene("near-steady tube", tube, tube.steady(math.radians(85)).kicked(0.05), 20.0),
         Scene("nutating cylinder", can, nutating, 20.0),
         Scene("Euler's disk", disk, disk.steady(0.2).kicked(0.02), 20.0),
-        Scene("rocking can 1e-3", can, State(0.3, 1.3e-3, 0.0, 0.0), 2.0),
+        Scene("rocking can", can, State(0.3, 1.3e-3, 0.0, 0.0), 2.0),
         Scene("critical aspect", critical, turning, 20.0),
         Scene("slow saddle", can, State(math.pi / 4 - 1e-3, 0.02, 0.0, 0.0), 8.0),
         Scene("nutating cylinder", can, nutating, 1e4),
@@ -167,10 +188,10 @@ def costs(steps: int = 20_000) -> list[tuple[str, float, float]]:
     last = steps * 1e-3
     every = np.arange(steps + 1) * 1e-3
     wants: dict[str, tuple[str, ...]] = {
-        "none": (),
-        "pose": ("pose",),
-        "force": ("force",),
-        "both": ("pose", "force"),
+        "no others": (),
+        "poses": ("pose",),
+        "contact forces": ("force",),
+        "poses and contact forces": ("pose", "force"),
     }
     # take turns, so that other load on the machine affects all of them
     best = {name: [math.inf, math.inf] for name in wants}
@@ -266,6 +287,7 @@ def _references(path: str) -> dict[tuple[str, float], tuple[Scene, Floats]]:
             if kind == "state" and contact == "rolling":
                 ell, i1, i3, *start, t = (float.fromhex(x) for x in numbers[:8])
                 end = np.array([float.fromhex(x) for x in numbers[8:12]])
+                name = name.removesuffix(" 1e-3")
                 found[name, t] = Scene(name, Body(ell, i1, i3), State(*start), t), end
     return found
 
@@ -277,7 +299,7 @@ def _at(points: list[Point], target: float) -> str:
 
 
 def _time(seconds: float) -> str:
-    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds / 1e-9:.3g} ns"
@@ -285,17 +307,24 @@ def _time(seconds: float) -> str:
 
 def table(rows: list[Row]) -> str:
     """Return Markdown: a table of all scenes, the points of all curves, and the cost of each output."""
-    head = ["scene", "t", "true error", "estimated error", "time of one call", "time of one more state"]
-    lines = ["The exact solution:", "", "| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    head = [
+        "scene",
+        "t (sqrt(R/g))",
+        "true error of the final state",
+        "estimated error",
+        "time of one call",
+        "time of one more state",
+    ]
+    lines = [EXACT, "", "| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
     for row in rows:
         true = "-" if row.true is None else f"{row.true:.1e}"
         cells = [row.scene.name, f"{row.scene.t:g}", true, f"{row.claimed:.1e}"]
         cells += [_time(row.call_seconds), _time(row.exact_seconds)]
         lines.append("| " + " | ".join(cells) + " |")
-    head = ["scene", "t", "largest error allowed", *rows[0].curves]
+    head = ["scene", "t (sqrt(R/g))", "largest error allowed", *(TIMES.get(x, x) for x in rows[0].curves)]
     lines += [
         "",
-        'Time of each method for an error of the final state below the allowed one; "-" means never:',
+        EACH,
         "",
     ]
     lines += ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
@@ -306,7 +335,7 @@ def table(rows: list[Row]) -> str:
             lines.append("| " + " | ".join(cells) + " |")
     lines += [
         "",
-        "Each point: setting (step or tolerance), time per trajectory, error of the final state.",
+        LISTS,
         "",
     ]
     for row in rows:
@@ -317,7 +346,10 @@ def table(rows: list[Row]) -> str:
             lines.append(f"- {name}: {listed}")
         lines.append("")
     lines += [
-        "| outputs of RK4 besides states | time per step, last state only (ns) | time per step, every state (ns) |",
+        COSTS,
+        "",
+        "| outputs besides the states | time per step if only the last state is returned (ns)"
+        " | time per step if every state is returned (ns) |",
         "| --- | --- | --- |",
     ]
     lines += [f"| {name} | {last:.0f} | {every:.0f} |" for name, last, every in costs()]
@@ -328,7 +360,7 @@ def table(rows: list[Row]) -> str:
 def read(text: str) -> list[Row]:
     """Return the rows that `table` has written, with the digits that it has."""
     lines = text.splitlines()
-    head = next(k for k, line in enumerate(lines) if line.startswith("| scene | t |"))
+    head = next(k for k, line in enumerate(lines) if line.startswith("| scene | t ("))
     cells = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines[head + 2 :]]
     known = {(scene.name, scene.t): scene for scene in scenes()}
     rows = []
@@ -348,7 +380,7 @@ def read(text: str) -> list[Row]:
 def _seconds(time: str) -> float:
     """Inverse of `_time`."""
     number, unit = time.split()
-    return float(number) * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[unit]
+    return float(number) * {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}[unit]
 
 
 def figure(rows: list[Row], path: Path) -> bool:

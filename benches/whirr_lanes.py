@@ -5,9 +5,9 @@
 Euler's disk (half its thickness is 0.17 of its radius, a sharp rim) starts at 0.25 to 0.35 rad, every other
 one with a nutation, and is followed to its end, or to t = 60 where it has none by then. The coefficients are
 such that drift alone would need 20 to 30 units of time from 0.3 rad to 0.03 rad, so that all laws take about
-equally long. Times are least CPU times of one thread. `off` is the largest difference of the end and of the
-last state from the same sweep at the tolerance 1e-12, divided by the number if it is above 1; the estimated errors must
-cover it.
+equally long. Times are least CPU times of one thread. The true error is the largest difference of the end and of the
+last state from the same sweep at the tolerance 1e-12, divided by the number if it is above 1; the estimated error
+must be larger. The table has the medians of both.
 """
 
 import argparse
@@ -21,18 +21,27 @@ import spincyl as sc
 ELL = 0.0128 / 0.0751
 DISK = sc.Body.solid(ELL)
 UNTIL = 60.0
+#: how a whirr ends, in words
+ENDS = {
+    sc.Ending.STOPS: "friction stops the disk",
+    sc.Ending.FACE: "the face lands",
+    sc.Ending.DONE: "last requested time",
+}
 LAWS = {
-    "dry contour": {sc.loss.DryContour: 1.0},
-    "viscous contour": {sc.loss.ViscousContour: 1.0},
+    "dry friction along the rim": {sc.loss.DryContour: 1.0},
+    "viscous friction along the rim": {sc.loss.ViscousContour: 1.0},
     "rolling resistance": {sc.loss.RollingResistance: 1.0},
-    "drilling": {sc.loss.Drilling: 1.0},
-    "air, linear": {sc.loss.AirLinear: 1.0},
-    "air, quadratic": {sc.loss.AirQuadratic: 1.0},
-    "film of air": {sc.loss.AirFilm: 1.0},
-    "boundary layer": {sc.loss.BoundaryLayer: 1.0},
-    "dry contour and film": {sc.loss.DryContour: 0.5, sc.loss.AirFilm: 0.5},
-    "rolling resistance and air": {sc.loss.RollingResistance: 0.5, sc.loss.AirQuadratic: 0.5},
-    "viscous contour, drilling, layer": {
+    "drilling friction": {sc.loss.Drilling: 1.0},
+    "air resistance, linear in the speed": {sc.loss.AirLinear: 1.0},
+    "air resistance, quadratic in the speed": {sc.loss.AirQuadratic: 1.0},
+    "viscous film of air below the face": {sc.loss.AirFilm: 1.0},
+    "boundary layer of the air": {sc.loss.BoundaryLayer: 1.0},
+    "dry friction along the rim and film of air": {sc.loss.DryContour: 0.5, sc.loss.AirFilm: 0.5},
+    "rolling resistance and quadratic air resistance": {
+        sc.loss.RollingResistance: 0.5,
+        sc.loss.AirQuadratic: 0.5,
+    },
+    "viscous friction along the rim, drilling friction and boundary layer": {
         sc.loss.ViscousContour: 0.4,
         sc.loss.Drilling: 0.3,
         sc.loss.BoundaryLayer: 0.3,
@@ -67,11 +76,13 @@ def main():
     state, share = starts(asked.count)
     body = sc.Body.solid(np.full(asked.count, ELL))
     print(
-        f"Whirrs under every loss law, {asked.count} of each, tol {asked.tol:g} (`benches/whirr_lanes.py`):\n"
+        f"Each row is a loss law, with the CPU time and the errors of {asked.count} whirrs of Euler's disk, computed by `spincyl` with the tolerance"
+        f" {asked.tol:g} (`benches/whirr_lanes.py`). A whirr ends when friction\nstops the disk, when its face"
+        " lands, or at the last requested time:\n"
     )
     print(
-        "| loss law | time per whirr (us) | time over the time of the fastest law |"
-        " `Ending` and number of the whirrs that end with it | largest estimated error | largest true error |\n"
+        "| loss law | time per whirr (µs) | time over that of the fastest law |"
+        " how the whirrs end, and how many | median estimated error | median true error |\n"
         + "| --- " * 6
         + "|"
     )
@@ -99,7 +110,10 @@ def main():
             apart = np.abs(a - b) / np.maximum(1, np.abs(b))
             off = np.maximum(off, np.where(np.isnan(a) & np.isnan(b), 0, apart))
         kinds, counts = np.unique(found["status"].values, return_counts=True)
-        ends = ", ".join(f"{sc.Ending(int(k)).name.lower()} {n}" for k, n in zip(kinds, counts, strict=True))
+        ends = ", ".join(
+            f"{ENDS.get(sc.Ending(int(k)), sc.Ending(int(k)).name)}: {n}"
+            for k, n in zip(kinds, counts, strict=True)
+        )
         rows.append((name, least / asked.count * 1e6, ends, np.median(found["error"].values), np.median(off)))
     best = min(us for _, us, *_ in rows)
     for name, us, ends, claim, off in rows:

@@ -214,7 +214,9 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     """The reasons as a table, with the numbers of their combinations."""
     of = letters(found)
     lines = [
-        "| letter in the tables | why the combination is refused | combinations refused for one motion | refused for many motions |",
+        "Each row is a reason to refuse a combination, with the number of combinations that are refused for it:",
+        "",
+        "| letter of the reason | reason | number of combinations refused for one motion | number refused for many motions |",
         "| --- | --- | --- | --- |",
     ]
     for physics in (True, False):
@@ -239,19 +241,45 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
 
 #: the sentence before each table
 _KEY = (
-    'Each cell says whether a loss law (row) with a contact (column) is computed: "yes", "on the table" (computed, but only'
-    " on the\ntable, as explained above), or the letter of the reason why it is refused."
+    "Each row is a loss law, and each column a law of friction of the contact. A cell says whether motions with both are"
+    ' computed: "yes", "on the\ntable" (only as long as the body touches the table), or "no" with the letter of the reason'
+    " (A to D in the table above)."
 )
+#: heads of the columns
+_HEADS = {
+    "rolling": "rolling without slip",
+    "smooth": "no friction",
+    "Coulomb": "Coulomb friction",
+    "static": "Coulomb friction with larger static friction",
+    "viscous": "viscous friction",
+    "patch": "Coulomb friction on a patch",
+    "your own": "friction law of your own",
+}
+#: restitutions in words
+_WITH = {
+    ("none",): "without impacts",
+    ("0", "0.5"): "with impacts",
+    ("none", "0", "0.5"): "with impacts or without",
+}
+#: loss laws in words
+_ROWS = {
+    "none": "no losses",
+    "a sum": "rolling resistance and linear air resistance",
+    "your own": "loss law of your own",
+}
 
 
 def grid(of: dict[tuple[str, ...], str], body: str, e: str) -> str:
     """Losses by tables for a body and a restitution, where one motion and many agree."""
-    head = "| losses (row) and contact (column) | " + " | ".join(TABLES) + " |"
+    head = "| loss law | " + " | ".join(_HEADS[x] for x in TABLES) + " |"
     lines = [head, "| --- |" + " --- |" * len(TABLES)]
     for law in LOSSES:
         both = [{of[body, table, law, e, way] for way in WAYS} for table in TABLES]
-        row = [" or ".join(sorted({"": "yes", "*": "on the table"}.get(x, x) for x in some)) for some in both]
-        lines.append(f"| {'no losses' if law == 'none' else law} | " + " | ".join(row) + " |")
+        row = [
+            " or ".join(sorted({"": "yes", "*": "on the table"}.get(x, f"no ({x})") for x in some))
+            for some in both
+        ]
+        lines.append(f"| {_ROWS.get(law, law)} | " + " | ".join(row) + " |")
     return "\n".join([*lines, ""])
 
 
@@ -265,7 +293,8 @@ def tables(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
         alike = collections.defaultdict(list)
         for e in dict.fromkeys(e for _, e in keys):
             alike[tuple(body for body, other in keys if other == e)].append(e)
-        heads = [f"{', '.join(names)} with restitution {' or '.join(es)}" for names, es in alike.items()]
+        heads = [f"{', '.join(names)}, {_WITH[tuple(es)]}" for names, es in alike.items()]
+        heads[0] = heads[0][0].upper() + heads[0][1:]
         text.append(f"## {'; '.join(heads)}\n\n{_KEY}\n\n{table}")
     return "\n".join(text)
 

@@ -94,7 +94,7 @@ def test_the_rows_that_are_read_from_the_page_are_those_that_were_written(monkey
     monkeypatch.setattr(report, "costs", lambda: [])
     rows = report.read(PAGE)
     assert [(row.scene.name, row.scene.t) for row in rows] == [(x.name, x.t) for x in report.scenes()]
-    for line in report.table(rows).split("| outputs of RK4")[0].splitlines():
+    for line in report.table(rows).split("Time that RK4")[0].splitlines():
         assert line in PAGE
     points = rows[0].curves["RK4, fixed step"]
     assert (points[0].setting, points[0].error) == (0.04, 3.5e-9) and len(points) == 14

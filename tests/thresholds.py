@@ -14,12 +14,12 @@ number of phases, the last numbers, and the estimated error. Two results agree i
 their times and numbers differ by no more than the sum of both estimated errors. A motion computed to the last requested
 time may have an ending just there. If an estimated error is infinite, any two results agree.
 
-    change                      any bit of the result differs
-    of the estimated errors     largest difference, in units of the sum of both estimated errors
-    beyond the estimated errors how many differ by more than that, and by how much
-    with other phases           how many have more or fewer phases
-    with another ending         how many have another ending
-    without an estimated error  how many have an infinite estimated error now, and did not before
+    motions change                      any bit of the result differs
+    of the estimated errors             largest difference, in units of the sum of both estimated errors
+    by more than the estimated errors   how many differ by more than this sum, and the largest difference
+    have another number of phases       how many have more or fewer phases
+    have another ending                 how many have another ending
+    have no estimated error any more    how many have an infinite estimated error now, and did not before
 
 The command names every scene with another ending or beyond the estimated errors. It fails if there are more of them than
 on the page. The last two columns have the numbers of motions that change if the threshold is divided and multiplied by 1000: they
@@ -28,6 +28,7 @@ show whether any scene comes near the threshold.
 
 import argparse
 import collections
+import csv
 import math
 import os
 import re
@@ -40,6 +41,8 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "thresholds.md"
+#: constants in the files of the page that decide no event, with the reason
+LEFT_OUT = ROOT / "tests" / "left_out.csv"
 PROGRAM = ROOT / "benches" / "thresholds.rs"
 SCENES = 2800
 FACTORS = {"halved": 0.5, "doubled": 2.0}
@@ -89,12 +92,10 @@ def thresholds(page):
     return [Threshold(*(x.strip("`") for x in row[:3]), tuple(row[5:])) for row in rows if len(row) > 5]
 
 
-def left_out(page):
-    """File and name of each constant that the page leaves out, from the rows with three columns."""
-    rows = [cells(line) for line in page.splitlines() if line.startswith("| `")]
-    return [
-        (row[1].strip("`"), name) for row in rows if len(row) == 3 for name in re.findall(r"`(\w+)`", row[0])
-    ]
+def left_out():
+    """File and name of each constant that the page leaves out."""
+    with LEFT_OUT.open(encoding="utf-8", newline="") as file:
+        return [(row["file"], name) for row in csv.DictReader(file) for name in row["constants"].split(", ")]
 
 
 def constants(text):
@@ -258,26 +259,30 @@ def said(changes):
     """A cell of the page."""
     moved = [x for x in changes if x.moves]
     if not moved:
-        return "nothing"
+        return "no motion changes"
     beyond, most = [x.off for x in moved if x.ratio > 1], max(x.ratio for x in moved)
-    words = [f"{len(moved)} change"]
+    words = ["1 motion changes" if len(moved) == 1 else f"{len(moved)} motions change"]
     if beyond:
-        words.append(f"{len(beyond)} beyond the estimated errors, by at most {max(beyond):.0e}")
+        words.append(f"{len(beyond)} by more than the estimated errors, at most by {max(beyond):.0e}")
     elif most:
-        words.append(f"at most {most:.1g} of the estimated errors")
+        words.append(f"at most by {most:.1g} of the estimated errors")
     for count, what in (
-        (sum(x.phases for x in moved), "with other phases"),
-        (sum(x.otherwise for x in moved), "with another ending"),
-        (sum(x.lost for x in moved), "without an estimated error"),
+        (sum(x.phases for x in moved), "another number of phases"),
+        (sum(x.otherwise for x in moved), "another ending"),
+        (sum(x.lost for x in moved), "no estimated error any more"),
     ):
         if count:
-            words.append(f"{count} {what}")
+            words.append(f"{count} {'has' if count == 1 else 'have'} {what}")
     return "; ".join(words)
 
 
 def allowed(cell):
     """Numbers of motions in a cell: beyond the estimated errors, with another ending, without an estimated error."""
-    names = ("beyond the estimated errors", "with another ending", "without an estimated error")
+    names = (
+        "by more than the estimated errors",
+        "ha(?:s|ve) another ending",
+        "ha(?:s|ve) no estimated error",
+    )
     return [sum(int(x) for x in re.findall(rf"(\d+) {name}", cell)) for name in names]
 
 

@@ -13,6 +13,15 @@ from scene import T, ensemble, errors, points
 import spincyl as sc
 
 MANY = 200
+#: the sentences above the second and the third table
+FIRST_HEAD = (
+    "The next table has the CPU time of the import of spincyl, and of the first and second call of two functions,"
+    " in a new Python process:"
+)
+SCALING_HEAD = (
+    "The next table shows how the time of a sweep depends on its size, for rates at scattered points"
+    " (`sc.sweep.points`) and for motions to t = 20 (`sc.sweep.roll`), on one and on two threads."
+)
 
 
 def repeated(run, n=MANY):
@@ -33,17 +42,19 @@ def measure(quick):
     start = np.array([[float(getattr(begin, name)) for name in ("theta", "w1", "w2", "w3")]])
     truth = heyoka_jobs.reference(ell, start)
     jobs = {
-        ("np.sin(x)", ""): lambda: np.sin(1.3),
-        ("body.rate(theta)", ""): lambda: body.rate(1.3),
-        ("spincyl", "exact"): lambda: sc.roll(body, begin, times),
-        ("spincyl, pose and contact", "exact"): lambda: sc.roll(body, begin, times, want=("pose", "force")),
-        ("spincyl RK4", 0.02): lambda: sc.roll(body, begin, times, step=0.02),
+        ("`np.sin(x)`, a sine in NumPy", ""): lambda: np.sin(1.3),
+        ("`body.rate(theta)`, a rate", ""): lambda: body.rate(1.3),
+        ("spincyl, one motion", "exact solution"): lambda: sc.roll(body, begin, times),
+        ("spincyl, one motion with poses and contact forces", "exact solution"): lambda: sc.roll(
+            body, begin, times, want=("pose", "force")
+        ),
+        ("spincyl RK4, one motion", "step 0.02"): lambda: sc.roll(body, begin, times, step=0.02),
     }
     for tol in (1e-6, 1e-10, 1e-12, 1e-15):
-        jobs["heyoka, alone", tol] = heyoka_jobs.alone(ell, start, tol)
+        jobs["heyoka, one motion", f"tolerance {tol:g}"] = heyoka_jobs.alone(ell, start, tol)
     if has("scipy"):
         for tol in (1e-6, 1e-9, 1e-12):
-            jobs["SciPy DOP853", tol] = scipy_jobs.finals(ell, start, tol)
+            jobs["SciPy DOP853, one motion", f"tolerance {tol:g}"] = scipy_jobs.finals(ell, start, tol)
     counts = {who: 5 if who[0].startswith("SciPy") else MANY for who in jobs}
     least, found = alternate(
         {who: repeated(run, counts[who]) for who, run in jobs.items()}, 3 if quick else 20, 1.0
@@ -59,26 +70,32 @@ def measure(quick):
             shown.setdefault(who, []).append((setting, us, max(off, 1e-16)))
         rows.append((who, setting, us, off))
     text = table(
-        ("call from Python", "tolerance or method", "time of one call (us)", "error of the state at t = 20"),
+        (
+            "call from Python",
+            "tolerance, step of RK4, or method",
+            "time of one call (µs)",
+            "error of the state at t = 20",
+        ),
         rows,
     )
     sine, rate = (
-        next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("np.sin", "body.rate")
+        next(us for who, _, us, _ in rows if who.startswith(name)) for name in ("`np.sin", "`body.rate")
     )
     text += f"\n`body.rate(theta)` takes {rate / sine:.1f} times as long as `np.sin(x)`.\n\n"
-    text += "First and second calls in a new process, in seconds of CPU time:\n\n"
-    text += table(("call", "s"), first_calls()) + "\n"
+    text += FIRST_HEAD + "\n\n"
+    text += table(("call in a new process", "CPU time (s)"), first_calls()) + "\n"
+    text += SCALING_HEAD + "\n\n"
     text += table(
         (
-            "job",
+            "computation",
             "number of points or motions",
-            "time of each on 1 thread (ns)",
-            "time of each on 2 threads (ns)",
-            "ratio of both times",
+            "time per point or motion on 1 thread (ns)",
+            "time per point or motion on 2 threads (ns)",
+            "time on 1 thread over time on 2 threads",
         ),
         scaling(quick),
     )
-    best = compared("one motion", shown, (1e-6, 1e-10, 1e-12), "us")
+    best = compared("a single motion", shown, (1e-6, 1e-10, 1e-12), "µs")
     return {"text": text, "best": best}
 
 
@@ -99,8 +116,10 @@ def first_calls():
     """Rows (what, CPU seconds) of a fresh process: the import, and the first and second call of each kind."""
     runs = [subprocess.run([sys.executable, "-c", FIRST], capture_output=True, check=True) for _ in range(3)]
     least = np.min([[float(x) for x in run.stdout.split()] for run in runs], axis=0)
-    names = ("import spincyl", "first roll", "second roll", "first sweep.roll", "second sweep.roll")
-    return [(name, f"{seconds:.3g}") for name, seconds in zip(names, least, strict=True)]
+    names = [f"{n} call of `sc.{name}`" for name in ("roll", "sweep.roll") for n in ("first", "second")]
+    return [
+        (name, f"{seconds:.3g}") for name, seconds in zip(["`import spincyl`", *names], least, strict=True)
+    ]
 
 
 def scaling(quick):
@@ -111,7 +130,7 @@ def scaling(quick):
         flat = {"rate": np.zeros(count)}
         jobs = {n: lambda n=n, a=at, o=of, f=flat: sc.sweep.points(a, o, out=f, threads=n) for n in (1, 2)}
         ns = [seconds / count * 1e9 for seconds in alternate(jobs, 5)[0].values()]
-        rows.append(("scattered points", f"{count:.0e}", *ns, ns[0] / ns[1]))
+        rows.append(("rates at scattered points", f"{count:,}", *ns, ns[0] / ns[1]))
     for count in (2**14,) if quick else (2**14, 2**17, 2**20):
         ell, start = ensemble(0.05, count)
         body, state = sc.Body.solid(ell), sc.State(*start.T)
@@ -119,7 +138,7 @@ def scaling(quick):
             n: lambda n=n, b=body, y=state: sc.sweep.roll(b, y, T, beyond=True, threads=n) for n in (1, 2)
         }
         ns = [seconds / count * 1e9 for seconds in alternate(jobs, 5)[0].values()]
-        rows.append(("motions", str(count), *ns, ns[0] / ns[1]))
+        rows.append(("motions", f"{count:,}", *ns, ns[0] / ns[1]))
     return rows
 
 

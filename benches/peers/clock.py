@@ -36,7 +36,9 @@ def said(x):
     if x is None or x != x:
         return ""
     if isinstance(x, float):
-        return f"{x:.3g}" if 1e-3 <= abs(x) < 1e5 else f"{x:.1e}"
+        if x == 0 or 1e3 <= abs(x) < 1e5:
+            return f"{x:.0f}"
+        return f"{x:.3g}" if 1e-3 <= abs(x) < 1e3 else f"{x:.1e}".replace(".0e", "e")
     return str(x)
 
 

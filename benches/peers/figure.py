@@ -12,7 +12,7 @@ JOB = "wide nutation, kick 0.4"  # the set of motions whose times are drawn agai
 #: the programs that are drawn, with their colours, and where in points their names stand from their last points
 PROGRAMS = {
     "spincyl": ("#0072b2", (0, -32)),
-    "heyoka, 8 lanes": ("#d55e00", (0, -32)),
+    "heyoka, 8 motions at a time": ("#d55e00", (0, -32)),
     "numba RK4": ("#009e73", (-12, 14)),
     "SciPy DOP853": ("#555555", (-10, 14)),
 }
@@ -21,12 +21,12 @@ JOBS = {
     "small nutation, kick 0.05": "rolling, it hardly nods",
     "wide nutation, kick 0.4": "rolling, it nods",
     "very wide nutation, kick 0.8": "rolling, it nods widely",
-    "random starts (99 %)": "rolling, any start",
-    "map, points, 1 thread": "steady states, scattered",
-    "whirrs": "a coin that whirrs, losses",
-    "one motion": "a single motion",
-    "launches with friction": "slipping until it rolls",
-    "map, grid, 1 thread": "steady states on a grid",
+    "random initial states": "rolling, any start",
+    "rates at scattered points, 1 thread": "steady states, scattered",
+    "coins that whirr": "a coin that whirrs, losses",
+    "a single motion": "a single motion",
+    "launches of a tube with friction": "slipping until it rolls",
+    "rates on a grid, 1 thread": "steady states on a grid",
 }
 
 
@@ -39,7 +39,7 @@ def rows_of(page, section):
 
 
 def curves(page):
-    """Errors and times in us of the programs at `JOB`, from coarse to fine."""
+    """Errors and times in µs of the programs at `JOB`, from coarse to fine."""
     found = {}
     for job, program, _, cost, off, *_ in rows_of(page, "motions"):
         if job == JOB and program in PROGRAMS:
@@ -73,7 +73,7 @@ def draw(page, path=PICTURE):
     left.set_title("65,536 cylinders that roll and nod", size=19, pad=12)
     found = ratios(page)
     for k, ratio in enumerate(found.values()):
-        colour = PROGRAMS["spincyl"][0] if ratio >= 1 else PROGRAMS["heyoka, 8 lanes"][0]
+        colour = PROGRAMS["spincyl"][0] if ratio >= 1 else PROGRAMS["heyoka, 8 motions at a time"][0]
         right.plot((1, ratio), (k, k), color=colour, lw=2.5)
         right.plot(ratio, k, "o", color=colour, ms=11)
         shift, side = (12, "left") if ratio >= 1 else (-12, "right")

@@ -47,19 +47,19 @@ HEAD = (
     "time in spincyl without AVX-512",
     "time in the fastest other program",
     "fastest other program",
-    "spincyl is so many times as fast",
-    "without AVX-512 so many times as fast",
+    "time in that program over time in spincyl",
+    "the same ratio without AVX-512",
 )
 # the rows in the README: the best case, the general one, and slips and losses, whoever is faster
 QUOTED = (
     ("small nutation", 1e-6),
     ("small nutation", 1e-12),
     ("very wide", 1e-12),
-    ("random starts", 1e-6),
-    ("random starts", 1e-10),
+    ("random initial states", 1e-6),
+    ("random initial states", 1e-10),
     ("launches", 1e-8),
-    ("whirrs", 1e-8),
-    ("one motion", 1e-6),
+    ("coins that whirr", 1e-8),
+    ("a single motion", 1e-6),
 )
 
 

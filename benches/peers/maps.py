@@ -117,7 +117,7 @@ def measure(quick, also=()):
             key=lambda r: r[:2],
         ),
     )
-    text += "\n" + table(
+    text += "\nErrors of the rates on the grid:\n\n" + table(
         (
             "program",
             "largest error over 1 + kappa_c (ulp)",
@@ -134,7 +134,8 @@ def measure(quick, also=()):
             if peers:
                 ns, who = min(peers)
                 mine = times[job, "spincyl", n]
-                what = f"map, {job}, {n} thread" + "s" * (n > 1)
+                where = "on a grid" if job == "grid" else "at scattered points"
+                what = f"rates {where}, {n} thread" + "s" * (n > 1)
                 best.append((what, None, f"{mine:.3g} ns", f"{ns:.3g} ns", who, ns / mine))
     return {"text": text, "best": best}
 

@@ -36,10 +36,10 @@ def value(row, *words):
 
 
 def contestants(rows):
-    """{contestant: [(setting, microseconds, error)]} of a table with the columns program, tolerance, us ..., max ...."""
+    """{contestant: [(setting, microseconds, error)]} of a table with the columns program, tolerance, time per ..., largest error ...."""
     found = {}
     for row in rows:
-        name, us, off = row.get("program", ""), value(row, "us", "µs"), value(row, "max")
+        name, us, off = row.get("program", ""), value(row, "time per"), value(row, "largest error")
         if name and us == us and 0 < off < 1:
             found.setdefault(name, []).append((row.get("tolerance", ""), us, off))
     return found
@@ -57,21 +57,21 @@ def measure(script, title, quick, count):
     points = contestants(found[0]) if found else {}
     bare = {name for name in points if name.startswith("spincyl without errors")}
     errors = (1e-6, 1e-8, 1e-10)
-    best = compared(title, {name: points[name] for name in points.keys() - bare}, errors, "us")
+    best = compared(title, {name: points[name] for name in points.keys() - bare}, errors, "µs")
     if bare:
         peers = {name for name in points if not name.startswith("spincyl")}
         best += compared(
-            f"{title}, errors=False", {name: points[name] for name in bare | peers}, errors, "us"
+            f"{title}, errors=False", {name: points[name] for name in bare | peers}, errors, "µs"
         )
     return {"text": told.stdout.strip() + "\n", "best": best}
 
 
 def launches(quick):
-    return measure("slip.py", "launches with friction", quick, 3000)
+    return measure("slip.py", "launches of a tube with friction", quick, 3000)
 
 
 def whirrs(quick):
-    told = measure("whirr.py", "whirrs", quick, 3000)
+    told = measure("whirr.py", "coins that whirr", quick, 3000)
     laws = [sys.executable, HERE.parent / "whirr_lanes.py", "--count", "64" if quick else "1024"]
     told["text"] += "\n" + subprocess.run(laws, capture_output=True, text=True, check=True).stdout
     return told
