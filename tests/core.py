@@ -3,8 +3,8 @@
 import atexit
 import base64
 import functools
-import gzip
 import json
+import lzma
 import shutil
 import struct
 import subprocess
@@ -55,7 +55,7 @@ def node():
 
 def ask(packed, questions):
     """The answers of a packed core to a list of (name, numbers)."""
-    core = base64.b64encode(gzip.decompress(packed)).decode()
+    core = base64.b64encode(lzma.decompress(packed)).decode()
     given = [
         (name, base64.b64encode(struct.pack(f"{len(x)}d", *map(float, x))).decode()) for name, x in questions
     ]

@@ -1,12 +1,11 @@
 """Build and pack the cores of the live page, with a record of the sources that they were built from.
 
-core.wasm.gz has what every page needs; core.friction.wasm.gz also has friction and losses.
+core.wasm.lzma has what every page needs; core.friction.wasm.lzma also has friction and losses.
 
     python web/build.py            builds both if rustup has the target, else says how to install it
     python web/build.py FOLDER     writes them there, for a comparison; the committed ones stay
 """
 
-import gzip
 import hashlib
 import json
 import os
@@ -15,9 +14,12 @@ import sys
 import tomllib
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).parents[1] / "python/spincyl/studio/pages"))
+from compressed import compressed
+
 HOME = Path(__file__).parents[1]
 COMMITTED = HOME / "python/spincyl/studio/pages/cores"
-CORES = {"core.wasm.gz": "--no-default-features", "core.friction.wasm.gz": "--all-features"}
+CORES = {"core.wasm.lzma": "--no-default-features", "core.friction.wasm.lzma": "--all-features"}
 RECORD = COMMITTED / "core.json"
 TARGET = "wasm32-unknown-unknown"
 MISSING = f"the live page keeps its committed cores: `rustup target add {TARGET}` to build it"
@@ -91,7 +93,7 @@ def main(to=None):
     made = {"sources": sources(), "rustc": said("rustc", "--version"), "crates": crates()}
     for name, features in CORES.items():
         core = built(features)
-        packed = gzip.compress(core, 9, mtime=0)
+        packed = compressed(core)
         (folder / name).write_bytes(packed)
         made[name] = hashlib.sha256(core).hexdigest()
         print(f"{name}: {len(core)} bytes, packed {len(packed)}")
