@@ -1,6 +1,8 @@
 """The packed content of the live page: a browser unpacks it byte by byte; damaged content is refused."""
 
 import base64
+import hashlib
+import json
 import lzma
 from importlib.resources import files
 
@@ -35,15 +37,24 @@ OPEN = """text => {
   try { const [first, second] = unpacked(text); return [first, second].map(tell); } catch (e) { return e.message; }
 }"""
 
+#: The core of a text, as the loader joins it.
+JOIN = """text => {
+  let all = "";
+  for (const b of joined(unpacked(text).next().value)) all += String.fromCharCode(b);
+  return btoa(all);
+}"""
+
 
 @pytest.fixture(scope="module")
 def opened(chromium):
     """A function that unpacks a text in a browser."""
     page = chromium.new_page()
     page.set_default_timeout(chromium.patience)
-    loader = text("play.lzma.js") + text("play.loader.js").split("async function opened")[0]
+    loader = (
+        text("play.lzma.js") + text("play.join.js") + text("play.loader.js").split("async function opened")[0]
+    )
     page.add_script_tag(content=loader)
-    yield lambda packed: page.evaluate(OPEN, packed)
+    yield lambda packed, how=OPEN: page.evaluate(how, packed)
     page.close()
 
 
@@ -52,6 +63,13 @@ def test_what_was_packed_is_unpacked(opened, kind):
     first, second = KINDS[kind], b"and the rest"
     for pieces in ((first, second), (second, first)):
         assert tuple(map(base64.b64decode, opened(packed(*map(compressed, pieces))))) == pieces
+
+
+@pytest.mark.parametrize("name", CORES)
+def test_the_core_is_joined_as_it_was_built(opened, name):
+    core = opened(packed(COMMITTED.joinpath(name).read_bytes()), JOIN)
+    known = json.loads(COMMITTED.joinpath("core.json").read_text())[name]
+    assert hashlib.sha256(base64.b64decode(core)).hexdigest() == known
 
 
 def test_what_is_torn_anywhere_is_refused_or_not_needed(opened):

@@ -98,7 +98,7 @@ _BODY = (
     "gravity",
 )
 #: The core without friction and losses, and the one with them.
-CORES = "core.wasm.lzma", "core.friction.wasm.lzma"
+CORES = "core.lzma", "core.friction.lzma"
 #: Permissions and style of the frame in a notebook.
 SANDBOX = "allow-scripts allow-downloads"
 FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
@@ -251,7 +251,7 @@ class Play:
             "picture": picture,
             "given": _json(self._told),
             "packed": _packed_page(self.friction),
-            "loader": script(["page.night.js", "play.lzma.js", "play.loader.js"]),
+            "loader": script(["page.night.js", "play.lzma.js", "play.join.js", "play.loader.js"]),
         }
         return filled("play.html", fields)
 

@@ -47,7 +47,7 @@ async function started(core) {
 }
 async function opened() {
   // a browser compiles the core while the rest is unpacked
-  const pieces = unpacked($("packed").textContent), starting = started(pieces.next().value);
+  const pieces = unpacked($("packed").textContent), starting = started(joined(pieces.next().value));
   const [style, page, script] = new TextDecoder().decode(pieces.next().value).split("\0"), core = await starting;
   // inserts all visible parts at once, so that nothing moves
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));

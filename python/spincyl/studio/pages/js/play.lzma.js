@@ -1,10 +1,10 @@
-// Decodes LZMA with lc = 3 and lp = pb = 0, after the specification of the format, which is in the public domain.
+// Decodes LZMA with lc = 1 and lp = pb = 0, after the specification of the format, which is in the public domain.
 // Damage is not noticed here, except an early end; the checksum of the result tells.
 
 function expanded(data, size) {
   // chances of a 0 in 2048ths; first those of each of 12 states: a match, an old distance, which one (3), of one byte
   const slots = 72, near = 328, align = 456, fresh = 472, again = 746, literals = 1020;
-  const chances = new Uint16Array(literals + 8 * 768).fill(1024), out = new Uint8Array(size), old = new Uint32Array(4);
+  const chances = new Uint16Array(literals + 2 * 768).fill(1024), out = new Uint8Array(size), old = new Uint32Array(4);
   let at = 5, n = 0, state = 0;
   // range and code, in an array of integers since a number above 2^30 would be an object
   const now = Uint32Array.of(-1, new DataView(data.buffer, data.byteOffset).getUint32(1));
@@ -52,7 +52,7 @@ function expanded(data, size) {
     return found + reversed(align, 4);
   };
   const literal = () => {
-    const i = literals + 768 * (out[n - 1] >> 5);
+    const i = literals + 768 * (out[n - 1] >> 7);
     let found = 1;
     for (let other = out[n - old[0] - 1], same = state > 6; same && found < 256; other <<= 1) {
       const one = bit(i + 256 + (other << 1 & 256) + found);
