@@ -13,6 +13,7 @@ usage: python benches/play.py [FOLDER] [--scenes WORD ...]
 import argparse
 import gzip
 import json
+import lzma
 import tempfile
 from importlib.resources import files
 from pathlib import Path
@@ -146,7 +147,10 @@ def main():
             core = files("spincyl.studio.pages").joinpath("cores", name).read_bytes()
             path = sc.play(friction=bool(friction)).save(Path(temporary) / f"play{friction}.html")
             paths["whole page" if friction else "lean page"] = path
-            print(f"{name:22} {len(gzip.decompress(core))} bytes, gzip {len(core)};", end=" ")
+            print(
+                f"{name:22} {int.from_bytes(lzma.decompress(core)[:4], 'big')} bytes, LZMA {len(core)};",
+                end=" ",
+            )
             print(f"page {path.stat().st_size} bytes, gzip {len(gzip.compress(path.read_bytes()))}")
         chromium = p.chromium.launch(executable_path=browser.executable(), args=FLAGS)
         if args.folder:

@@ -3,8 +3,8 @@
 import atexit
 import base64
 import functools
-import gzip
 import json
+import lzma
 import shutil
 import struct
 import subprocess
@@ -12,11 +12,14 @@ import subprocess
 import browser
 import numpy as np
 
+from spincyl.studio.pages.joined import text
+
 # numbers are sent as bytes in both directions, since JSON has no infinity
 ASK = """async (core, questions) => {
+  JOINED
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
   const text = bytes => { let all = ""; for (const b of bytes) all += String.fromCharCode(b); return btoa(all); };
-  const { exports: x } = (await WebAssembly.instantiate(bytes(core), {})).instance;
+  const { exports: x } = (await WebAssembly.instantiate(joined(bytes(core)), {})).instance;
   return questions.map(([name, given]) => {
     const numbers = [...new Float64Array(bytes(given).buffer)];
     const code = x[name](...numbers);
@@ -24,7 +27,7 @@ ASK = """async (core, questions) => {
     const map = name === "map" && !code ? view(x.codes(), numbers[0] * numbers[1]) : "";
     return [code, view(x.out(), 8 * x.len()), map, view(x.words(), x.words_len())];
   });
-}"""
+}""".replace("JOINED", text("play.join.js"))
 # answers each line of input by a line
 NODE = """(async () => {
   for await (const line of require("readline").createInterface({ input: process.stdin })) {
@@ -55,7 +58,7 @@ def node():
 
 def ask(packed, questions):
     """The answers of a packed core to a list of (name, numbers)."""
-    core = base64.b64encode(gzip.decompress(packed)).decode()
+    core = base64.b64encode(lzma.decompress(packed)).decode()
     given = [
         (name, base64.b64encode(struct.pack(f"{len(x)}d", *map(float, x))).decode()) for name, x in questions
     ]

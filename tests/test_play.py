@@ -1,7 +1,7 @@
 """The live page as Python writes it: its state, its content, and refusals."""
 
-import gzip
 import json
+import lzma
 import math
 import zlib
 from importlib.resources import files
@@ -14,11 +14,15 @@ from playing import ask, settled, state
 
 import spincyl as sc
 from spincyl.cli import main
+from spincyl.studio.pages.compressed import compressed
 from spincyl.studio.pages.joined import script, style
 from spincyl.studio.pages.languages import numbered
 from spincyl.studio.pages.play import _SCRIPTS, _SCRIPTS_WITHOUT_FRICTION, CORES
 from spincyl.studio.pages.words import body_of, losses_of, restitution_of, scenes, state_of, table_of
 from spincyl.studio.shape import IVORY
+
+#: The format of a page's content.
+RAW = {"id": lzma.FILTER_LZMA1, "dict_size": 1 << 21, "lc": 1, "lp": 0, "pb": 0}
 
 
 def unpacked(page):
@@ -29,9 +33,14 @@ def unpacked(page):
     ]
     bits = np.unpackbits(np.array([sevens], np.uint8).T, axis=1)[:, 1:].ravel()
     data = np.packbits(bits[: bits.size // 8 * 8]).tobytes()
-    length, size = (int.from_bytes(data[i : i + 4], "big") for i in (0, 4))
-    whole = zlib.decompress(data[8 : 8 + length])
-    return *whole[size:].decode().split("\0"), whole[:size]
+    contents = []
+    for _ in range(2):
+        length, size, sum_ = (int.from_bytes(data[i : i + 4], "big") for i in (0, 4, 8))
+        content = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=[RAW]).decompress(data[12 : 12 + length])
+        assert (len(content), zlib.adler32(content)) == (size, sum_)
+        contents, data = [*contents, content], data[12 + length :]
+    core, rest = contents
+    return *rest.decode().split("\0"), core
 
 
 @pytest.mark.parametrize("friction", [False, True])
@@ -41,14 +50,14 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     code = script(_SCRIPTS if friction else _SCRIPTS_WITHOUT_FRICTION)
     words = json.loads(shown.split('id="words">')[1].split("</script>")[0])["en"][1]
     assert (look, text) == (style(["play.css"]), numbered(code, words)) and '<canvas id="map"' in shown
-    assert core == gzip.decompress(
+    assert core == lzma.decompress(
         files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes()
     )
-    assert core.startswith(b"\0asm")
+    assert core[40:44] == b"\0asm"
     # seven bits per byte, and a loader
-    small = [zlib.compress(what, 9) for what in (core, (look + shown + text).encode())]
+    small = [compressed(what) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000
-    assert len(page.encode()) < (518_000 if friction else 183_000)
+    assert len(page.encode()) < (352_000 if friction else 149_000)
     assert "\r" not in page and "\0" not in page, "a browser would change these"
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org/2000/svg", "")
 

@@ -33,14 +33,14 @@ def sources():
 
 def test_the_committed_core_was_built_from_these_sources():
     made = json.loads((COMMITTED / "core.json").read_text())
-    assert made["sources"] == sources(), "core.wasm.gz is older than src: run `make web`"
+    assert made["sources"] == sources(), "core.lzma is older than src: run `make web`"
 
 
 @pytest.fixture(
     scope="module", params=[COMMITTED, ANEW] if ANEW.exists() else [COMMITTED], ids=lambda of: of.name
 )
 def ask(request):
-    path = request.param / "core.friction.wasm.gz"
+    path = request.param / "core.friction.lzma"
     return lambda *questions: core.ask(path.read_bytes(), questions)
 
 
@@ -49,7 +49,7 @@ def test_the_lean_core_gives_the_same_answers_but_knows_no_friction():
     asked = [map_asked, ("tube", (2.5, 0.0, 0.0)), ("start", (*state, 0.0, 0.0, 0.0, ENDLESS, 0.0, 20.0, 9, NONE)),
              ("follow", (9, 0.0, 20.0)), ("start", (*state, 0.0, 0.0, 2.0, 0.3, 0.0, 20.0, 9, NONE))]  # fmt: skip
     lean, full = (
-        core.ask((COMMITTED / name).read_bytes(), asked) for name in ("core.wasm.gz", "core.friction.wasm.gz")
+        core.ask((COMMITTED / name).read_bytes(), asked) for name in ("core.lzma", "core.friction.lzma")
     )
     assert [x.code for x in lean] == [0, 0, 0, 0, 12] and full[-1].code == 0
     for one, other in zip(lean[:-1], full[:-1], strict=True):
@@ -274,7 +274,7 @@ def test_a_slope_needs_friction_in_the_core_and_stays_until_it_is_set_again(ask)
     assert [x.code for x in (tilted, on_patch, upright, level)] == [0, 0, 1, 0]
     assert upright.words[0] == "slope"
     assert tilted.out[0] == 1.0 and level.out[0] == 0.0
-    *_, refused = core.ask((COMMITTED / "core.wasm.gz").read_bytes(), asked[:3])
+    *_, refused = core.ask((COMMITTED / "core.lzma").read_bytes(), asked[:3])
     assert refused.code == 12
 
 

@@ -1,26 +1,47 @@
 """Build and pack the cores of the live page, with a record of the sources that they were built from.
 
-core.wasm.gz has what every page needs; core.friction.wasm.gz also has friction and losses.
+core.lzma has what every page needs; core.friction.lzma also has friction and losses. The code of a page has
+to be short, so each is built from a copy of the sources in which no function has to be inlined, and is split.
 
     python web/build.py            builds both if rustup has the target, else says how to install it
     python web/build.py FOLDER     writes them there, for a comparison; the committed ones stay
 """
 
-import gzip
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).parent))
+sys.path.append(str(Path(__file__).parents[1] / "python/spincyl/studio/pages"))
+from compressed import compressed
+from split import Split
+
 HOME = Path(__file__).parents[1]
 COMMITTED = HOME / "python/spincyl/studio/pages/cores"
-CORES = {"core.wasm.gz": "--no-default-features", "core.friction.wasm.gz": "--all-features"}
+CORES = {"core.lzma": "--no-default-features", "core.friction.lzma": "--all-features"}
 RECORD = COMMITTED / "core.json"
 TARGET = "wasm32-unknown-unknown"
 MISSING = f"the live page keeps its committed cores: `rustup target add {TARGET}` to build it"
+#: What a build reads.
+READ = [
+    "Cargo.*",
+    "build.rs",
+    "README.md",
+    "docs/rust.md",
+    "src/**/*.rs",
+    "web/Cargo.toml",
+    "web/src/*.rs",
+    "examples/*.rs",
+    "benches/*.rs",
+    "benches/Cargo.toml",
+]
+#: What the library inlines everywhere for its speed, a page inlines where the compiler finds that it pays.
+INLINED = "inline(always)", "inline"
 FLAGS = ["-C", "target-feature=+simd128", "-C", "link-arg=--compress-relocations"]
 
 
@@ -48,16 +69,29 @@ def can():
     return Path(said("rustc", "--print", "target-libdir", "--target", TARGET)).is_dir()
 
 
-def built(features):
-    """The module, rebuilt if anything has changed."""
+def copied():
+    """A copy of what a build reads, without functions that have to be inlined."""
+    copy = HOME / "target/short"
+    shutil.rmtree(copy, ignore_errors=True)
+    for path in (path for pattern in READ for path in HOME.glob(pattern)):
+        to = copy / path.relative_to(HOME)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        to.write_text(path.read_text(encoding="utf-8").replace(*INLINED), encoding="utf-8")
+    return copy
+
+
+def built(features, copy):
+    """The module."""
     cargo = os.environ.get("CARGO_HOME") or Path.home() / ".cargo"
     flags = [*FLAGS, f"--remap-path-prefix={cargo}=cargo"]
-    environment = os.environ | {"CARGO_ENCODED_RUSTFLAGS": "\x1f".join(flags)}
+    environment = os.environ | {
+        "CARGO_ENCODED_RUSTFLAGS": "\x1f".join(flags),
+        "CARGO_TARGET_DIR": str(HOME / "target"),
+    }
     environment.pop("RUSTFLAGS", None)
     wanted = ["--quiet", "--profile", "web", "--package", "spincyl-web", "--target", TARGET, features]
-    subprocess.run(["cargo", "build", *wanted], cwd=HOME, env=environment, check=True)
-    folder = json.loads(said("cargo", "metadata", "--format-version", "1", "--no-deps"))["target_directory"]
-    return (Path(folder) / TARGET / "web/spincyl_web.wasm").read_bytes()
+    subprocess.run(["cargo", "build", *wanted], cwd=copy, env=environment, check=True)
+    return (HOME / "target" / TARGET / "web/spincyl_web.wasm").read_bytes()
 
 
 def crates():
@@ -89,9 +123,10 @@ def main(to=None):
         checking = os.environ.get("CI", "").lower() not in ("", "0", "false", "no")
         return 1 if checking and not to else 0
     made = {"sources": sources(), "rustc": said("rustc", "--version"), "crates": crates()}
+    copy = copied()
     for name, features in CORES.items():
-        core = built(features)
-        packed = gzip.compress(core, 9, mtime=0)
+        core = built(features, copy)
+        packed = compressed(Split(core).data())
         (folder / name).write_bytes(packed)
         made[name] = hashlib.sha256(core).hexdigest()
         print(f"{name}: {len(core)} bytes, packed {len(packed)}")

@@ -7,7 +7,7 @@
   const able = () => {
     try {
       new WebAssembly.Module(Uint8Array.from(SIMD));
-      return "DecompressionStream" in window && !!document.createElement("canvas").getContext("webgl2");
+      return !!document.createElement("canvas").getContext("webgl2");
     } catch { return false; }
   };
   const figures = [...document.querySelectorAll("figure.live")];

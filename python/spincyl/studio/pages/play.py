@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
-from gzip import decompress
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
@@ -28,10 +27,11 @@ from spincyl._state import State
 from spincyl._table import Table
 from spincyl.loss import KINDS
 from spincyl.studio.cards import drawing
-from spincyl.studio.pages.deflated import packed
+from spincyl.studio.pages.compressed import compressed
 from spincyl.studio.pages.fits import check_bounces, check_circles, check_contents, check_table
 from spincyl.studio.pages.joined import filled, frame, line, script, style, text
 from spincyl.studio.pages.languages import numbered, table, words_of
+from spincyl.studio.pages.packed import packed
 from spincyl.studio.pages.words import (
     body_of,
     losses_of,
@@ -98,7 +98,7 @@ _BODY = (
     "gravity",
 )
 #: The core without friction and losses, and the one with them.
-CORES = "core.wasm.gz", "core.friction.wasm.gz"
+CORES = "core.lzma", "core.friction.lzma"
 #: Permissions and style of the frame in a notebook.
 SANDBOX = "allow-scripts allow-downloads"
 FRAME = "width:100%;height:clamp(600px,100vh - 130px,900px);border:0"
@@ -251,7 +251,7 @@ class Play:
             "picture": picture,
             "given": _json(self._told),
             "packed": _packed_page(self.friction),
-            "loader": script(["page.night.js", "play.loader.js"]),
+            "loader": script(["page.night.js", "play.lzma.js", "play.join.js", "play.loader.js"]),
         }
         return filled("play.html", fields)
 
@@ -372,9 +372,9 @@ def play(
 
     Notes
     -----
-    The page needs WebAssembly with SIMD, WebGL 2 and DecompressionStream (Chrome 91, Firefox 113, Safari
-    16.4, or later). Other browsers show a picture and the reason. The address of the page contains all
-    settings, as in "#ell=2.5&theta=1.3".
+    The page needs WebAssembly with SIMD, and WebGL 2 (Chrome 91, Firefox 89, Safari 16.4, or later). Other
+    browsers show a picture and the reason. The address of the page contains all settings, as in
+    "#ell=2.5&theta=1.3".
 
     Examples
     --------
@@ -437,5 +437,6 @@ def _body_and_script(friction: bool) -> tuple[str, str]:
 @cache
 def _packed_page(friction: bool) -> str:
     """The core and all text of the page, in the format that the loader unpacks."""
-    core = decompress(files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes())
-    return packed(core, "\0".join([style(["play.css"]), *_body_and_script(friction)]).encode())
+    core = files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes()
+    rest = "\0".join([style(["play.css"]), *_body_and_script(friction)])
+    return packed(core, compressed(rest.encode()))

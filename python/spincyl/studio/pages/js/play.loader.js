@@ -1,4 +1,4 @@
-// Opens the page: unpacks the core, the style, the page and the script.
+// Opens the page: unpacks the core, and the style, the page and the script.
 
 const $ = id => document.getElementById(id);
 const fail = why => {
@@ -20,24 +20,35 @@ function bytesOf(text) {
   }
   return bytes.subarray(0, n);
 }
-// two byte strings from a text: a header has the lengths of the deflated stream and of the first string; the
-// stream has a checksum
-async function unpacked(text) {
-  if (!window.DecompressionStream) throw Error("This page needs DecompressionStream, which this browser does not have.");
+// the content of one piece of a text after the other; a piece is the length of its stream, that of its content, a checksum of
+// the content (Adler-32), and the stream
+function* unpacked(text) {
   try {
-    const packed = bytesOf(text), head = new DataView(packed.buffer), end = 8 + head.getUint32(0), size = head.getUint32(4);
-    const stream = new Blob([packed.subarray(8, end)]).stream().pipeThrough(new DecompressionStream("deflate"));
-    const all = new Uint8Array(await new Response(stream).arrayBuffer());
-    return [all.subarray(0, size), all.subarray(size)];
+    const packed = bytesOf(text);
+    for (let at = 0; ;) {
+      const head = new DataView(packed.buffer, at, 12), [length, size, sum] = [0, 4, 8].map(i => head.getUint32(i));
+      const content = expanded(packed.subarray(at + 12, at += 12 + length), size);
+      if (sumOf(content) !== sum) throw Error();
+      yield content;
+    }
   } catch { throw Error("This page is incomplete or damaged."); }
+}
+function sumOf(bytes) {
+  let plain = 1, weighted = 0;
+  for (const byte of bytes) {
+    plain = (plain + byte) % 65521;
+    weighted = (weighted + plain) % 65521;
+  }
+  return weighted * 65536 + plain;
 }
 async function started(core) {
   try { return (await WebAssembly.instantiate(core, {})).instance.exports; }
   catch (e) { throw Error("This page needs WebAssembly, which this browser or the page around it does not allow (" + e.message + ")."); }
 }
 async function opened() {
-  const [packed, text] = await unpacked($("packed").textContent), core = await started(packed);
-  const [style, page, script] = new TextDecoder().decode(text).split("\0");
+  // a browser compiles the core while the rest is unpacked
+  const pieces = unpacked($("packed").textContent), starting = started(joined(pieces.next().value));
+  const [style, page, script] = new TextDecoder().decode(pieces.next().value).split("\0"), core = await starting;
   // inserts all visible parts at once, so that nothing moves
   document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
   document.body.insertAdjacentHTML("afterbegin", page);
