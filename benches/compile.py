@@ -50,7 +50,7 @@ fn main() -> Result<(), spincyl::Error> {
     for _ in 0..100 {
         assert!(roll(&body, &start, &times)?.error < 1e-9);
     }
-    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose().with_force();
     for _ in 0..20 {
         let thrown = Start::from(start).with_slip([0.3, -0.5]);
         assert!(roll_with(&body, thrown, &times, &ask, || true)?.unwrap().error < 1e-6);
@@ -88,7 +88,7 @@ fn main() -> Result<(), spincyl::Error> {
     let mut least = [f64::INFINITY; 3];
     for _ in 0..5 {
         let began = Instant::now();
-        let job = Job::new(&[20.0]).with_ask(Ask::default().with_beyond(true));
+        let job = Job::new(&[20.0]).with_ask(Ask::default().with_beyond());
         roll(&starts, &job, MotionOutput::new(&mut error, &mut method, &mut status), 1, |_| true)?;
         least[0] = least[0].min(began.elapsed().as_secs_f64());
         let began = Instant::now();

@@ -17,7 +17,7 @@
 //!
 //! // In a steady state the axis goes round at a constant rate.
 //! let body = Body::solid(2.5)?;
-//! let (start, ask) = (steady::state(&body, 1.3)?, Ask::default().with_pose(true));
+//! let (start, ask) = (steady::state(&body, 1.3)?, Ask::default().with_pose());
 //! let motion = roll_with(&body, start, &[0.0, 10.0], &ask, || true)?.expect("not interrupted");
 //! let poses = motion.poses.expect("they are wanted");
 //! assert!((poses[1].phi.radians() - 10.0 * start.precession()).abs() < 1e-10);

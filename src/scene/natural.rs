@@ -97,12 +97,12 @@ pub(super) struct KnownMotion {
 impl Natural {
     /// A body with its start at time 0.
     pub(super) fn of_body(body: Body, start: Start, ask: Ask) -> Self {
-        Self::Body { body, start: start.with_time(0.0), ask: ask.with_pose(true).with_force(true) }
+        Self::Body { body, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
 
     /// A stone with its start at time 0.
     pub(super) fn of_stone(stone: Ellipsoid, start: Start<StoneState>, ask: Ask) -> Self {
-        Self::Stone { stone, start: start.with_time(0.0), ask: ask.with_pose(true).with_force(true) }
+        Self::Stone { stone, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
 
     /// The options of the motion.
@@ -127,7 +127,7 @@ impl Natural {
         }
         match self {
             Self::Body { body, start, ask } => {
-                let ask = ask.with_pose(true).with_force(true);
+                let ask = ask.with_pose().with_force();
                 let m = motion::roll_with(body, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
                 let rows: Option<_> = (0..m.states.len()).map(|i| body_at(&m, body, &ask, i)).collect();
@@ -135,7 +135,7 @@ impl Natural {
                 told(m, rows.ok_or(UNTOLD)?, bounds, &ask)
             }
             Self::Stone { stone: of, start, ask } => {
-                let ask = ask.with_pose(true).with_force(true);
+                let ask = ask.with_pose().with_force();
                 let m = stone::roll(of, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
                 let rows: Option<Vec<Known>> =

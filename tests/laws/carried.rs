@@ -44,7 +44,7 @@ fn motions(body: &Body, next: &mut impl FnMut() -> f64) -> Vec<Motion> {
     let all = asks.into_iter().filter_map(|ask| {
         let start =
             if ask == asks[3] || ask == asks[4] { drawn(next).with_slip([0.0; 2]) } else { drawn(next) };
-        roll_with(body, start, &times, &ask.with_pose(true).with_force(true), || true).ok().flatten()
+        roll_with(body, start, &times, &ask.with_pose().with_force(), || true).ok().flatten()
     });
     all.collect()
 }

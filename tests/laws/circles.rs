@@ -125,7 +125,7 @@ fn a_cup_that_is_rolled_moves_round_the_apex_of_its_cone_and_keeps_its_energy() 
     let w_h = rate * s / c;
     let state = State { theta: body.theta_end(), w1: c * w_h, w2: 0.0, w3: -s * w_h };
     let round = std::f64::consts::TAU / rate;
-    let ask = Ask::on(Friction::coulomb(0.9)).with_restitution(0.0).with_pose(true);
+    let ask = Ask::on(Friction::coulomb(0.9)).with_restitution(0.0).with_pose();
     let m = roll_with(&body, Start::from(state), &[0.0, 0.5 * round, round], &ask, || true).unwrap().unwrap();
     let at = |i: usize| m.poses.as_ref().unwrap()[i].contact_point;
     let [first, far, back] = [0, 1, 2].map(at);

@@ -162,7 +162,7 @@ fn case(of: &Value) -> Case {
         name: of["name"].as_str().unwrap().to_string(),
         circles: of["circles"].as_array().unwrap().iter().map(circle).collect(),
         moments: [moments[0], moments[1]],
-        ask: Ask::on(friction).with_losses(losses).with_restitution(0.0).with_pose(true),
+        ask: Ask::on(friction).with_losses(losses).with_restitution(0.0).with_pose(),
         start,
         apex: of["apex"].as_f64(),
         rows: of["rows"].as_array().unwrap().iter().map(row).collect(),

@@ -69,7 +69,7 @@ impl OnTwo {
 }
 
 fn ask(mu: f64) -> Ask {
-    Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_pose(true).with_force(true)
+    Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_pose().with_force()
 }
 
 fn kinds(m: &Motion) -> Vec<Kind> {

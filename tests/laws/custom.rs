@@ -61,7 +61,7 @@ fn a_couple_of_the_air_that_a_user_writes_moves_a_body_as_that_of_the_library_do
             w.map(|x| -(b + b2 * fast) * x)
         };
         let losses = Losses::of(Law::AirLinear, b) + Losses::of(Law::AirQuadratic, b2);
-        let ask = Ask::on(table).with_pose(true).with_force(true);
+        let ask = Ask::on(table).with_pose().with_force();
         let theirs = own(&body, start, &times, &ask, Custom::default().with_couple(&air)).unwrap();
         let ours = roll_with(&body, start, &times, &ask.with_losses(losses), || true).unwrap().unwrap();
         let [off, claimed] = apart(&theirs, &ours);
@@ -214,7 +214,7 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     assert_eq!(refused(Custom::default().with_friction(&kind), Ask::default()).0, "contact");
     let patch = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 0.05 };
     assert_eq!(refused(Custom::default().with_friction(&kind), Ask::on(patch)).0, "patch");
-    assert_eq!(refused(Custom::default(), Ask::default().with_beyond(true)).0, "beyond");
+    assert_eq!(refused(Custom::default(), Ask::default().with_beyond()).0, "beyond");
 }
 
 /// The couple of a law that counts its calls after the check, which is over at the first call with the state at the start.
@@ -377,7 +377,7 @@ fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in
             [y.w1, y.w2, y.w3].map(|w| -(0.02 + 0.1 * normal + 0.05 * normal * normal) * w)
         };
         let (t, h) = (0.05, 1e-4);
-        let ask = Ask::on(table).with_force(true);
+        let ask = Ask::on(table).with_force();
         let found = own(&body, start, &[t - h, t, t + h], &ask, Custom::default().with_couple(&law));
         let Ok(m) = found else { continue };
         let kinds = m.path.as_ref().map(|path| path.kinds.clone()).unwrap_or_default();

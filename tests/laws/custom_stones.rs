@@ -153,7 +153,7 @@ fn a_law_of_a_stone_that_is_wrong_is_refused_by_name_and_one_that_fails_ends_the
     assert_eq!(name(of(&|speed: f64| 0.3 - speed, &ask)), "mu");
     assert_eq!(name(of(&|_: f64| 0.4, &ask)), "static");
     assert_eq!(name(of(&|_: f64| 0.2, &Ask::default())), "contact");
-    assert_eq!(name(of(&|_: f64| 0.2, &ask.with_beyond(true))), "beyond");
+    assert_eq!(name(of(&|_: f64| 0.2, &ask.with_beyond())), "beyond");
     let patch = Ask::on(Friction::Coulomb { mu: 0.3, fixed: 0.3, patch: 0.05 });
     assert_eq!(name(of(&|_: f64| 0.3, &patch)), "patch");
     let still = |_: &Body, _: &State, _: f64| [0.0; 3];

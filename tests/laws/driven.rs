@@ -69,7 +69,7 @@ fn a_ball_that_a_force_shakes_rolls_with_five_sevenths_of_its_acceleration() {
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
     for since in [0.0, 2.5] {
         let times: Vec<f64> = (0..=40).map(|i| since + 0.5 * f64::from(i)).collect();
-        let ask = Ask::on(Friction::coulomb(0.5)).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(0.5)).with_pose();
         let m = driven(&ball, start.with_time(since), &times, &ask, &shake).unwrap();
         assert_eq!((m.ending(), m.states.len()), (Ending::Done, 41));
         for (t, pose) in times.iter().zip(m.poses.unwrap()) {
@@ -91,7 +91,7 @@ fn a_motor_turns_a_hoop_faster_until_friction_no_longer_holds_its_rim() {
     let motor = |_: &Body, now: &Moment| Push::new(Vector2::zeros(), Vector3::new(0.0, 0.0, k * now.time));
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 1.0 });
     let times = [0.0, 5.0, 10.0, 20.0];
-    let ask = Ask::on(Friction::coulomb(mu)).with_force(true);
+    let ask = Ask::on(Friction::coulomb(mu)).with_force();
     let m = driven(&hoop, start, &times, &ask, &motor).unwrap();
     for (t, y) in times.iter().zip(&m.states).take(3) {
         assert!((y.w3 - (1.0 + 0.25 * k * t * t)).abs() < 1e-9);
@@ -117,7 +117,7 @@ fn a_constant_force_moves_a_body_as_a_slope_does() {
         let pace = slope.cos().sqrt();
         let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
         let pull = |_: &Body, _: &Moment| Push::new(Vector2::new(slope.tan(), 0.0), NO_COUPLE);
-        let ask = Ask::on(table).with_pose(true);
+        let ask = Ask::on(table).with_pose();
         let m = driven(&body, start, &times, &ask, &pull);
         let State { theta, w1, w2, w3 } = start.state;
         let fast = State { theta, w1: pace * w1, w2: pace * w2, w3: pace * w3 };
@@ -130,7 +130,7 @@ fn a_constant_force_moves_a_body_as_a_slope_does() {
             .with_heading(start.heading)
             .with_place(start.place);
         let later: Vec<f64> = times.iter().map(|t| t / pace).collect();
-        let ask = Ask::on(table).with_pose(true).with_slope(slope);
+        let ask = Ask::on(table).with_pose().with_slope(slope);
         let of = roll_with(&body, on_slope, &later, &ask, || true);
         let (m, of) = match (m, of) {
             (Ok(m), Ok(Some(of))) => (m, of),
@@ -218,7 +218,7 @@ fn a_table_that_is_told_from_another_direction_has_the_same_motion() {
         let (body, start, table) = any(&mut r);
         let by = 5.0 * r();
         let times: Vec<f64> = (0..=16).map(|i| 0.25 * f64::from(i)).collect();
-        let ask = Ask::on(table).with_pose(true);
+        let ask = Ask::on(table).with_pose();
         let start = start.with_place([0.0; 2]);
         let turned = |body: &Body, now: &Moment| {
             let back = nalgebra::Rotation2::new(-by);

@@ -59,7 +59,7 @@ fn a_launch_costs_some_thousand_evaluations_until_it_rolls() {
         let state = State { theta: core::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 };
         let slip = [0.0, (body.ell() - body.i1() / body.ell()) * w1 - w3];
         for (tol, most) in TOLERANCES.into_iter().zip([3_000, 4_700, 7_200]) {
-            let ask = Ask::on(Table::Rubs(Friction::coulomb(mu))).with_stop_at_rolling(true);
+            let ask = Ask::on(Table::Rubs(Friction::coulomb(mu))).with_stop_at_rolling();
             let m = followed(&body, Start::from(state).with_slip(slip), 200.0, ask, tol);
             assert!(m.evaluations <= most, "{w1} {tol:e}: {} evaluations, {most} allowed", m.evaluations);
         }
@@ -275,7 +275,8 @@ fn a_uniform_ball_that_rolls_under_dry_friction_costs_nothing_and_stops_when_its
         // With poses the same ball is integrated.
         let times = [0.7, 30.0, 0.5 * (ends[0] + ends[1]), ends[0] - 1.0];
         let [known, stepped] = [false, true].map(|pose| {
-            let ask = ask.with_pose(pose).with_method(Method::Tolerance(1e-12));
+            let mut ask = ask.with_method(Method::Tolerance(1e-12));
+            ask.pose = pose;
             roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap()
         });
         assert!(stepped.evaluations > 1000);
@@ -294,7 +295,7 @@ fn the_pose_of_a_ball_whose_slip_has_died_on_a_patch_costs_what_its_turns_cost()
     let state = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };
     let friction = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 1e-3 };
     let start = Start::from(state).with_slip([2.0, 2.0]);
-    let ask = Ask::on(friction).with_pose(true);
+    let ask = Ask::on(friction).with_pose();
     let [early, late] = [20.0, 40.0].map(|until| followed(&ball, start, until, ask, 1e-6));
     let each = (late.evaluations - early.evaluations) / 20;
     assert!(each <= 330, "{each} evaluations in a unit of time");
@@ -348,7 +349,7 @@ fn an_output_more_changes_nothing_in_the_others_and_no_count_of_outputs_is_too_l
     let body = Body::solid(2.5).unwrap();
     let start = steady::state(&body, 1.3).unwrap().kicked(0.05);
     let all: Vec<f64> = (0..=1 << 16).map(|i| 3e-4 * f64::from(i)).collect();
-    let ask = Ask::default().with_pose(true);
+    let ask = Ask::default().with_pose();
     let rolled = |times: &[f64]| {
         let mut looks = 0;
         let go_on = || {

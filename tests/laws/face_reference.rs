@@ -65,7 +65,7 @@ fn case(of: &Value) -> Case {
     let laws = laws.into_iter().chain([Law::AirLinear, Law::AirQuadratic]);
     let losses = laws.zip(numbers(&of["losses"])).fold(Losses::NONE, |all, (law, x)| all.with(law, x));
     let face = if of["face"] == "disc" { Face::Disc } else { Face::Ring };
-    let ask = Ask::on(friction).with_losses(losses).with_face(face).with_pose(true).with_force(true);
+    let ask = Ask::on(friction).with_losses(losses).with_face(face).with_pose().with_force();
     let [theta, w1, w2, w3, along, across] = numbers(&of["start"])[..] else { panic!("six numbers") };
     let start = Start::from(State { theta, w1, w2, w3 }).with_slip([along, across]);
     let aloft = [number(&of["height"]), number(&of["lift"])];

@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body that starts in the air, or on the table where `aloft` is none, with poses.
 pub(crate) fn hops(body: &Body, start: &Start, table: Table, e: f64, times: &[f64]) -> Motion {
-    let ask = Ask::on(table).with_restitution(e).with_pose(true);
+    let ask = Ask::on(table).with_restitution(e).with_pose();
     roll_with(body, *start, times, &ask, || true).unwrap().unwrap()
 }
 
@@ -86,7 +86,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_rim_is_ever_below_the_t
     for k in 0..drawn(300) {
         let (body, start, mu, e) = any_drop(&mut r);
         let times: Vec<f64> = (0..120).map(|k| 0.05 * f64::from(k)).collect();
-        let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(other_law(k)).with_pose(true);
+        let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(other_law(k)).with_pose();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| account(&body, &m, i);

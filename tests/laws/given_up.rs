@@ -97,11 +97,11 @@ fn steps_of_fixed_length_and_steps_within_a_tolerance_obey_the_same_limit() {
 #[test]
 fn beyond_its_events_a_motion_is_given_up_too() {
     let (ball, spun) = (Body::ball(-0.1, 0.41, 0.4).unwrap(), state(1.0, 0.0, 0.0, 2e3));
-    let ask = Ask::on(Table::Smooth).with_losses(Losses::of(Law::AirLinear, 1e-12)).with_beyond(true);
+    let ask = Ask::on(Table::Smooth).with_losses(Losses::of(Law::AirLinear, 1e-12)).with_beyond();
     let m = roll_with(&ball, spun, &[150.0], &ask.with_max_evaluations(5_000), || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Evaluations)));
     let stone = Ellipsoid::uniform([1.0, 1.0, 1.0]).unwrap();
-    let ask = Ask::default().with_beyond(true).with_max_evaluations(5_000);
+    let ask = Ask::default().with_beyond().with_max_evaluations(5_000);
     let m = stone::roll(&stone, stone.spinning(2e3, 0.0, 0.0), &[1e3], &ask, || true).unwrap().unwrap();
     assert_eq!(m.limit, Some(Limit::Evaluations));
 }
@@ -142,8 +142,8 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let tube = Body::solid(2.5).unwrap();
     let nods = steady::state(&tube, 1.3).unwrap().kicked(0.05);
     for ask in [
-        Ask::default().with_pose(true),
-        Ask::default().with_force(true),
+        Ask::default().with_pose(),
+        Ask::default().with_force(),
         Ask::default().with_method(Method::Tolerance(1e-9)),
     ] {
         let all: Vec<f64> = (0..100_000).map(|i| 0.01 * f64::from(i)).collect();
@@ -170,7 +170,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let part = part.unwrap().unwrap();
     assert!(part.is_interrupted() && !part.states.is_empty() && part.states.len() < 8000);
     // Before its first step a motion has nothing to return.
-    let forces = Ask::default().with_force(true).with_method(Method::Tolerance(1e-9));
+    let forces = Ask::default().with_force().with_method(Method::Tolerance(1e-9));
     assert!(
         roll_with(&tube, nods, &times(8000), &forces, || false).unwrap().is_none_or(|m| m.is_interrupted())
     );

@@ -295,7 +295,7 @@ fn a_can_that_is_dropped_flat_rises_level_over_its_spot_to_the_square_of_its_res
             let height = 0.7;
             let fall = f64::sqrt(2.0 * height);
             let times = [fall, fall * (1.0 + e), fall * (1.0 + 2.0 * e) * 0.999];
-            let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose(true);
+            let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose();
             let m = moved(&can, &dropped(state, [0.0; 2], height, 0.0), &ask, &times);
             let path = m.path.as_ref().unwrap();
             assert!((path.aloft[1].height - e * e * height).abs() < 1e-14, "{ell} {e}: {:?}", path.aloft);

@@ -274,7 +274,7 @@ fn a_jam_is_the_limit_of_landings_ever_slower_and_where_the_rim_may_leave_as_wel
             continue;
         }
         let free = contact::force(Contact::Smooth, &body, &state).normal;
-        let ask = Ask::on(table).with_restitution(e).with_pose(true);
+        let ask = Ask::on(table).with_restitution(e).with_pose();
         let made = roll_with(&body, start, &[1e-9], &ask, || true);
         if free < 0.0 {
             assert!(made.unwrap_err().to_string().contains(": no unique contact force (Painleve)"));

@@ -377,7 +377,7 @@ fn the_pose_of_a_contact_that_has_settled_turns_at_the_rate_of_its_state() {
         let left = |i: i32| 10f64.powf(-1.0 - 0.05 * f64::from(i));
         let times: Vec<f64> =
             (0..60).flat_map(|i| [1.0, 0.99, 0.98].map(|share| end.time - share * left(i))).collect();
-        let ask = Ask::on(table).with_losses(losses).with_pose(true);
+        let ask = Ask::on(table).with_losses(losses).with_pose();
         let m = roll_with(&disk, start, &times, &ask, || true).unwrap().unwrap();
         let poses = m.poses.as_ref().unwrap();
         for i in (0..times.len() - 2).step_by(3) {
@@ -399,7 +399,7 @@ fn a_face_whose_contact_has_stopped_falls_about_a_fixed_point_of_the_rim() {
     let start = steady::state(&coin, 0.02).unwrap();
     let losses = Losses::of(Law::DryContour, 5e-3);
     let (stop, _) = stop_of(&coin, &start, losses);
-    let ask = Ask::on(ROLLS).with_losses(losses).with_pose(true);
+    let ask = Ask::on(ROLLS).with_losses(losses).with_pose();
     let times: Vec<f64> = (0..=50).map(|i| stop + 1e-3 * f64::from(i)).collect();
     let path = roll_with(&coin, start, &times, &ask, || true).unwrap().unwrap();
     assert_eq!(path.ending(), Ending::Face);

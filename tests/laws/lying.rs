@@ -15,7 +15,7 @@ fn lying(body: &Body, w1: f64, w3: f64, [along, across]: [f64; 2]) -> Start {
 }
 
 fn ask(friction: Friction, losses: Losses) -> Ask {
-    Ask::on(friction).with_restitution(0.0).with_losses(losses).with_pose(true).with_force(true)
+    Ask::on(friction).with_restitution(0.0).with_losses(losses).with_pose().with_force()
 }
 
 fn moved(body: &Body, start: Start, mu: f64, times: &[f64]) -> Motion {
@@ -437,9 +437,8 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
     for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
         let body = Body::new(ell, i1, i3).unwrap();
         let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip);
-        let ask = ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03))
-            .with_pose(true)
-            .with_force(true);
+        let ask =
+            ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03)).with_pose().with_force();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
         let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;

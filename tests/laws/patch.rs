@@ -16,7 +16,7 @@ fn on(mu: f64, patch: f64) -> Friction {
 }
 
 fn rolled(body: &Body, start: Start, friction: Friction, times: &[f64]) -> Motion {
-    roll_with(body, start, times, &Ask::on(friction).with_force(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &Ask::on(friction).with_force(), || true).unwrap().unwrap()
 }
 
 fn drilling(y: &State) -> f64 {
@@ -97,7 +97,7 @@ fn a_drilling_that_friction_holds_does_not_begin_again_by_the_errors_of_the_step
     // The steps follow the pose. Its drilling ends long before its rolling.
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
     let state = State { theta: 1.0, w1: 1.6, w2: 0.7, w3: 2.2 };
-    let ask = Ask::on(on(0.2, 0.07)).with_losses(Losses::of(Law::RollingResistance, 0.01)).with_pose(true);
+    let ask = Ask::on(on(0.2, 0.07)).with_losses(Losses::of(Law::RollingResistance, 0.01)).with_pose();
     for tol in [1e-5, 1e-6, 1e-7] {
         let ask = ask.with_method(Method::Tolerance(tol));
         let m = roll_with(&ball, Start::from(state), &[1000.0], &ask, || true).unwrap().unwrap();
@@ -117,7 +117,7 @@ fn a_homogeneous_ball_slips_straight_on_whatever_its_side_spin() {
         let (u, spin, lean) = (0.5 + r(), 4.0 * r() - 2.0, 0.5 + r());
         // Seen from an axis that leans and is not turned, e_h stays e_h.
         let state = State { theta: lean, w1: spin * lean.sin(), w2: 0.0, w3: spin * lean.cos() };
-        let mut ask = Ask::on(on(mu, eps)).with_pose(true);
+        let mut ask = Ask::on(on(mu, eps)).with_pose();
         ask.force = true;
         let start = Start::from(state).with_slip([u, 0.0]);
         let times: Vec<f64> = (1..20).map(|k| 0.05 * f64::from(k) * u / mu).collect();

@@ -94,7 +94,7 @@ pub fn stone_at_rest(k: u64, rest: Rest) -> (Ellipsoid, StoneState, Ask) {
         _ => (),
     }
     let first = if rest == Rest::Drilling { Law::Drilling } else { Law::RollingResistance };
-    (stone, start, Ask::on(friction(&mut r)).with_losses(dry(&mut r, first, false)).with_pose(true))
+    (stone, start, Ask::on(friction(&mut r)).with_losses(dry(&mut r, first, false)).with_pose())
 }
 
 const TIMES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];

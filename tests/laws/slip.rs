@@ -110,7 +110,7 @@ proptest! {
         let i3 = hoop.i3();
         let start = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -back };
         let grip = (v + back) / (mu * (1.0 + 1.0 / i3));
-        let ask = Ask::on(Friction::coulomb(mu)).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(mu)).with_pose();
         let path = roll_with(&hoop, Start::from(start).with_slip([0.0, v + back]), &[0.5 * grip, 2.0 * grip], &ask, || true)
             .unwrap().unwrap();
         prop_assert_eq!(path_of(&path).phases.len(), 2);

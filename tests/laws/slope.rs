@@ -11,7 +11,7 @@ use spincyl::{Body, Contact, Ellipsoid, State, stone};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 /// The place of the centre of mass at output `i`: along x and y, and its height above the table.
@@ -203,7 +203,7 @@ fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
             ask = ask.with_restitution(0.9 * next());
         }
         let times: Vec<f64> = (0..=20).map(|k| 0.25 * f64::from(k)).collect();
-        let Ok(m) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
+        let Ok(m) = roll_with(&body, start, &times, &ask.with_pose(), || true) else { continue };
         let m = m.unwrap();
         followed += 1;
         let path = m.path.as_ref().unwrap();
@@ -229,7 +229,7 @@ fn the_mirror_image_moves_as_the_mirror_image_and_uphill_is_downhill_turned_roun
     let mut next = wander(6);
     for _ in 0..60 {
         let (body, start, ask) = drawn(&mut next);
-        let Ok(Some(m)) = roll_with(&body, start, &[2.0], &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &[2.0], &ask.with_pose(), || true) else { continue };
         let State { theta, w1, w2, w3 } = start.state;
         let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
             .with_slip([start.slip[0], -start.slip[1]])
@@ -301,7 +301,7 @@ fn a_ball_rests_on_a_slope_that_rolling_resistance_holds_and_rolls_down_a_steepe
 fn a_disk_let_go_slips_at_once_where_rolling_would_need_too_much_friction() {
     let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.0, w2: 0.0, w3: 0.0 });
     let start = Start::from(y).with_heading(0.7);
-    let rolls = rolled(&disk, start, &[0.0], &Ask::default().with_slope(0.5).with_force(true));
+    let rolls = rolled(&disk, start, &[0.0], &Ask::default().with_slope(0.5).with_force());
     let force = rolls.forces.unwrap()[0];
     let needed = force.friction() / force.normal;
     for (share, kind) in [(0.999, Kind::Slipping), (1.001, Kind::Rolling)] {
@@ -374,7 +374,7 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
     let body = Body::solid(0.3).unwrap();
     let start =
         Start::from(State { theta: 1.0, w1: 0.4, w2: 0.1, w3: 1.5 }).with_slip([0.6, -0.4]).with_heading(0.5);
-    let (times, ask) = ([0.5, 1.0, 2.0], Ask::on(Friction::coulomb(0.25)).with_slope(0.3).with_pose(true));
+    let (times, ask) = ([0.5, 1.0, 2.0], Ask::on(Friction::coulomb(0.25)).with_slope(0.3).with_pose());
     let laws = Custom::default().with_friction(&constant).with_couple(&drag);
     let own = custom::roll_with(&body, start, &times, &ask, laws, || true).unwrap().unwrap();
     let known = roll_with(&body, start, &times, &ask.with_losses(Losses::of(Law::AirLinear, 0.05)), || true);
@@ -389,7 +389,7 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
         &body,
         start.with_slip([0.0; 2]),
         &times,
-        &Ask::default().with_slope(0.3).with_pose(true),
+        &Ask::default().with_slope(0.3).with_pose(),
         laws,
         || true,
     );

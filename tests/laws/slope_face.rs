@@ -16,7 +16,7 @@ fn slides(body: &Body, [x, y]: [f64; 2], w: f64) -> Start {
 }
 
 fn moved(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn rough(mu: f64, slope: f64) -> Ask {
@@ -260,8 +260,7 @@ fn a_pillar_rocks_to_rest_on_a_slope_and_tips_over_on_one_that_is_too_steep() {
 /// where the motion is refused.
 fn leaves(body: &Body, friction: Friction, arm: f64, tan: f64) -> (f64, bool) {
     let losses = Losses::of(Law::RollingResistance, arm);
-    let ask =
-        Ask::on(friction).with_restitution(0.0).with_slope(tan.atan()).with_losses(losses).with_pose(true);
+    let ask = Ask::on(friction).with_restitution(0.0).with_slope(tan.atan()).with_losses(losses).with_pose();
     match roll_with(body, LEVEL, &[0.0, 1e-3], &ask, || true) {
         Ok(m) => {
             let m = m.unwrap();
@@ -404,7 +403,7 @@ fn a_body_that_topples_as_it_slides_and_spins_on_a_slope_keeps_its_energy_and_he
         let losses = if case % 3 == 0 { Losses::of(Law::AirLinear, 0.05) } else { Losses::NONE };
         let ask = rough(mu, beta).with_losses(losses);
         let start = slides(&body, v, w);
-        let Ok(m) = roll_with(&body, start, &[0.0, 1e-3, 0.02], &ask.with_pose(true), || true) else {
+        let Ok(m) = roll_with(&body, start, &[0.0, 1e-3, 0.02], &ask.with_pose(), || true) else {
             continue;
         };
         let m = m.unwrap();
@@ -468,7 +467,7 @@ fn a_tall_body_ends_where_its_slide_becomes_as_fast_as_its_spin_whatever_else_ac
                 ask.with_losses(Losses::of(Law::RollingResistance, 0.03) + Losses::of(Law::AirLinear, 0.02));
         }
         let start = slides(&body, [within(-0.3, 0.3), within(-0.3, 0.3)], w).with_heading(within(-PI, PI));
-        let found = roll_with(&body, start, &[20.0], &ask.with_pose(true), || true).unwrap().unwrap();
+        let found = roll_with(&body, start, &[20.0], &ask.with_pose(), || true).unwrap().unwrap();
         let (ending, time) = end(&found);
         if ending != Ending::Painleve || time == 0.0 {
             continue;

@@ -17,7 +17,7 @@ fn lying(body: &Body, heading: f64, [w1, w3]: [f64; 2], [along, across]: [f64; 2
 }
 
 fn ask(friction: Friction, slope: f64) -> Ask {
-    Ask::on(friction).with_restitution(0.0).with_slope(slope).with_pose(true).with_force(true)
+    Ask::on(friction).with_restitution(0.0).with_slope(slope).with_pose().with_force()
 }
 
 fn asked(body: &Body, start: Start, ask: &Ask, times: &[f64]) -> Motion {
@@ -362,7 +362,7 @@ fn what_the_air_slows_as_it_rolls_down_is_held_along_its_axis_until_both_rims_le
         let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3 }).with_heading(heading);
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_losses(losses).with_slope(beta);
         let times: Vec<f64> = (0..=60).map(|k| 0.5 * f64::from(k)).collect();
-        let m = roll_with(&body, start, &times, &ask.with_pose(true), || true).unwrap().unwrap();
+        let m = roll_with(&body, start, &times, &ask.with_pose(), || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         assert_eq!(path.phases[0].kind, Kind::RollingOnItsSide);
         assert_eq!(m.ending(), Ending::Done, "{:?} {:?}", m.event, path.phases);

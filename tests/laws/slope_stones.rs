@@ -17,7 +17,7 @@ fn rolled(
     times: &[f64],
     ask: &Ask,
 ) -> Motion<StoneState> {
-    stone::roll(stone, start, times, &ask.with_pose(true).with_force(true), || true).unwrap().unwrap()
+    stone::roll(stone, start, times, &ask.with_pose().with_force(), || true).unwrap().unwrap()
 }
 
 /// The velocity of the slip in the laboratory of the pose, from the components of the outputs.
@@ -84,7 +84,7 @@ proptest! {
         let ask = ask.with_losses(losses).with_slope(slope);
         let start = Start::from(state).with_heading(heading).with_place([0.3, -0.7]);
         let start = if ask.table == Contact::Rolling.into() { start } else { start.with_slip(slip) };
-        let Ok(Some(m)) = stone::roll(&stone, start, &TIMES, &ask.with_pose(true), || true) else {
+        let Ok(Some(m)) = stone::roll(&stone, start, &TIMES, &ask.with_pose(), || true) else {
             return Ok(()); // no unique force at the start
         };
         let most = 1e-10_f64.max(10.0 * m.error);
@@ -114,7 +114,7 @@ proptest! {
         let ([n1, n2, n3], [w1, w2, w3]) = (state.vertical, state.w);
         let image = StoneState { vertical: [n1, -n2, n3], w: [-w1, w2, -w3] };
         let losses = Losses::NONE.with(Law::RollingResistance, rolling);
-        let ask = Ask::on(Friction::coulomb(mu)).with_losses(losses).with_slope(slope).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(mu)).with_losses(losses).with_slope(slope).with_pose();
         let start = Start::from(state).with_slip(slip).with_heading(heading).with_place([0.2, 0.5]);
         let back = Start::from(image).with_slip([slip[0], -slip[1]]).with_heading(-heading);
         let here = stone::roll(&stone, start, &TIMES, &ask, || true);
@@ -152,7 +152,7 @@ fn a_stone_that_is_a_ball_moves_as_a_ball_on_the_same_slope() {
         (Ask::on(Contact::Smooth), [0.0; 2], Kind::Slipping),
     ];
     for (ask, slip, ends) in tables {
-        let ask = ask.with_slope(slope).with_pose(true);
+        let ask = ask.with_slope(slope).with_pose();
         let begins = |heading| (heading, [0.4, 0.9]);
         let (heading, place) = begins(0.8);
         let start = Start::from(y).with_slip(slip).with_heading(heading).with_place(place);
@@ -266,7 +266,7 @@ fn a_stone_that_rolling_resistance_holds_upright_swings_about_the_vertical_like_
 fn a_heading_turns_a_motion_on_a_level_table_and_nothing_else() {
     let stone = Ellipsoid::rattleback([1.0, 0.3, 0.25], None, 0.1, None).unwrap();
     let state = stone.spinning(-0.5, 0.3, 0.1);
-    let ask = Ask::on(Friction::coulomb(0.2)).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_force();
     let turn = 0.9f64;
     let start = Start::from(state).with_slip([0.3, 0.5]);
     let a = rolled(&stone, start, &TIMES, &ask);

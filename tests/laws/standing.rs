@@ -20,7 +20,7 @@ fn kicked(w2: f64) -> Start {
 
 fn moved(body: &Body, start: Start, ask: &Ask, last: f64) -> Motion {
     let times: Vec<f64> = (0..=20).map(|k| last * f64::from(k) / 20.0).collect();
-    roll_with(body, start, &times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, &times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn rough(mu: f64) -> Ask {

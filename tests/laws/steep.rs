@@ -194,7 +194,7 @@ fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first
             (0..=turns * per).map(|i| f64::from(i) * 2.0 * PI / omega / f64::from(per)).collect();
         let mut errors = Vec::new();
         for beta in [4e-4, 2e-4] {
-            let ask = Ask::default().with_slope(beta).with_pose(true);
+            let ask = Ask::default().with_slope(beta).with_pose();
             let m = roll_with(&body, y, &times, &ask, || true).unwrap().unwrap();
             let centre: Vec<_> = m.samples().map(|now| now.centre(&body).unwrap()).collect();
             let (mut weights, mut sums) = (0.0, [0.0; 2]);

@@ -99,7 +99,7 @@ proptest! {
 
     #[test]
     fn a_stone_that_rolls_keeps_its_energy(stone in any_stone(), start in any_start()) {
-        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond(true));
+        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond());
         let energy = |y: &StoneState| stone.energy(y, Contact::Rolling);
         let fastest = motion.states.iter().flat_map(|y| y.w).fold(1.0, |most: f64, w| most.max(w.abs()));
         for y in &motion.states {
@@ -114,7 +114,7 @@ proptest! {
         mu in 0.05..0.5f64, wet in any::<bool>(),
     ) {
         let friction = if wet { Friction::Viscous { c: mu } } else { Friction::coulomb(mu) };
-        let ask = Ask::on(friction).with_pose(true).with_force(true);
+        let ask = Ask::on(friction).with_pose().with_force();
         let start = Start::from(start).with_slip(slip);
         let motion = match stone::roll(&stone, start, &TIMES, &ask, || true) {
             Err(Error::Painleve { .. }) => return Ok(()),
@@ -176,7 +176,7 @@ proptest! {
         let ball = Body::ball(low, i1, i3).unwrap();
         let stone = Ellipsoid::new([1.0; 3], [[i1, 0.0, 0.0], [0.0, i1, 0.0], [0.0, 0.0, i3]], [0.0, 0.0, low]).unwrap();
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
-        let ask = Ask::on(contact).with_pose(true).with_force(true).with_beyond(true);
+        let ask = Ask::on(contact).with_pose().with_force().with_beyond();
         let y = State { theta, w1: w[0], w2: w[1], w3: w[2] };
         // The axes of a body of revolution follow the tilt, and so do those of the stone at the start.
         let start = StoneState { vertical: [theta.sin(), 0.0, theta.cos()], w };
@@ -222,7 +222,7 @@ proptest! {
             vertical: [a, -b, c],
             w: [-d, e, -f],
         };
-        let ask = Ask::default().with_beyond(true);
+        let ask = Ask::default().with_beyond();
         let (a, b) = (rolled(&stone(twist), start, &TIMES, &ask), rolled(&stone(-twist), mirrored(start), &TIMES, &ask));
         for (a, b) in a.states.iter().zip(&b.states) {
             prop_assert!(apart(&mirrored(*a), b) < 1e-12 * (1.0 + dot(a.w, a.w)));
@@ -231,7 +231,7 @@ proptest! {
 
     #[test]
     fn a_stone_whose_spin_is_turned_round_comes_back(stone in any_stone(), start in any_start()) {
-        let ask = Ask::default().with_beyond(true);
+        let ask = Ask::default().with_beyond();
         let there = rolled(&stone, start, &[0.0, 4.0], &ask);
         let StoneState { vertical, w } = there.states[1];
         let back = rolled(&stone, StoneState { vertical, w: w.map(|w| -w) }, &[0.0, 4.0], &ask);
@@ -249,7 +249,7 @@ proptest! {
     fn without_friction_the_centre_goes_straight_on(
         stone in any_stone(), start in any_start(), slip in [-1.0..1.0f64, -1.0..1.0f64],
     ) {
-        let ask = Ask::on(Friction::coulomb(0.0)).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(0.0)).with_pose();
         let motion = rolled(&stone, Start::from(start).with_slip(slip), &TIMES, &ask);
         let poses = motion.poses.as_ref().unwrap();
         prop_assume!(poses.len() > 2);
@@ -258,7 +258,7 @@ proptest! {
             prop_assert!((way(i)[0] - way(1)[0]).abs() + (way(i)[1] - way(1)[1]).abs() < 1e-10 + 10.0 * motion.pose_error.min(1e-3));
         }
         // On a smooth table the stone turns in the same way, and its centre rests.
-        let smooth = rolled(&stone, start, &TIMES, &Ask::on(Contact::Smooth).with_pose(true));
+        let smooth = rolled(&stone, start, &TIMES, &Ask::on(Contact::Smooth).with_pose());
         for (a, b) in motion.states.iter().zip(&smooth.states) {
             let off = apart(a, b);
             prop_assert!(off < 5.0 * (motion.error + smooth.error), "{off:e} {:e} {:e}", motion.error, smooth.error);
@@ -271,7 +271,7 @@ proptest! {
     fn a_stone_that_nothing_stops_rolls_as_any_stone_does(
         stone in any_stone(), start in any_start(), tol in -12.0..-8.0f64,
     ) {
-        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond(true).with_pose(true).with_force(true));
+        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond().with_pose().with_force());
         let found = stone::rolling(&stone, start, &TIMES, 10f64.powf(tol), || true).unwrap();
         let (rows, error) = found.unwrap();
         let (poses, forces) = (motion.poses.unwrap(), motion.forces.unwrap());
@@ -407,7 +407,7 @@ fn a_stone_falls_on_its_edge_and_lifts_off_where_it_is_thrown_about() {
     // If it spins fast enough about a horizontal axis the normal force vanishes.
     let egg = Ellipsoid::egg(0.6, 1.0, 0.0).unwrap();
     let start = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 3.0, 0.0] };
-    let motion = rolled(&egg, start, &[0.0, 20.0], &Ask::default().with_force(true));
+    let motion = rolled(&egg, start, &[0.0, 20.0], &Ask::default().with_force());
     assert_eq!(motion.ending(), Ending::LiftOff);
 }
 
@@ -417,12 +417,12 @@ fn a_stone_at_rest_on_its_end_or_turned_over_stays_or_falls() {
     let pebble = Ellipsoid::uniform([1.0, 0.8, 0.3]).unwrap();
     for vertical in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
         let still = StoneState { vertical, w: [0.0; 3] };
-        let motion = rolled(&pebble, still, &[0.0, 10.0], &Ask::default().with_pose(true).with_force(true));
+        let motion = rolled(&pebble, still, &[0.0, 10.0], &Ask::default().with_pose().with_force());
         assert_eq!(motion.states[1], still);
         assert!((motion.forces.unwrap()[1].z - 1.0).abs() < 1e-15);
     }
     // On its long end it is in unstable balance, and falls at the least push.
     let pushed = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 1e-9, 0.0] };
-    let motion = rolled(&pebble, pushed, &[0.0, 30.0], &Ask::default().with_beyond(true));
+    let motion = rolled(&pebble, pushed, &[0.0, 30.0], &Ask::default().with_beyond());
     assert!(motion.states[1].vertical[0] < 0.999);
 }

@@ -16,7 +16,7 @@ use spincyl::{Body, Error, State};
 type Stones = Motion<StoneState>;
 
 fn hops(stone: &Ellipsoid, start: &Start<StoneState>, ask: &Ask, times: &[f64]) -> Stones {
-    stone::roll(stone, *start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    stone::roll(stone, *start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 /// A pebble, an egg, a rattleback or any other stone that is light or heavy at its ends.
@@ -132,7 +132,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_stone_is_below_the_tabl
             ask.losses = Losses::of(law, 10f64.powf(-3.0 + 2.5 * r()));
         }
         let times: Vec<f64> = (0..60).map(|k| 0.05 * f64::from(k)).collect();
-        let m = match stone::roll(&stone, start, &times, &ask.with_pose(true), || true) {
+        let m = match stone::roll(&stone, start, &times, &ask.with_pose(), || true) {
             // More than one contact force, or none, at the start.
             Err(Error::Painleve { .. }) => continue,
             found => found.unwrap().unwrap(),
@@ -211,7 +211,7 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
             ask = ask.with_slope(0.3 * r());
         }
         let times: Vec<f64> = (0..16).map(|k| 0.2 * f64::from(k)).collect();
-        let ask = ask.with_pose(true);
+        let ask = ask.with_pose();
         let there =
             Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(AboveTable::from(aloft));
         let here = Start::from(StoneState { vertical: [s, 0.0, c], w: [w1, w2, w3] });

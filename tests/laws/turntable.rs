@@ -9,7 +9,7 @@ use spincyl::{Body, Contact, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn ball() -> Body {
@@ -143,7 +143,7 @@ fn a_disk_on_a_turntable_moves_as_the_model_of_three_dimensions_says() {
     let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.3, w1: 0.4, w2: 0.1, w3: -1.2 });
     let start = Start::from(y).with_place([1.5, 0.0]);
     // Far beyond the side of its rim, which a wide body passes.
-    let m = rolled(&disk, start, &[5.0], &Ask::default().with_turning(0.5).with_beyond(true));
+    let m = rolled(&disk, start, &[5.0], &Ask::default().with_turning(0.5).with_beyond());
     let (state, pose) = (m.states[0], m.poses.as_ref().unwrap()[0]);
     let off = [
         state.theta - 1.696_025_077_2,
@@ -161,7 +161,7 @@ fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_wha
         let (body, start, ask) = drawn(&mut next);
         let still = ask.losses.with(Law::AirLinear, 0.0).with(Law::AirQuadratic, 0.0);
         let (ask, times) = (ask.with_losses(still), [0.0, 0.5, 1.0, 2.0, 4.0]);
-        let m = match roll_with(&body, start, &times, &ask.with_pose(true), || true) {
+        let m = match roll_with(&body, start, &times, &ask.with_pose(), || true) {
             Ok(m) => m.unwrap(),
             Err(e) => {
                 assert!(!e.to_string().starts_with("turning"), "{e} {body:?} {start:?} {ask:?}");
@@ -195,7 +195,7 @@ fn on_a_tilted_turntable_the_same_sum_grows_by_the_couples_of_gravity_and_of_the
         let mut times: Vec<f64> = (0..count).flat_map(|k| [place(k, -1.0), place(k, 1.0)]).collect();
         times.insert(0, 0.0);
         times.push(end);
-        let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(), || true) else { continue };
         if m.states.len() < times.len() || m.error > 1e-9 {
             continue;
         }
@@ -221,7 +221,7 @@ fn on_a_table_that_turns_the_other_way_the_mirror_image_moves() {
     for _ in 0..100 {
         let (body, start, ask) = drawn(&mut next);
         let ask = ask.with_slope(within(&mut next, -0.3, 0.3));
-        let Ok(Some(m)) = roll_with(&body, start, &[1.5], &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &[1.5], &ask.with_pose(), || true) else { continue };
         let State { theta, w1, w2, w3 } = start.state;
         let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
             .with_slip([start.slip[0], -start.slip[1]])
@@ -245,7 +245,7 @@ fn a_table_that_hardly_turns_moves_a_body_as_a_table_at_rest() {
     let (mut next, mut followed) = (wander(14), 0);
     for _ in 0..100 {
         let (body, start, ask) = drawn(&mut next);
-        let run = |om: f64| roll_with(&body, start, &[1.5], &ask.with_turning(om).with_pose(true), || true);
+        let run = |om: f64| roll_with(&body, start, &[1.5], &ask.with_turning(om).with_pose(), || true);
         let (Ok(Some(m)), Ok(Some(rests))) = (run(1e-300), run(0.0)) else { continue };
         // On a table at rest a body may go on where two rims or a face end the motion on this one.
         let end = m.event.map_or(f64::INFINITY, |event| event.time);
@@ -358,8 +358,7 @@ fn a_flight_above_a_turntable_is_that_above_a_table_at_rest() {
         let [x, y] = start.place;
         let table = [om * (x * sin - y * cos), om * (x * cos + y * sin)];
         let over = start.with_slip([start.slip[0] - table[0], start.slip[1] - table[1]]);
-        let Ok(Some(m)) = roll_with(&body, over, &[0.5], &ask.with_turning(om).with_pose(true), || true)
-        else {
+        let Ok(Some(m)) = roll_with(&body, over, &[0.5], &ask.with_turning(om).with_pose(), || true) else {
             continue;
         };
         let rests = rolled(&body, start, &[0.5], &ask);

@@ -93,7 +93,7 @@ proptest! {
 
     #[test]
     fn a_start_from_the_sample_of_its_start_is_that_start(body in any_rim(), y in any_state(), slip in prop::array::uniform2(-2.0..2.0f64)) {
-        let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(0.2)).with_pose();
         let start = Start::from(y).with_slip(slip);
         let Ok(Some(motion)) = roll_with(&body, start, &[0.0], &ask, || true) else { return Ok(()) };
         let Some(now) = motion.samples().next() else { return Ok(()) };
@@ -157,7 +157,7 @@ fn sampled() -> Vec<(Body, Motion)> {
     let dry = Friction::coulomb(0.25);
     let mut all = Vec::new();
     let mut add = |body: &Body, start: Start, ask: Ask| {
-        let ask = ask.with_pose(true).with_force(true);
+        let ask = ask.with_pose().with_force();
         if let Ok(Some(motion)) = roll_with(body, start, &times, &ask, || true) {
             all.push((*body, motion));
         }
@@ -246,7 +246,7 @@ fn samples_have_what_was_asked_for() {
     assert!(
         now.orientation().is_none() && now.velocity(&body).is_none() && bare.orientations().next().is_none()
     );
-    let full = of(Ask::on(Friction::coulomb(0.3)).with_pose(true).with_force(true));
+    let full = of(Ask::on(Friction::coulomb(0.3)).with_pose().with_force());
     assert_eq!(full.samples().len(), 2);
     for (i, now) in full.samples().enumerate() {
         let path = full.path.as_ref().unwrap();

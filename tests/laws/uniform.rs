@@ -50,7 +50,7 @@ fn a_uniform_ball_moves_as_one_whose_moments_differ_in_the_last_digits() {
         };
         let flies = case % 3 > 0 || !table.rubs();
         let start = any_start(flies, &mut r);
-        let ask = Ask::on(table).with_restitution(flies.then_some(e)).with_force(true);
+        let ask = Ask::on(table).with_restitution(flies.then_some(e)).with_force();
         let [a, b] = [known, other].map(|body| moved(&body, &start, &ask, &times));
         let told = format!("{case} {table:?} {e} {start:?}");
         assert_eq!(a.evaluations, 0, "{told}");
@@ -102,7 +102,7 @@ fn a_ball_under_rolling_resistance_moves_as_one_whose_moments_differ_in_the_last
         let times = [0.1, 0.4, 0.8, 1.0].map(|share| share * until);
         let ask = Ask::on(Friction::Coulomb { mu, fixed: mu, patch })
             .with_losses(Losses::of(Law::RollingResistance, arm))
-            .with_force(true)
+            .with_force()
             .with_method(Method::Tolerance(1e-9));
         let [a, b] = [known, other].map(|body| moved(&body, &start, &ask, &times));
         let told = format!("{case} {mu} {arm} {patch} {start:?}");

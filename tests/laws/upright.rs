@@ -43,7 +43,7 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2: 0.0, w3 };
         let start = Start::from(y).with_slip(slip).with_aloft(AboveTable::new(low, lift));
         let table = [Friction::coulomb(0.3).into(), Table::Smooth][k % 2];
-        let mut ask = Ask::on(table).with_restitution([0.0, 0.5, 1.0][k % 3]).with_pose(true);
+        let mut ask = Ask::on(table).with_restitution([0.0, 0.5, 1.0][k % 3]).with_pose();
         if k % 5 == 0 {
             ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
         }
@@ -89,7 +89,7 @@ fn a_body_that_tumbles_from_upright_flies_as_one_that_hardly_leans() {
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2, w3 };
         let start =
             Start::from(y).with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(9.0, 3.0 * r()));
-        let mut ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_pose(true);
+        let mut ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_pose();
         let air = r() < 0.3;
         if air {
             ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
@@ -143,7 +143,7 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
             start = start.with_aloft(AboveTable::new(0.3 * r(), 0.0));
         }
         let times: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
-        let m = match roll_with(&body, start, &times, &ask.with_pose(true), || true) {
+        let m = match roll_with(&body, start, &times, &ask.with_pose(), || true) {
             Ok(m) => m.unwrap(),
             Err(error) => panic!("{error}: {body:?} {start:?} {ask:?}"),
         };
@@ -187,7 +187,7 @@ fn dry_friction_along_the_contour_takes_energy_also_from_a_ball_that_passes_besi
         };
         let far = run(1e-3, &ask);
         for near in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
-            for ask in [ask, ask.with_pose(true)] {
+            for ask in [ask, ask.with_pose()] {
                 let m = run(near, &ask);
                 let lost = &m.path.as_deref().unwrap().work_lost;
                 assert!(lost.is_sorted(), "{near} {tol}: {lost:?}");

@@ -42,7 +42,7 @@ fn a_struck_ball_slips_as_without_resistance_and_then_stops_as_a_ball_that_rolls
         let (rolls, brakes) = (2.0 * v / (7.0 * mu), 5.0 / 7.0 * delta);
         let stops = rolls + v / delta;
         let start = Start::from(STILL).with_slip([0.0, v]);
-        let ask = only_rolling(Friction::coulomb(mu), arm(delta)).with_pose(true);
+        let ask = only_rolling(Friction::coulomb(mu), arm(delta)).with_pose();
         let times = [0.0, 0.4 * rolls, 0.9 * rolls, rolls + 0.3 * v / delta, 1.1 * stops];
         let m = moved(&ball(), start, &ask, &times);
         let path = path_of(&m);
@@ -229,7 +229,7 @@ fn a_body_that_never_slips_does_not_know_when_its_resistance_acts() {
     let y = steady::state(&coin, 0.7).unwrap().kicked(0.05);
     let losses = arm(2e-3).with(Law::AirLinear, 1e-3);
     for table in [Table::Rolling { mu: f64::INFINITY }, Friction::coulomb(50.0).into()] {
-        let ask = Ask::on(table).with_losses(losses).with_pose(true).with_force(true);
+        let ask = Ask::on(table).with_losses(losses).with_pose().with_force();
         let [always, only] = [Resistance::Always, Resistance::WhileRolling]
             .map(|when| moved(&coin, y, &ask.with_resistance(when), &[0.0, 1.0, 5.0, 20.0]));
         assert_eq!(always, only);

@@ -42,13 +42,16 @@ pub enum Method {
     Tolerance(f64),
 }
 
-/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name.
+/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name. For an option that
+/// is on or off the method turns it on; one that is known only at run time is a field.
 ///
 /// ```
 /// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
 ///
-/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose(true);
+/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose();
 /// assert!(ask.pose && !ask.force);
+/// let mut watched = ask;
+/// watched.force = std::env::args().any(|word| word == "--force");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
@@ -147,10 +150,10 @@ impl Ask {
         Self { method, ..self }
     }
 
-    /// Returns these options, with or without a continuation past events.
+    /// Returns these options, with a continuation past events.
     #[must_use]
-    pub fn with_beyond(self, beyond: bool) -> Self {
-        Self { beyond, ..self }
+    pub fn with_beyond(self) -> Self {
+        Self { beyond: true, ..self }
     }
 
     /// Returns these options with this coefficient of restitution, or with `None`.
@@ -183,10 +186,10 @@ impl Ask {
         Self { slope, ..self }
     }
 
-    /// Returns these options, with or without an end at rolling.
+    /// Returns these options, with an end at rolling.
     #[must_use]
-    pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
-        Self { stop_at_rolling, ..self }
+    pub fn with_stop_at_rolling(self) -> Self {
+        Self { stop_at_rolling: true, ..self }
     }
 
     /// Returns these options with this largest number of evaluations, or with `None`.
@@ -195,16 +198,16 @@ impl Ask {
         Self { max_evaluations: most.into(), ..self }
     }
 
-    /// Returns these options, with poses or without them.
+    /// Returns these options, with poses.
     #[must_use]
-    pub fn with_pose(self, pose: bool) -> Self {
-        Self { pose, ..self }
+    pub fn with_pose(self) -> Self {
+        Self { pose: true, ..self }
     }
 
-    /// Returns these options, with contact forces or without them.
+    /// Returns these options, with contact forces.
     #[must_use]
-    pub fn with_force(self, force: bool) -> Self {
-        Self { force, ..self }
+    pub fn with_force(self) -> Self {
+        Self { force: true, ..self }
     }
 
     /// Whether some rolling resistance acts only while the contact point does not slip.

@@ -59,7 +59,7 @@ impl<S: Moving> Motion<S> {
     ///
     /// let body = Body::solid(2.5)?;
     /// let start = steady::state(&body, 1.3)?.kicked(0.05);
-    /// let ask = Ask::default().with_pose(true).with_force(true);
+    /// let ask = Ask::default().with_pose().with_force();
     /// let motion = roll_with(&body, start, &[0.0, 1.0, 2.0], &ask, || true)?.expect("not interrupted");
     /// for now in motion.samples() {
     ///     let (centre, force) = (now.centre(&body).unwrap(), now.force.unwrap());
