@@ -179,4 +179,4 @@ pub use laws::stone::Ellipsoid;
 pub use measured::Measured;
 pub use motion::{Motion, roll};
 pub use scale::Scale;
-pub use state::State;
+pub use state::{Slip, State};

@@ -2,7 +2,7 @@
 //! begins.
 
 use super::body::Body;
-use super::state::State;
+use super::state::{Slip, State};
 use crate::error::{Error, within};
 use core::f64::consts::PI;
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
@@ -54,8 +54,8 @@ pub struct Moment {
     pub time: f64,
     /// The inclination and the angular velocity along e1, e2, e3. A body with two rims is told from the lower one.
     pub state: State,
-    /// The slip along the lean and across it, in sqrt(g R); 0 where the body rolls.
-    pub slip: [f64; 2],
+    /// The slip, in sqrt(g R); 0 where the body rolls.
+    pub slip: Slip,
     /// The heading phi of the lean over the table, in radians from x to y, and the turn psi about the axis.
     pub phi: f64,
     /// See `phi`.

@@ -10,7 +10,7 @@
 use super::body::Body;
 use super::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
 use super::scale::Scale;
-use super::state::State;
+use super::state::{Slip, State};
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 /// How a body turns and is pressed on the table, in SI: what a couple in SI depends on.
@@ -35,8 +35,8 @@ pub struct MomentInSi {
     pub theta: f64,
     /// The angular velocity along e1, e2, e3, in rad/s.
     pub w: Vector3<f64>,
-    /// The slip along the lean and across it, in m/s.
-    pub slip: Vector2<f64>,
+    /// The slip in m/s.
+    pub slip: Slip,
     /// The heading of the lean and the turn about the axis, in radians.
     pub phi: f64,
     /// See `phi`.
@@ -105,7 +105,7 @@ impl<L: Fn(&MomentInSi) -> Push> DriveLaw for InSi<L> {
             time: scale.seconds(now.time),
             theta: now.state.theta,
             w: now.state.angular_velocity().map(|w| scale.radians_per_second(w)),
-            slip: Vector2::from(now.slip).map(speed),
+            slip: now.slip.map(speed),
             phi: now.phi,
             psi: now.psi,
             contact_point: now.contact_point.map(|x| scale.metres(x)),

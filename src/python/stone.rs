@@ -64,7 +64,7 @@ pub fn lever(x: &[f64]) -> [f64; MOST] {
 
 /// The slip of a stone whose centre of mass rests: `x` has the numbers of the stone, a vertical and w.
 pub fn slip(x: &[f64]) -> [f64; MOST] {
-    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]))
+    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]).pair())
 }
 
 /// The names of the numbers of a stone.

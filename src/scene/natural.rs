@@ -9,7 +9,7 @@
 use super::SceneError;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::ask::sample::Sample;
 use crate::motions::slope::{energy_beside, energy_of_fall};
@@ -277,7 +277,8 @@ fn stone_at(m: &Motion<StoneState>, of: &Ellipsoid, ask: &Ask, i: usize) -> Opti
     let position = Point3::from(pose.centre);
     let [a, b, c, d] = now.state.orientation();
     let least = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d));
-    let ([along, across], AboveTable { height, lift, .. }) = (now.slip.unwrap_or_default(), now.aloft);
+    let (Slip { u_h: along, u_2: across }, AboveTable { height, lift, .. }) =
+        (now.slip.unwrap_or_default(), now.aloft);
     let slip = pose.orientation * (least.inverse() * Vector3::new(along, across, lift));
     let own = Vector3::from(now.state.w);
     let w = pose.orientation * own;

@@ -6,7 +6,7 @@ use spincyl::contact::Contact;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Start, roll, roll_with};
-use spincyl::{Body, State, stability, steady};
+use spincyl::{Body, Slip, State, stability, steady};
 
 /// A power of two, by which all lengths change without a rounding.
 const UNIT: f64 = 4.0;
@@ -63,8 +63,9 @@ fn a_body_in_another_unit_of_length_has_the_same_states_and_moves_the_same_way()
         let losses = Losses::NONE.with(Law::DryContour, 0.03).with(Law::Drilling, 0.01);
         let scaled = Losses::NONE.with(Law::DryContour, 0.03).with(Law::Drilling, UNIT * 0.01);
         for [losses, scaled] in [[Losses::NONE; 2], [losses, scaled]] {
-            let start =
-                |y, factor: f64| Start::from(state(y)).with_slip([factor * slip[0], factor * slip[1]]);
+            let start = |y, factor: f64| {
+                Start::from(state(y)).with_slip(Slip::new(factor * slip[0], factor * slip[1]))
+            };
             let m = roll_with(&body, start(y, 1.0), &times, &ask(losses), || true).unwrap().unwrap();
             let n = roll_with(&large, start(there, 2.0), &later, &ask(scaled), || true).unwrap().unwrap();
             assert_eq!(

@@ -5,7 +5,7 @@ use spincyl::contact::{Contact, Table, lossy, slip::Friction};
 use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
-use spincyl::{Body, Error, State, newton, steady};
+use spincyl::{Body, Error, Slip, State, newton, steady};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -28,7 +28,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
         3 => (Table::Rolling { mu: 0.2 + r() }, false),
         _ => (Table::of(Contact::Smooth, 0.0), false),
     };
-    (body.unwrap(), Start::from(state).with_slip(if slips { slip } else { [0.0; 2] }), table)
+    (body.unwrap(), Start::from(state).with_slip(if slips { slip.into() } else { Slip::default() }), table)
 }
 
 /// The largest difference of states and slips, and of the ends, beside the sum of the two claims.
@@ -177,7 +177,7 @@ fn a_hoop_under_stribecks_friction_slips_for_the_integral_of_the_inverse_coeffic
     let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.7f64).powi(2)).exp();
     let hoop = Body::tube(0.0, 1.0).unwrap();
     let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-    let start = Start::from(state).with_slip([0.0, 5.0]);
+    let start = Start::from(state).with_slip(Slip::new(0.0, 5.0));
     let ask = Ask::on(Friction::coulomb(0.4)).with_method(Method::Tolerance(1e-12));
     let m = own(&hoop, start, &[0.0, 20.0], &ask, Custom::default().with_friction(&stribeck)).unwrap();
     let (mut lasts, n) = (0.0, 4000);
@@ -273,7 +273,8 @@ fn a_law_that_is_nan_or_gives_energy_on_the_way_is_named_with_the_state() {
     // With a coefficient of friction beyond the speeds of the check.
     let negative = |speed: f64| if speed < 2000.0 { 0.3 } else { 0.3 - 1e-3 * (speed - 2000.0) };
     let hoop = Body::tube(0.0, 1.0).unwrap();
-    let thrown = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 }).with_slip([0.0, 3000.0]);
+    let thrown =
+        Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 }).with_slip(Slip::new(0.0, 3000.0));
     let laws = Custom::default().with_friction(&negative);
     let found = own(&hoop, thrown, &[5.0], &Ask::on(Friction::coulomb(0.4)), laws);
     assert!(

@@ -9,7 +9,7 @@ use spincyl::custom::{self, Custom, InSi, Moment, MomentInSi, Push};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::{Ask, Ending, Motion, Start, path::Kind, roll_with};
-use spincyl::{Body, Error, State, steady};
+use spincyl::{Body, Error, Slip, State, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const NO_COUPLE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
@@ -43,7 +43,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
         2 => (Friction::Viscous { c: 0.1 + r() }.into(), true),
         _ => (Table::Rolling { mu: 0.2 + r() }, false),
     };
-    let start = Start::from(state).with_slip(if slips { slip } else { [0.0; 2] });
+    let start = Start::from(state).with_slip(if slips { slip.into() } else { Slip::default() });
     (body.unwrap(), start.with_heading(6.0 * r() - 3.0).with_place([r(), r()]), table)
 }
 
@@ -126,7 +126,7 @@ fn a_constant_force_moves_a_body_as_a_slope_does() {
             table => table,
         };
         let on_slope = Start::from(fast)
-            .with_slip(start.slip.map(|u| pace * u))
+            .with_slip(Slip::new(pace * start.slip.u_h, pace * start.slip.u_2))
             .with_heading(start.heading)
             .with_place(start.place);
         let later: Vec<f64> = times.iter().map(|t| t / pace).collect();
@@ -185,7 +185,7 @@ fn a_drive_that_resists_as_the_air_does_moves_a_body_as_the_air_does() {
 fn stirs(_: &Body, now: &Moment) -> Push {
     let (sin, cos) = (0.7 * now.time).sin_cos();
     let force = Vector2::new(0.2 * cos, 0.1 * sin) - 0.05 * now.velocity
-        + 0.02 * Vector2::new(now.slip[0], now.slip[1] * now.phi.cos())
+        + 0.02 * Vector2::new(now.slip.u_h, now.slip.u_2 * now.phi.cos())
         - 0.01 * now.contact_point.coords;
     let couple = Vector3::new(0.1 * sin, 0.05, 0.06 * cos) + 0.01 * Vector3::new(now.psi.sin(), 0.0, 0.0);
     Push::new(force, now.axes().transpose() * couple)
@@ -251,9 +251,9 @@ fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end
         let mut speed = || r() - 0.5;
         let (w1, w2, w3, slip) = (speed(), 0.2 * speed(), 3.0 * speed(), [speed(), speed()]);
         let theta = body.theta_end() + 0.3 + 0.5 * r();
-        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_heading(r());
+        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip.into()).with_heading(r());
         let turned = Start::from(State { theta: PI - theta, w1, w2: -w2, w3: -w3 })
-            .with_slip(slip.map(|u| -u))
+            .with_slip(Slip::from(slip.map(|u| -u)))
             .with_heading(start.heading + PI);
         let pushes = |_: &Body, now: &Moment| {
             let (sin, cos) = (0.7 * now.time).sin_cos();

@@ -12,7 +12,7 @@ use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::{AfterImpact, Lands, Strike};
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Scale, State, steady};
+use spincyl::{Body, Scale, Slip, State, steady};
 use std::fmt::Debug;
 
 fn again<T: Serialize + DeserializeOwned>(x: &T) -> T {
@@ -99,7 +99,9 @@ fn options_and_starts_come_back_and_may_be_short() {
     let sticky = Friction::Coulomb { mu: 0.2, fixed: f64::INFINITY, patch: 0.01 };
     comes_back(Ask::on(sticky).with_method(Method::Tolerance(1e-9)).with_restitution(0.5));
     comes_back(
-        Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft(AboveTable::new(0.5, 0.0)),
+        Start::from(state(1.0, 0.1, 0.2, 0.3))
+            .with_slip(Slip::new(1.0, 2.0))
+            .with_aloft(AboveTable::new(0.5, 0.0)),
     );
     let short: Ask =
         from_str(r#"{"losses": {"AirFilm": 1e-7, "DryContour": 0.01}, "table": "Smooth"}"#).unwrap();
@@ -275,7 +277,7 @@ fn numbers_that_have_names_are_arrays_and_bools_in_files() {
     let motion = roll_with(&Body::solid(2.0).unwrap(), lies, &[0.01], &ask, || true).unwrap().unwrap();
     let other = motion.samples().next().unwrap().other_rim.unwrap();
     let file = serde_json::to_value(&motion).unwrap();
-    let numbers = [other.slip[0], other.slip[1], other.force.normal, other.force.along, other.force.across];
+    let numbers = [other.slip.u_h, other.slip.u_2, other.force.normal, other.force.along, other.force.across];
     assert_eq!(file["path"]["other_rim"], json!([numbers]));
     assert!(numbers[2] > 0.1 && file["path"]["aloft"] == json!([[0.0, 0.0]]), "{numbers:?}");
 }

@@ -8,11 +8,11 @@ use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, Summary, r
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Slip, State, steady};
 
 /// A ball that slips and rolls under friction and air, and a stone that rattles; neither has an end.
 fn ball() -> (Body, Start, Ask) {
-    let start = Start::from(state(1.0, 0.3, 0.1, 4.0)).with_slip([0.5, 1.0]);
+    let start = Start::from(state(1.0, 0.3, 0.1, 4.0)).with_slip(Slip::new(0.5, 1.0));
     let ask = Ask::on(Friction::coulomb(0.1)).with_losses(Losses::of(Law::AirLinear, 1e-4));
     (Body::ball(-0.1, 0.41, 0.4).unwrap(), start, ask)
 }
@@ -191,7 +191,7 @@ fn each_limit_has_its_reason_in_words() {
     let tube = Body::tube(6.0, 0.8).unwrap();
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let slips = Start::from(State { theta: std::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 });
-    let slips = slips.with_slip([0.0, (6.0 - tube.i1() / 6.0) * w1 - w3]);
+    let slips = slips.with_slip(Slip::new(0.0, (6.0 - tube.i1() / 6.0) * w1 - w3));
     let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-9));
     let m = roll_with(&tube, slips, &[2e5], &ask, || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Changes)));

@@ -4,7 +4,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Start};
 use spincyl::nalgebra::Vector3;
-use spincyl::{Body, Contact, Error, State, rolling};
+use spincyl::{Body, Contact, Error, Slip, State, rolling};
 use std::collections::{BTreeSet, HashMap};
 
 #[test]
@@ -73,10 +73,11 @@ fn options_and_starts_have_what_they_were_given() {
     assert_eq!(less, Ask::on(Contact::Smooth));
     assert!(ask.with_beyond().beyond && ask.with_stop_at_rolling().stop_at_rolling);
     let y = State { theta: 1.0, w1: 0.1, w2: 0.2, w3: 0.3 };
-    let start = Start::from(y).with_slip([1.0, 2.0]).with_time(3.0).with_aloft(AboveTable::new(0.5, -1.0));
+    let start =
+        Start::from(y).with_slip(Slip::new(1.0, 2.0)).with_time(3.0).with_aloft(AboveTable::new(0.5, -1.0));
     assert_eq!(
         (start.state, start.slip, start.time, start.aloft),
-        (y, [1.0, 2.0], 3.0, Some(AboveTable::new(0.5, -1.0)))
+        (y, Slip::new(1.0, 2.0), 3.0, Some(AboveTable::new(0.5, -1.0)))
     );
-    assert_eq!(start.with_aloft(None).with_slip([0.0; 2]).with_time(0.0), y.into());
+    assert_eq!(start.with_aloft(None).with_slip(Slip::default()).with_time(0.0), y.into());
 }

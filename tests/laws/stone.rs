@@ -7,7 +7,7 @@ use spincyl::contact::Friction;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Contact, Error, State};
+use spincyl::{Body, Contact, Error, Slip, State};
 
 /// A tensor with these principal moments, turned by these angles about axes 3 and 1.
 pub(crate) fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 3]; 3] {
@@ -115,7 +115,7 @@ proptest! {
     ) {
         let friction = if wet { Friction::Viscous { c: mu } } else { Friction::coulomb(mu) };
         let ask = Ask::on(friction).with_pose().with_force();
-        let start = Start::from(start).with_slip(slip);
+        let start = Start::from(start).with_slip(slip.into());
         let motion = match stone::roll(&stone, start, &TIMES, &ask, || true) {
             Err(Error::Painleve { .. }) => return Ok(()),
             motion => motion.unwrap().unwrap(),
@@ -134,7 +134,7 @@ proptest! {
             // An angle by its cosine would have half the digits next to upright.
             let half = nalgebra::Quaternion::from_parts(1.0 + upright.z, upright.cross(&Vector3::z()));
             let tilt = nalgebra::UnitQuaternion::new_normalize(half);
-            let slip = pose.orientation * (tilt.inverse() * Vector3::new(path.slip[i][0], path.slip[i][1], 0.0));
+            let slip = pose.orientation * (tilt.inverse() * Vector3::new(path.slip[i].u_h, path.slip[i].u_2, 0.0));
             prop_assert!(slip.z.abs() < 1e-12 * (1.0 + slip.norm()));
             let v = slip - w.cross(&arm);
             let tensor = Matrix3::from(stone.inertia());
@@ -148,7 +148,7 @@ proptest! {
                 let y = &motion.states[0];
                 let w = poses[0].orientation * Vector3::from(y.w);
                 let arm = Vector3::new(poses[0].contact_point.x, poses[0].contact_point.y, 0.0) - Vector3::from(poses[0].centre);
-                let v = Vector3::new(start.slip[0], start.slip[1], 0.0) - w.cross(&arm);
+                let v = Vector3::new(start.slip.u_h, start.slip.u_2, 0.0) - w.cross(&arm);
                 let own = Vector3::from(y.w);
                 0.5 * (own.dot(&(tensor * own)) + v.norm_squared()) + poses[0].centre[2]
             };
@@ -157,7 +157,7 @@ proptest! {
         }
         // Friction opposes the slip, and is mu N there.
         for (i, force) in motion.forces.as_ref().unwrap().iter().enumerate() {
-            let (drag, speed) = (force.x.hypot(force.y), path.slip[i][0].hypot(path.slip[i][1]));
+            let (drag, speed) = (force.x.hypot(force.y), path.slip[i].speed());
             if path.kinds[i] == Kind::Slipping && speed > 1e-9 {
                 // A stone that has lifted off at its start has a negative normal force there.
                 let most = mu * force.z.abs() * if wet { speed } else { 1.0 };
@@ -250,7 +250,7 @@ proptest! {
         stone in any_stone(), start in any_start(), slip in [-1.0..1.0f64, -1.0..1.0f64],
     ) {
         let ask = Ask::on(Friction::coulomb(0.0)).with_pose();
-        let motion = rolled(&stone, Start::from(start).with_slip(slip), &TIMES, &ask);
+        let motion = rolled(&stone, Start::from(start).with_slip(slip.into()), &TIMES, &ask);
         let poses = motion.poses.as_ref().unwrap();
         prop_assume!(poses.len() > 2);
         let way = |i: usize| [0, 1].map(|k| (poses[i].centre[k] - poses[0].centre[k]) / TIMES[i]);
@@ -390,7 +390,7 @@ fn what_is_no_stone_or_no_start_is_refused_by_name() {
     refused(StoneState { vertical: [0.0, 0.0, 2.0], ..upright }.into(), ask, "vertical");
     refused(StoneState { vertical: [f64::NAN; 3], ..upright }.into(), ask, "vertical");
     refused(StoneState { w: [0.0, f64::INFINITY, 0.0], ..upright }.into(), ask, "w2");
-    refused(Start::from(upright).with_slip([0.1, 0.0]), ask, "slip");
+    refused(Start::from(upright).with_slip(Slip::new(0.1, 0.0)), ask, "slip");
     refused(upright.into(), ask.with_method(Method::Step(0.1)), "step");
     refused(upright.into(), ask.with_restitution(1.5), "restitution");
     let tilted = Ellipsoid::new([1.0, 0.5, 0.4], turned([0.1, 0.2, 0.25], [0.3, 0.2]), [0.0; 3]).unwrap();

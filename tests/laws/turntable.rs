@@ -5,7 +5,7 @@ use crate::common::wander;
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
@@ -41,7 +41,7 @@ fn seen(body: &Body, om: f64, m: &Motion, i: usize) -> Seen {
     let ((sin, cos), at) = (pose.phi.radians().sin_cos(), place(body, y.theta));
     let AboveTable { height: high, lift, .. } =
         path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default();
-    let [v_h, v_2] = slip::centre_velocity(body, &y, path.map_or([0.0; 2], |path| path.slip[i]));
+    let [v_h, v_2] = slip::centre_velocity(body, &y, path.map_or(Slip::default(), |path| path.slip[i]));
     let point = [pose.contact_point.x, pose.contact_point.y];
     let velocity = [v_h * cos - v_2 * sin - om * point[1], v_h * sin + v_2 * cos + om * point[0]];
     let centre = [point[0] - at.lever[0] * cos, point[1] - at.lever[0] * sin, at.height[0] + high];
@@ -105,7 +105,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
         }
     };
     if ask.table.rubs() && next() < 0.7 {
-        start = start.with_slip([within(next, -1.0, 1.0), within(next, -1.0, 1.0)]);
+        start = start.with_slip(Slip::new(within(next, -1.0, 1.0), within(next, -1.0, 1.0)));
     }
     let on_patch = patched(&ask);
     ask = ask.with_losses(match (next() * 5.0) as usize {
@@ -224,7 +224,7 @@ fn on_a_table_that_turns_the_other_way_the_mirror_image_moves() {
         let Ok(Some(m)) = roll_with(&body, start, &[1.5], &ask.with_pose(), || true) else { continue };
         let State { theta, w1, w2, w3 } = start.state;
         let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
-            .with_slip([start.slip[0], -start.slip[1]])
+            .with_slip(Slip::new(start.slip.u_h, -start.slip.u_2))
             .with_heading(-start.heading)
             .with_place([start.place[0], -start.place[1]])
             .with_aloft(start.aloft);
@@ -313,7 +313,7 @@ fn a_ball_that_rolling_resistance_holds_is_carried_by_the_table_and_else_rolls_o
     let ask = patch.with_losses(losses).with_turning(om);
     let m = rolled(
         &ball(),
-        Start::from(spun(0.0)).with_place([0.1, 0.0]).with_slip([0.0, -0.05]),
+        Start::from(spun(0.0)).with_place([0.1, 0.0]).with_slip(Slip::new(0.0, -0.05)),
         &[300.0],
         &ask,
     );
@@ -338,7 +338,8 @@ fn a_ball_that_falls_on_a_turntable_is_thrown_along_it_by_friction() {
     for mu in [0.1, 0.2, 0.5] {
         let slip = [-om * r * 0.4f64.sin(), -om * r * 0.4f64.cos()];
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e).with_turning(om);
-        let m = rolled(&ball(), start.with_slip(slip).with_aloft(AboveTable::new(0.0, -v)), &[0.5], &ask);
+        let m =
+            rolled(&ball(), start.with_slip(slip.into()).with_aloft(AboveTable::new(0.0, -v)), &[0.5], &ask);
         let thrown = seen(&ball(), om, &m, 0).velocity;
         let expected = (mu * (1.0 + e) * v).min(om * r * 2.0 / 7.0);
         assert!((thrown[1] - expected).abs() < 1e-13 && thrown[0].abs() < 1e-13, "{thrown:?} {expected}");
@@ -357,7 +358,7 @@ fn a_flight_above_a_turntable_is_that_above_a_table_at_rest() {
         let (sin, cos) = start.heading.sin_cos();
         let [x, y] = start.place;
         let table = [om * (x * sin - y * cos), om * (x * cos + y * sin)];
-        let over = start.with_slip([start.slip[0] - table[0], start.slip[1] - table[1]]);
+        let over = start.with_slip(Slip::new(start.slip.u_h - table[0], start.slip.u_2 - table[1]));
         let Ok(Some(m)) = roll_with(&body, over, &[0.5], &ask.with_turning(om).with_pose(), || true) else {
             continue;
         };

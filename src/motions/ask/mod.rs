@@ -14,7 +14,7 @@ use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::contact::{Face, ImpactLaw, Table};
 use crate::laws::loss::{Law, Losses, Resistance};
 use crate::laws::pose::{axes, euler_angles};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::methods::SHORT_CODE;
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -129,13 +129,13 @@ impl Ask {
     /// use spincyl::contact::Friction;
     /// use spincyl::loss::{Law, Losses, Resistance};
     /// use spincyl::motion::{Ask, Start, roll_with};
-    /// use spincyl::{Body, State};
+    /// use spincyl::{Body, Slip, State};
     ///
     /// // A ball that is struck through its centre, with mu = 0.2, rolls after 2 v/(7 mu), whatever resists its rolling.
     /// let (ball, still) = (Body::ball(0.0, 0.4, 0.4)?, State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 });
     /// let losses = Losses::of(Law::RollingResistance, 0.01);
     /// let ask = Ask::on(Friction::coulomb(0.2)).with_losses(losses).with_resistance(Resistance::WhileRolling);
-    /// let motion = roll_with(&ball, Start::from(still).with_slip([0.0, 3.0]), &[10.0], &ask, || true)?.unwrap();
+    /// let motion = roll_with(&ball, Start::from(still).with_slip(Slip::new(0.0, 3.0)), &[10.0], &ask, || true)?.unwrap();
     /// assert!((motion.path.unwrap().phases[1].time - 2.0 * 3.0 / (7.0 * 0.2)).abs() < 1e-12);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
@@ -276,11 +276,9 @@ impl From<AboveTable> for [f64; 2] {
 pub struct Start<S = State> {
     /// The initial state.
     pub state: S,
-    /// The initial slip of the contact point along the horizontal vector e_h = cos(theta) e1 - sin(theta) e3 and along e2,
-    /// in sqrt(g R); for a stone along x and y
-    /// ([`stone::roll`](super::stone::roll)).
+    /// The initial slip of the contact point, in sqrt(g R); for a stone see [`stone::roll`](super::stone::roll), too.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub slip: [f64; 2],
+    pub slip: Slip,
     /// The initial time.
     #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
@@ -298,14 +296,14 @@ pub struct Start<S = State> {
 impl<S> From<S> for Start<S> {
     /// The state at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
-        Self { state, slip: [0.0; 2], time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
+        Self { state, slip: Slip::default(), time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
     }
 }
 
 impl<S> Start<S> {
     /// Returns this start with this slip.
     #[must_use]
-    pub fn with_slip(self, slip: [f64; 2]) -> Self {
+    pub fn with_slip(self, slip: Slip) -> Self {
         Self { slip, ..self }
     }
 
@@ -354,7 +352,8 @@ impl Start {
             return self;
         }
         let told = self.seen_on(body);
-        let slip = centre_velocity(&told.0, &told.1.state, [0.0; 2]).map(|v| 0.0 - v);
+        let slip = centre_velocity(&told.0, &told.1.state, Slip::default()).map(|v| 0.0 - v);
+        let slip = Slip::from(slip);
         self.with_slip(if told.0.view().over { slip.map(|u| 0.0 - u) } else { slip })
     }
 
@@ -384,12 +383,12 @@ impl Start {
     ///
     /// ```
     /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
-    /// use spincyl::{Body, motion::Start};
+    /// use spincyl::{Body, Slip, motion::Start};
     ///
     /// let (ball, w) = (Body::ball(0.0, 0.4, 0.4)?, Vector3::new(0.0, 2.0, 0.3));
     /// let turned = UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
     /// let rolls = Start::from_twist(&ball, &turned, w, w.cross(&Vector3::z()), None)?;
-    /// assert_eq!(rolls.slip, [0.0, 0.0]);
+    /// assert_eq!(rolls.slip, Slip::default());
     /// assert!(Start::from_twist(&ball, &turned, w, Vector3::z(), None).is_err());
     /// # Ok::<(), spincyl::Error>(())
     /// ```
@@ -411,10 +410,10 @@ impl Start {
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
         let expected = "a velocity of the centre that keeps the lowest point on the table; or give a height";
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
-        let [along, across] = centre_velocity(body, &state, [0.0; 2]);
+        let [along, across] = centre_velocity(body, &state, Slip::default());
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
         let aloft = height.map(|height| AboveTable::new(height - rim.height(angle), rise));
-        Ok(Self::from(state).with_slip(slip).with_aloft(aloft))
+        Ok(Self::from(state).with_slip(slip.into()).with_aloft(aloft))
     }
 }
 

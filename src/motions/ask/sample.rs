@@ -8,7 +8,7 @@
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::pose::{Pose, axes};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::{AboveTable, Kind, Motion, Moving, OtherRim};
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -34,8 +34,8 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point, along e_h and along e2, with a law of friction; for a stone along x and y.
-    pub slip: Option<[f64; 2]>,
+    /// The slip of the contact point, with a law of friction.
+    pub slip: Option<Slip>,
     /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point and its vertical velocity.

@@ -16,7 +16,7 @@ use crate::laws::custom::{
     fault_of_friction,
 };
 use crate::laws::loss::{Couple, Kinematics, OwnCouple};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::dry::friction::OwnFriction;
@@ -102,7 +102,7 @@ impl<'a> OwnLaws<'a> {
         let now = Moment {
             time: self.since + y[TIME],
             state,
-            slip: [u_h, u_2].map(|u| side * over * u),
+            slip: Slip { u_h, u_2 }.map(|u| side * over * u),
             phi,
             psi: over * psi,
             contact_point: Point2::new(y[X], y[Y]),
