@@ -96,7 +96,7 @@ pub mod drift {
 
     pub use crate::many::columns::{BodyColumns, LossColumns, StateColumns};
     pub use crate::many::drifts::{
-        Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops,
+        Centre, DriftAnswer, DriftOutput, DriftStarts, INVALID, Question, ask, single, stops,
     };
     pub use crate::motions::drift::{Drift, End};
 }

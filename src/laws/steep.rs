@@ -153,6 +153,23 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     Ok([a, rim.height(flat)])
 }
 
+/// A slope, and the direction of a body on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Incline {
+    /// The slope of the table, in radians.
+    pub slope: f64,
+    /// The direction phi to which the body leans, in radians from downhill.
+    pub phi: f64,
+}
+
+impl Incline {
+    /// This slope and this direction, in radians.
+    pub const fn new(slope: f64, phi: f64) -> Self {
+        Self { slope, phi }
+    }
+}
+
 /// What a body at rest on a slope needs, as shares of what holds it there; a body whose shares are all below 1 stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -166,7 +183,7 @@ pub struct SlopeShares {
 }
 
 /// What a body at rest on a table needs to be held, as a share of what friction, dry losses and its width can hold:
-/// three shares, against slipping, rolling and tipping. The last two arguments are the slope and phi.
+/// three shares, against slipping, rolling and tipping.
 ///
 /// # Errors
 /// Those of [`slip_slope`], unless `mu` is infinite, and of [`tip_slope`].
@@ -176,7 +193,7 @@ pub fn shares(
     mu: f64,
     losses: &Losses,
     posture: Posture,
-    [slope, phi]: [f64; 2],
+    Incline { slope, phi }: Incline,
 ) -> Result<SlopeShares, Error> {
     let t = slope.tan();
     let of = |need: f64, most: f64| if need.abs() < NO_COUPLE { 0.0 } else { (need / most).abs() };

@@ -355,12 +355,12 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "slope_drift",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[0])),
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y).across)),
     },
     ArrayFunction {
         name: "slope_resonance",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[1])),
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y).resonance)),
     },
     ArrayFunction {
         name: "tripped_w2",

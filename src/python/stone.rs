@@ -148,7 +148,7 @@ pub fn rocking(stone: [f64; STONE], spin: f64) -> PyResult<[f64; 12]> {
     let mut all = [0.0; 12];
     all[..2].copy_from_slice(&found.growth);
     all[2..4].copy_from_slice(&found.frequency);
-    all[4..].copy_from_slice(found.eigenvalues.as_flattened());
+    all[4..].copy_from_slice(found.eigenvalues.map(|x| [x.re, x.im]).as_flattened());
     Ok(all)
 }
 

@@ -8,7 +8,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Motion, Start, roll_with};
-use spincyl::pose::{axes, euler_angles};
+use spincyl::pose::{EulerAngles, axes, euler_angles};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -41,7 +41,7 @@ proptest! {
 
     #[test]
     fn euler_angles_give_back_their_orientation(q in any_turn()) {
-        let [phi, theta, psi] = euler_angles(&q);
+        let EulerAngles { phi, theta, psi, .. } = euler_angles(&q);
         prop_assert!((0.0..=PI).contains(&theta) && phi.abs() <= PI && psi.abs() <= PI);
         let again = axes(phi, theta) * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), psi);
         let off = (again.to_rotation_matrix().matrix() - q.to_rotation_matrix().matrix()).amax();

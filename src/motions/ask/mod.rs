@@ -404,7 +404,7 @@ impl Start {
     ) -> Result<Self, Error> {
         let state = State::from_twist(orientation, angular_velocity);
         let body = &body.told_at(state.theta);
-        let v = axes(-euler_angles(orientation)[0], 0.0) * velocity;
+        let v = axes(-euler_angles(orientation).phi, 0.0) * velocity;
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
