@@ -269,7 +269,7 @@ fn numbers_that_have_names_are_arrays_and_bools_in_files() {
         "state": y, "slip": [0.5, 0.25], "time": 0.0, "aloft": [0.5, -1.0], "heading": 0.0, "place": [0.0, 0.0],
     });
     let read = Start::<State>::deserialize(&start).unwrap();
-    assert_eq!(read.aloft, Some(AboveTable::new(0.5, -1.0)));
+    assert_eq!((read.slip, read.aloft), (Slip::new(0.5, 0.25), Some(AboveTable::new(0.5, -1.0))));
     assert_eq!(serde_json::to_value(read).unwrap(), start);
     // The slip of the other rim, and then the force on it: its normal component, and those across and along the lean.
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0).with_force();
