@@ -41,7 +41,7 @@ DEBUG = {
 PROGRAM = """
 use spincyl::contact::Friction;
 use spincyl::motion::{Ask, Start, roll_with};
-use spincyl::{Body, roll, steady};
+use spincyl::{Body, Slip, roll, steady};
 
 fn main() -> Result<(), spincyl::Error> {
     let body = Body::tube(6.0, 0.8)?;
@@ -50,9 +50,9 @@ fn main() -> Result<(), spincyl::Error> {
     for _ in 0..100 {
         assert!(roll(&body, &start, &times)?.error < 1e-9);
     }
-    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose().with_force();
     for _ in 0..20 {
-        let thrown = Start::from(start).with_slip([0.3, -0.5]);
+        let thrown = Start::from(start).with_slip(Slip::new(0.3, -0.5));
         assert!(roll_with(&body, thrown, &times, &ask, || true)?.unwrap().error < 1e-6);
     }
     Ok(())
@@ -65,7 +65,7 @@ SURVEY = """
 use spincyl::contact::Friction;
 use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, roll};
 use spincyl::motion::{Ask, Start, roll_with};
-use spincyl::{Body, steady};
+use spincyl::{Body, Slip, steady};
 use std::time::Instant;
 
 const COUNT: usize = 16_384;
@@ -88,7 +88,7 @@ fn main() -> Result<(), spincyl::Error> {
     let mut least = [f64::INFINITY; 3];
     for _ in 0..5 {
         let began = Instant::now();
-        let job = Job::new(&[20.0]).with_ask(Ask::default().with_beyond(true));
+        let job = Job::new(&[20.0]).with_ask(Ask::default().with_beyond());
         roll(&starts, &job, MotionOutput::new(&mut error, &mut method, &mut status), 1, |_| true)?;
         least[0] = least[0].min(began.elapsed().as_secs_f64());
         let began = Instant::now();
@@ -102,7 +102,7 @@ fn main() -> Result<(), spincyl::Error> {
         let began = Instant::now();
         let ask = Ask::on(Friction::coulomb(0.2)).with_restitution(0.3);
         for _ in 0..200 {
-            let thrown = Start::from(start).with_slip([0.3, -0.5]);
+            let thrown = Start::from(start).with_slip(Slip::new(0.3, -0.5));
             assert!(roll_with(&pipe, thrown, &times, &ask, || true)?.unwrap().error < 1e-6);
         }
         least[2] = least[2].min(began.elapsed().as_secs_f64());

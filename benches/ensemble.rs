@@ -71,18 +71,15 @@ fn ensembles(c: &mut Criterion) {
             })
         });
     };
-    let job = Job::new(&times).with_ask(Ask::default().with_beyond(true));
+    let job = Job::new(&times).with_ask(Ask::default().with_beyond());
     for kick in [0.05, 0.4, 0.8] {
         bench(&format!("final state, kick {kick}"), many(kick), job, COUNT);
     }
     bench("final state, kick 0.05, one body", one(0.05), job, COUNT);
     bench("final state, kick 0.05, within 1e-6", many(0.05), job.with_tol(1e-6), COUNT);
-    bench(
-        "final state, kick 0.05, its end watched",
-        many(0.05),
-        job.with_ask(job.ask.with_beyond(false)),
-        COUNT,
-    );
+    let mut watched = job.ask;
+    watched.beyond = false;
+    bench("final state, kick 0.05, its end watched", many(0.05), job.with_ask(watched), COUNT);
     bench(
         "rk4, a step of 0.01",
         many(0.05),

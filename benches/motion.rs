@@ -25,7 +25,8 @@ fn rk4_steps(c: &mut Criterion) {
     for (name, pose, force) in wanted {
         // Every step is an output, which costs most.
         let times: Vec<f64> = (0..=STEPS).map(|i| i as f64 * 1e-3).collect();
-        let scene = Ask::default().with_method(Method::Step(1e-3)).with_pose(pose).with_force(force);
+        let mut scene = Ask::default().with_method(Method::Step(1e-3));
+        (scene.pose, scene.force) = (pose, force);
         group.bench_function(format!("{name}, every state"), |b| {
             b.iter(|| roll_with(&body, black_box(&y), &times, &scene, || true).unwrap())
         });

@@ -161,13 +161,13 @@ impl Scene {
             let body = Body::rounded(ell, i1, i3, fillet)?.with_theta_end(theta_end)?;
             let [theta, w1, w2, w3] = self.start[..] else { unreachable!() };
             let aloft = Some(AboveTable::from(self.aloft)).filter(|aloft| !aloft.height.is_nan());
-            let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(aloft);
+            let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip.into()).with_aloft(aloft);
             let found = roll_with(&body, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| vec![y.theta, y.w1, y.w2, y.w3]))
         } else {
             let stone = Ellipsoid::of_numbers(self.body[..].try_into().unwrap())?;
             let [a, b, c, d, e, f] = self.start[..] else { unreachable!() };
-            let start = Start::from(StoneState { vertical: [a, b, c], w: [d, e, f] }).with_slip(slip);
+            let start = Start::from(StoneState { vertical: [a, b, c], w: [d, e, f] }).with_slip(slip.into());
             let found = stone::roll(&stone, start, &times, &self.ask(), || true)?.unwrap();
             Ok(told(&found, |y| [y.vertical, y.w].concat()))
         }
@@ -182,8 +182,8 @@ fn told<S: spincyl::motion::Moving>(found: &Motion<S>, numbers: impl Fn(&S) -> V
         None => ("Done".into(), *found.times.last().unwrap(), numbers(found.states.last().unwrap())),
     };
     let slip = match (path, &found.event) {
-        (Some(path), Some(_)) => path.last_slip,
-        (Some(path), None) => *path.slip.last().unwrap(),
+        (Some(path), Some(_)) => path.last_slip.into(),
+        (Some(path), None) => (*path.slip.last().unwrap()).into(),
         _ => [0.0; 2],
     };
     let phases = path.map_or(1, |path| path.phases.len());

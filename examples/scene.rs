@@ -6,11 +6,11 @@
 //! velocities, contact point and force at 401 times of a second. With a file the scene is written to it, and the model for
 //! MuJoCo beside it.
 
-use spincyl::State;
 use spincyl::contact::Friction;
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::{AboveTable, Ask, Start};
 use spincyl::scene::{Scene, SceneError};
+use spincyl::{Slip, State};
 
 /// The scene of a tube that is thrown.
 ///
@@ -24,7 +24,7 @@ pub fn thrown() -> Result<Scene, SceneError> {
     let [precession, spin] = [20.0, 30.0].map(|w| scale.angular_velocity(w));
     let state = State::from_rates(80f64.to_radians(), 0.0, precession, spin);
     let start = Start::from(state)
-        .with_slip([0.0, scale.speed(0.2)])
+        .with_slip(Slip::new(0.0, scale.speed(0.2)))
         .with_aloft(AboveTable::new(scale.length(5e-3), 0.0));
     let seconds: Vec<f64> = (0..=400).map(|i| 0.0025 * f64::from(i)).collect();
     let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5);

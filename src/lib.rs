@@ -101,7 +101,7 @@ pub mod drift {
 
     pub use crate::many::columns::{BodyColumns, LossColumns, StateColumns};
     pub use crate::many::drifts::{
-        Centre, DriftOutput, DriftStarts, INVALID, Question, WIDTH, ask, single, stops,
+        Centre, DriftAnswer, DriftOutput, DriftStarts, INVALID, Question, ask, single, stops,
     };
     pub use crate::motions::drift::{Drift, End};
 }
@@ -184,4 +184,4 @@ pub use laws::stone::Ellipsoid;
 pub use measured::Measured;
 pub use motion::{Motion, roll};
 pub use scale::Scale;
-pub use state::State;
+pub use state::{Slip, State};

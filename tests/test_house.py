@@ -310,7 +310,7 @@ def test_no_function_takes_more_than_six_arguments_by_position():
 
 
 #: How many tuples of three or more parts without names stand in the signatures of a layer.
-UNNAMED = {"motions": 12, "laws": 5, "many": 5, "python": 3, "methods": 2}
+UNNAMED = {"motions": 13, "laws": 6, "many": 5, "python": 3, "methods": 2}
 
 
 def test_few_signatures_have_tuples_without_names():
@@ -399,12 +399,12 @@ def test_every_public_module_is_on_the_map():
 
 
 def public_modules():
-    """The public modules outside of lib.rs: those at the front door, and `pub mod` in one of these."""
+    """The public modules outside of lib.rs: those at the front door, `pub mod` in one of these, and `motion::path`."""
     found = [path for path in front_door().values() if path in HOMES]
     for module in found:
         inner = re.findall(r"^pub mod (\w+);", HOMES[module].read_text("utf-8"), re.M)
         found += [(*module, word) for word in inner]
-    return sorted({*found, ("scene",)})
+    return sorted({*found, ("scene",), ("motions", "body")})
 
 
 def test_every_public_module_begins_with_an_example():
@@ -494,6 +494,167 @@ def test_every_public_type_can_grow_or_there_is_a_reason():
     assert len(exported) > 120 and set(CLOSED) < exported
     closed = {word for path in SOURCES for word in closed_types(path.read_text("utf-8"))} & exported
     assert closed == set(CLOSED), (closed - set(CLOSED), set(CLOSED) - closed)
+
+
+# Public numbers of unequal kinds, and switches, which have names.
+
+#: Public arrays of numbers, and why their numbers need no names: `Type.field`, `Type::function(argument)`, and
+#: `function ->` for a result.
+ALIKE = {
+    "a vector along e1, e2, e3 or the axes of a stone, or moments about these axes": {
+        "Error.moments",
+        "Error.w",
+        "under_couple(couple)",
+        "derivative(couple)",
+        "CoupleLaw::couple ->",
+        "Losses::couple ->",
+        "Ellipsoid::new(axes)",
+        "Ellipsoid::new(inertia)",
+        "Ellipsoid::new(offset)",
+        "Ellipsoid::uniform(axes)",
+        "Ellipsoid::rattleback(axes)",
+        "Ellipsoid::rattleback(moments)",
+        "Ellipsoid::rattleback(offset)",
+        "Ellipsoid::axes ->",
+        "Ellipsoid::inertia ->",
+        "Ellipsoid::offset ->",
+        "Ellipsoid::moments ->",
+        "Ellipsoid::lowest_point ->",
+        "Ellipsoid::lowest_point(vertical)",
+        "StoneState.vertical",
+        "StoneState.w",
+        "StoneState::inclinations ->",
+        "SceneBody.principal_moments",
+    },
+    "a vector along e_h, e2 and upwards": {
+        "centre_velocity ->",
+        "pressure_centre ->",
+        "Strike.velocities",
+        "Strike.impulse",
+    },
+    "a place on the table or in space, or its rate": {
+        "StonePose.centre",
+        "Start.place",
+        "Start::with_place(place)",
+        "MeasuredMotion::readings_from(x, y)",
+        "RollingStone.centre",
+        "RollingStone.centre_velocity",
+        "Ellipsoid::slip(centre)",
+    },
+    "a point in the half plane beside the axis": {"Body::lathe(points)", "CirclesShape.outline"},
+    "a quaternion, or its rate": {"RollingStone.orientation", "RollingStone.orientation_rate"},
+    "the same number of two rims, circles, ends, modes or roots": {
+        "Apex.contacts",
+        "Body::unequal_balls(radii)",
+        "Form.radii",
+        "Form.bores",
+        "Form.ends",
+        "normals ->",
+        "Swing::turning_points ->",
+        "Rocking.growth",
+        "Rocking.frequency",
+        "precessions_of_spin ->",
+    },
+    "all values of one number": {"areas ->", "boundaries ->", "folds ->", "ridge ->", "inclinations ->"},
+    "the numbers of a system of equations of the user": {
+        "Compensated.y",
+        "Compensated.carry",
+        "Compensated::new(y)",
+        "Compensated::plus(change)",
+        "increment ->",
+        "increment(y)",
+        "increment(k1)",
+    },
+    "a row of a table whose columns are `Ellipsoid::NAMES`": {
+        "Ellipsoid::of_numbers(a, b, c, i, j, k, l, m, n, x, y, z, end)",
+        "Ellipsoid::numbers ->",
+    },
+}
+
+
+def public_pieces(text, types, free):
+    """Name and type of each field of these public types, and of the arguments and results of their functions, and of the
+    free functions for whose names `free` holds."""
+    for found in re.finditer(r"^pub (struct|enum) (\w+)[^{;(]*\{\n(.*?)^\}", text, re.M | re.S):
+        for word, kind in re.findall(r"^ *(?:pub )?(\w+): (.*?),?$", found[3], re.M):
+            hidden = found[1] == "struct" and not re.search(rf"^    pub {word}: ", found[3], re.M)
+            if found[2] in types and not hidden:
+                yield f"{found[2]}.{word}", kind
+    functions = [("", text[at.start() :]) for at in re.finditer(r"^pub (?:const )?fn ", text, re.M)]
+    for found in re.finditer(r"^(impl|pub trait)\b([^{;]*)\{\n(.*?)^\}", text, re.M | re.S):
+        word = re.match(r"(?:<[^>]*>)? (\w+)", found[2])
+        if word and word[1] in types and " for " not in found[2]:
+            seen = r"^    fn " if found[1] == "pub trait" else r"^    pub (?:const )?fn "
+            starts = re.finditer(seen, found[3], re.M)
+            functions += [(f"{word[1]}::", found[3][at.start() :]) for at in starts]
+    for of, rest in functions:
+        function, given, result = next(signatures(rest))
+        if of or free(function):
+            yield f"{of}{function} ->", result
+            for argument in given:
+                pattern, _, kind = (
+                    argument.rpartition("]: ") if "]: " in argument else argument.partition(": ")
+                )
+                yield f"{of}{function}({pattern.strip('[&')})", kind
+
+
+@pytest.mark.parametrize(
+    ("text", "arrays", "switches"),
+    [
+        ("pub struct Start {\n    pub slip: [f64; 2],\n}", ["Start.slip"], []),
+        ("pub struct Start {\n    slip: [f64; 2],\n    pub time: f64,\n}", [], []),
+        ("pub struct Inner {\n    pub slip: [f64; 2],\n}", [], []),
+        ("pub enum Start {\n    Here {\n        ends: Vec<[f64; 2]>,\n    },\n}", ["Start.ends"], []),
+        (
+            "impl<S> Start<S> {\n    pub fn at(self, x: Option<[f64; 3]>) -> Self {\n    }\n}",
+            ["Start::at(x)"],
+            [],
+        ),
+        ("impl Start {\n    pub(crate) fn at(self, x: [f64; 3], on: bool) -> Self {\n    }\n}", [], []),
+        (
+            "impl Start {\n    pub fn with_pose(self, pose: bool) -> Self {\n    }\n}",
+            [],
+            ["Start::with_pose(pose)"],
+        ),
+        ("impl From<[f64; 2]> for Start {\n    fn from(of: [f64; 2]) -> Self {\n    }\n}", [], []),
+        ("pub fn told(a: f64, [x, y]: [f64; 2]) -> f64 {\n}", ["told(x, y)"], []),
+        ("pub fn told(a: f64) -> Result<[f64; 5], Error> {\n}", ["told ->"], []),
+        ("pub fn told(go_on: impl FnMut(f64) -> bool) -> bool {\n}", [], []),
+        (
+            "pub trait Start {\n    fn couple(&self, on: bool) -> [f64; 3];\n}",
+            ["Start::couple ->"],
+            ["Start::couple(on)"],
+        ),
+        ("pub fn hidden(x: [f64; 2], on: bool) {\n}", [], []),
+    ],
+)
+def test_public_arrays_and_switches_are_seen(text, arrays, switches):
+    pieces = list(public_pieces(text, {"Start"}, lambda function: function == "told"))
+    assert [piece for piece, kind in pieces if is_array(kind)] == arrays
+    assert [piece for piece, kind in pieces if is_switch(piece, kind)] == switches
+
+
+def is_array(kind):
+    return bool(re.search(r"\[f64(?!\])", kind))
+
+
+def is_switch(piece, kind):
+    """Whether an argument is a bool, and not a function that returns one."""
+    return "(" in piece and bool(re.search(r"\bbool\b", kind)) and not re.search(r"\bFn(?:Mut|Once)?\(", kind)
+
+
+def test_public_numbers_of_unequal_kinds_have_names_and_no_public_argument_is_a_switch():
+    types, modules = exported_types(), public_modules()
+    homes = {path: module for module, path in HOMES.items() if module[0] != "python"}
+    pieces = {}
+    for path, module in homes.items():
+        text = "\n".join(line for _, line in code(path))
+        pieces |= public_pieces(text, types, lambda f, at=module: at in modules or f in types)
+    assert len(pieces) > 900
+    assert not {piece for piece, kind in pieces.items() if is_switch(piece, kind)}
+    arrays = {piece for piece, kind in pieces.items() if is_array(kind)}
+    alike = {piece for reason in ALIKE.values() for piece in reason}
+    assert arrays == alike, (arrays - alike, alike - arrays)
 
 
 def test_no_layer_uses_a_later_one():

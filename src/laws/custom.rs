@@ -2,7 +2,7 @@
 //! begins.
 
 use super::body::Body;
-use super::state::State;
+use super::state::{Slip, State};
 use crate::error::{Error, within};
 use core::f64::consts::PI;
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
@@ -54,9 +54,8 @@ pub struct Moment {
     pub time: f64,
     /// The inclination and the angular velocity along e1, e2, e3; for a body with two rims they refer to the lower one.
     pub state: State,
-    /// The slip along e_h and along e2, in sqrt(g R); 0 where the body rolls. In the air it is the velocity of the lowest
-    /// point over the table.
-    pub slip: [f64; 2],
+    /// The slip, in sqrt(g R); 0 where the body rolls. In the air it is the velocity of the lowest point over the table.
+    pub slip: Slip,
     /// The direction phi to which the axis leans, in radians from x to y.
     pub phi: f64,
     /// The angle psi by which the body has turned about its axis, in radians.

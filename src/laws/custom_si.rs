@@ -10,7 +10,7 @@
 use super::body::Body;
 use super::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
 use super::scale::Scale;
-use super::state::State;
+use super::state::{Slip, State};
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 /// Inclination, angular velocity and normal force of a body, in SI: the argument of a couple in SI.
@@ -35,8 +35,8 @@ pub struct MomentInSi {
     pub theta: f64,
     /// The angular velocity along e1, e2, e3, in rad/s.
     pub w: Vector3<f64>,
-    /// The slip along e_h and along e2, in m/s.
-    pub slip: Vector2<f64>,
+    /// The slip in m/s.
+    pub slip: Slip,
     /// The direction phi to which the axis leans, in radians from x to y.
     pub phi: f64,
     /// The angle psi by which the body has turned about its axis, in radians.
@@ -107,7 +107,7 @@ impl<L: Fn(&MomentInSi) -> Push> DriveLaw for InSi<L> {
             time: scale.seconds(now.time),
             theta: now.state.theta,
             w: now.state.angular_velocity().map(|w| scale.radians_per_second(w)),
-            slip: Vector2::from(now.slip).map(speed),
+            slip: now.slip.map(speed),
             phi: now.phi,
             psi: now.psi,
             contact_point: now.contact_point.map(|x| scale.metres(x)),

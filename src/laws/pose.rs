@@ -69,17 +69,29 @@ pub fn axes(phi: f64, theta: f64) -> UnitQuaternion<f64> {
     about(Vector3::z_axis(), phi) * about(Vector3::y_axis(), -theta)
 }
 
+/// The Euler angles of an orientation, in radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct EulerAngles {
+    /// The precession angle, in [-pi, pi]; 0 where the third axis is vertical.
+    pub phi: f64,
+    /// The inclination, in [0, pi].
+    pub theta: f64,
+    /// The spin angle, in [-pi, pi].
+    pub psi: f64,
+}
+
 /// The angles phi, theta and psi of an orientation, which is `axes(phi, theta)` after a turn by psi about the third
-/// axis. Theta is in [0, pi], phi and psi are in [-pi, pi]; phi is 0 where the third axis is vertical. Error: a few
-/// roundings, divided by sin theta for phi and psi, but not for their sum, or their difference where theta is near pi.
+/// axis. Error: a few roundings, divided by sin theta for phi and psi, but not for their sum, or their difference where
+/// theta is near pi.
 ///
 /// ```
 /// use spincyl::pose::{axes, euler_angles};
 ///
-/// let [phi, theta, psi] = euler_angles(&axes(2.0, 1.3));
-/// assert!((phi - 2.0).abs() < 1e-15 && (theta - 1.3).abs() < 1e-15 && psi.abs() < 1e-15);
+/// let of = euler_angles(&axes(2.0, 1.3));
+/// assert!((of.phi - 2.0).abs() < 1e-15 && (of.theta - 1.3).abs() < 1e-15 && of.psi.abs() < 1e-15);
 /// ```
-pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
+pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> EulerAngles {
     let [x, y, z, w] = <[f64; 4]>::from(orientation.coords);
     let (lean, upright) = (x.hypot(y), z.hypot(w));
     let (sum, difference) = (2.0 * z.atan2(w), 2.0 * x.atan2(-y));
@@ -89,7 +101,7 @@ pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> [f64; 3] {
         _ => [0.5 * (sum + difference), 0.5 * (sum - difference)],
     };
     let near = |angle: f64| angle - TAU * (angle / TAU).round();
-    [near(phi), 2.0 * lean.atan2(upright), near(psi)]
+    EulerAngles { phi: near(phi), theta: 2.0 * lean.atan2(upright), psi: near(psi) }
 }
 
 /// Orientation and position of a body in a state.
@@ -119,7 +131,7 @@ impl State {
     /// laboratory. The orientation is the rotation from the axes of the body to those of the laboratory, of which the
     /// third is the vertical. Error: a few roundings of the angular velocity, divided by sin theta for w1 and w2.
     pub fn from_twist(orientation: &UnitQuaternion<f64>, angular_velocity: Vector3<f64>) -> Self {
-        let [phi, theta, _] = euler_angles(orientation);
+        let EulerAngles { phi, theta, .. } = euler_angles(orientation);
         let w = axes(phi, theta).inverse() * angular_velocity;
         Self { theta, w1: w.x, w2: w.y, w3: w.z }
     }

@@ -1,4 +1,5 @@
-//! The state of a rolling body: four numbers, and the quantities that follow from them without dynamics.
+//! The state of a rolling body: four numbers, and the quantities that follow from them without dynamics; and the slip, two
+//! more numbers of a body that does not roll.
 //!
 //! ```text
 //! w = (w1, w2, w3) = (phi' sin theta, -theta', phi' cos theta + psi')      angular velocity
@@ -21,6 +22,74 @@
 use super::body::Body;
 use crate::numbers::Real;
 use nalgebra::Vector3;
+
+/// The slip of a contact point: the velocity over the table of the point of the body that touches it, in sqrt(g R). In
+/// files it is the array of both numbers.
+///
+/// The horizontal e_h = cos(theta) e1 - sin(theta) e3 is the direction of the lean. The slip of a stone is along x and y
+/// of the laboratory, which e_h and e2 are at phi = 0. A motion takes components of at most 1e6.
+///
+/// ```
+/// use spincyl::{Slip, State, motion::Start};
+///
+/// // A wheel on edge that is thrown straight on slips along e2; without a slip it rolls.
+/// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
+/// let thrown = Start::from(state).with_slip(Slip::new(0.0, 2.0));
+/// assert_eq!((thrown.slip.u_2, thrown.slip.speed()), (2.0, 2.0));
+/// assert_eq!(Start::from(state).slip, Slip::default());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(from = "[f64; 2]", into = "[f64; 2]")
+)]
+#[non_exhaustive]
+pub struct Slip {
+    /// The component along e_h; of a stone along x.
+    pub u_h: f64,
+    /// The component along e2; of a stone along y.
+    pub u_2: f64,
+}
+
+impl Slip {
+    /// The slip with this component along e_h and this one along e2.
+    pub const fn new(u_h: f64, u_2: f64) -> Self {
+        Self { u_h, u_2 }
+    }
+
+    /// The speed |u|.
+    pub fn speed(self) -> f64 {
+        self.u_h.hypot(self.u_2)
+    }
+
+    /// Both components, as the equations of motion have them.
+    #[inline(always)]
+    pub(crate) const fn pair(self) -> [f64; 2] {
+        [self.u_h, self.u_2]
+    }
+
+    /// The slip with other components, each from its own.
+    pub(crate) fn map(self, to: impl Fn(f64) -> f64) -> Self {
+        Self { u_h: to(self.u_h), u_2: to(self.u_2) }
+    }
+}
+
+impl From<[f64; 2]> for Slip {
+    /// The components along e_h and e2.
+    #[inline(always)]
+    fn from([u_h, u_2]: [f64; 2]) -> Self {
+        Self { u_h, u_2 }
+    }
+}
+
+impl From<Slip> for [f64; 2] {
+    /// The components along e_h and e2.
+    #[inline(always)]
+    fn from(u: Slip) -> Self {
+        u.pair()
+    }
+}
 
 /// w_z, the drilling: the angular velocity about the vertical, with sine and cosine of theta.
 #[inline(always)]

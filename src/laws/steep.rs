@@ -154,6 +154,23 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     Ok([a, rim.height(flat)])
 }
 
+/// A slope, and the direction of a body on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Incline {
+    /// The slope of the table, in radians.
+    pub slope: f64,
+    /// The direction phi to which the body leans, in radians from downhill.
+    pub phi: f64,
+}
+
+impl Incline {
+    /// This slope and this direction, in radians.
+    pub const fn new(slope: f64, phi: f64) -> Self {
+        Self { slope, phi }
+    }
+}
+
 /// The shares of friction, losses and weight that hold a body at rest on a slope; if all are below 1, the body stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -166,8 +183,8 @@ pub struct SlopeShares {
     pub tipping: f64,
 }
 
-/// The shares of static friction, dry losses and width that are needed to keep a body at rest from slipping, rolling and
-/// tipping; each is 1 where the body lets go. The last two arguments are the slope and phi, in radians.
+/// The shares of static friction, dry losses and width that are needed to keep a body at rest on a slope from slipping,
+/// rolling and tipping; each is 1 where the body lets go.
 ///
 /// # Errors
 /// Those of [`slip_slope`], unless `mu` is infinite, and of [`tip_slope`].
@@ -177,7 +194,7 @@ pub fn shares(
     mu: f64,
     losses: &Losses,
     posture: Posture,
-    [slope, phi]: [f64; 2],
+    Incline { slope, phi }: Incline,
 ) -> Result<SlopeShares, Error> {
     let t = slope.tan();
     let of = |need: f64, most: f64| if need.abs() < NO_COUPLE { 0.0 } else { (need / most).abs() };

@@ -30,7 +30,7 @@
 
 use super::body::Body;
 use super::contact::landing;
-use super::state::State;
+use super::state::{Slip, State};
 use crate::error::{Error, within};
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -40,7 +40,7 @@ const LARGEST_INPUT: f64 = 1e100;
 /// number.
 const LEVEL_ROUNDING: f64 = 1e-9;
 
-/// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim along e_h and e2.
+/// The state of a body thrown on edge (a hoop, a coin, or a can on its side), and the slip of its rim.
 ///
 /// `velocity` is the velocity of the centre across the axis, in sqrt(g R). `backspin`, in sqrt(g/R), is positive where
 /// the bottom of the rim runs ahead of the centre.
@@ -51,7 +51,7 @@ const LEVEL_ROUNDING: f64 = 1e-9;
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let (state, slip) = thrown(&hoop, 1.0, 2.0)?;
 /// // Friction keeps v + I3 w3; `last`, the velocity of the rolling hoop, is negative: the hoop comes back.
-/// let last = (slip[1] + (1.0 + hoop.i3()) * state.w3) / (1.0 + hoop.i3());
+/// let last = (slip.u_2 + (1.0 + hoop.i3()) * state.w3) / (1.0 + hoop.i3());
 /// assert_eq!(last, -0.5);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
@@ -59,7 +59,7 @@ const LEVEL_ROUNDING: f64 = 1e-9;
 /// # Errors
 /// `OutOfRange` for a velocity or a backspin beyond 1e100, for a body of several circles that are not two equal rims,
 /// and for one whose theta_end is below pi/2.
-pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64; 2]), Error> {
+pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, Slip), Error> {
     within("velocity", velocity, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= velocity <= 1e100")?;
     within("backspin", backspin, (-LARGEST_INPUT, LARGEST_INPUT), "-1e100 <= backspin <= 1e100")?;
     landing::equal_rims(body)?;
@@ -70,7 +70,7 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
         "at least pi/2, for a body that can stand on edge",
     )?;
     let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 - backspin };
-    Ok((state, [0.0, velocity + backspin]))
+    Ok((state, Slip::new(0.0, velocity + backspin)))
 }
 
 /// The state of a body on its side that a finger presses at one end until it is launched, and the slip of the other
@@ -85,7 +85,7 @@ pub fn thrown(body: &Body, velocity: f64, backspin: f64) -> Result<(State, [f64;
 ///
 /// let tube = Body::tube(6.0, 0.8)?;
 /// let (state, slip) = pressed(&tube, 9.0, 0.8, 0.6, 0.0)?;
-/// assert!(launch_number(&tube, &state) > 1.0 && slip[1] != 0.0);
+/// assert!(launch_number(&tube, &state) > 1.0 && slip.u_2 != 0.0);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 ///
@@ -98,7 +98,7 @@ pub fn pressed(
     angle: f64,
     finger: f64,
     table: f64,
-) -> Result<(State, [f64; 2]), Error> {
+) -> Result<(State, Slip), Error> {
     landing::two_rims(body)?;
     within("impulse", impulse, (0.0, LARGEST_INPUT), "0 <= impulse <= 1e100")?;
     within("angle", angle, (f64::MIN_POSITIVE, FRAC_PI_2), "0 < angle <= pi/2 (radians)")?;
@@ -117,7 +117,7 @@ pub fn pressed(
     for (name, x) in [("w1", w1), ("w3", w3), ("u_2", slip)] {
         within(name, x, (-f64::MAX, f64::MAX), "a finite number: use a smaller impulse")?;
     }
-    Ok((State { theta: FRAC_PI_2, w1: w1 + 0.0, w2: 0.0, w3 }, [0.0, slip]))
+    Ok((State { theta: FRAC_PI_2, w1: w1 + 0.0, w2: 0.0, w3 }, Slip::new(0.0, slip)))
 }
 
 /// The spin w3 of a body on its side that turns at the rate w1, for the launch number `x`; not finite for w1 = 0.

@@ -354,7 +354,8 @@ fn one(
     let [a, b, c, d, e, f] = row.state;
     let state = StoneState { vertical: [a, b, c], w: [d, e, f] };
     let [slope, heading] = row.slope.unwrap_or_default();
-    let start = Start { slip: row.slip, heading, aloft: row.aloft.map(Into::into), ..Start::from(state) };
+    let start =
+        Start { slip: row.slip.into(), heading, aloft: row.aloft.map(Into::into), ..Start::from(state) };
     let mut ask = ask.with_slope(slope);
     // A walk on a slope has units of its own, in which it sees reversals, too.
     let pace = slope.cos().sqrt();

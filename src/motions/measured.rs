@@ -19,7 +19,7 @@
 use super::{Ask, Bounds, Ending, Kind, Motion, Start, motion};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
-use crate::laws::pose::{Pose, euler_angles};
+use crate::laws::pose::{EulerAngles, Pose, euler_angles};
 use crate::laws::scale::Scale;
 use crate::laws::state::State;
 use core::f64::consts::FRAC_PI_4;
@@ -292,7 +292,7 @@ impl Measured {
         go_on: impl FnMut() -> bool,
     ) -> Result<Option<MeasuredMotion>, Error> {
         let times: Vec<f64> = seconds.iter().map(|t| self.scale.time(*t)).collect();
-        let ask = ask.with_pose(true).with_force(true);
+        let ask = ask.with_pose().with_force();
         let found = motion::roll_with(&self.body, start, &times, &ask, go_on)?;
         Ok(found.map(|natural| MeasuredMotion { natural, of: *self, seconds: seconds.to_vec(), turn: 0.0 }))
     }
@@ -344,7 +344,7 @@ impl MeasuredMotion {
         orientation: &UnitQuaternion<f64>,
         [x, y]: [f64; 2],
     ) -> impl Iterator<Item = Reading> {
-        let [phi, theta, psi] = euler_angles(orientation);
+        let EulerAngles { phi, theta, psi } = euler_angles(orientation);
         let [world, own] = [phi, psi].map(|by| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), by));
         let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
         let Point3 { coords: began } = Pose::start().centre(&self.of.body().told_at(theta), &state);

@@ -17,7 +17,7 @@
 //!
 //! // In a steady state the axis goes round at a constant rate.
 //! let body = Body::solid(2.5)?;
-//! let (start, ask) = (steady::state(&body, 1.3)?, Ask::default().with_pose(true));
+//! let (start, ask) = (steady::state(&body, 1.3)?, Ask::default().with_pose());
 //! let motion = roll_with(&body, start, &[0.0, 10.0], &ask, || true)?.expect("not interrupted");
 //! let poses = motion.poses.expect("they are wanted");
 //! assert!((poses[1].phi.radians() - 10.0 * start.precession()).abs() < 1e-10);
@@ -71,12 +71,12 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// if the motion has not advanced.
 ///
 /// ```
-/// use spincyl::{Body, State, contact::Friction, motion::{Ask, Start, roll_with}};
+/// use spincyl::{Body, Slip, State, contact::Friction, motion::{Ask, Start, roll_with}};
 ///
 /// // A hoop is thrown with backspin: it slips for a time (v + w)/(2 mu), and comes back if w > v.
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-/// let start = Start::from(state).with_slip([0.0, 2.0 + 3.0]);
+/// let start = Start::from(state).with_slip(Slip::new(0.0, 2.0 + 3.0));
 /// let ask = Ask::on(Friction::coulomb(0.25));
 /// let motion = roll_with(&hoop, start, &[0.0, 20.0], &ask, || true)?.expect("not interrupted");
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-12); // the hoop rolls back

@@ -24,7 +24,7 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::scale::Scale;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use core::f64::consts::FRAC_PI_2;
 
 /// A slope: the conversion from the units in which its motions are computed.
@@ -208,7 +208,7 @@ impl Slope {
         let Followed { mut motion, mut path } = found;
         let (pace, weight) = (scale.metres_per_second(1.0), scale.newtons(1.0));
         let later = |t: f64| start.time + scale.seconds(t);
-        let faster = |u: [f64; 2]| u.map(|u| u * pace);
+        let faster = |u: Slip| u.map(|u| u * pace);
         motion.times = times[..motion.states.len()].to_vec();
         motion.states.iter_mut().for_each(|state| *state = state.at_pace(pace));
         motion.forces.iter_mut().flatten().for_each(|force| *force = S::force_at(force, weight));

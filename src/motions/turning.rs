@@ -32,7 +32,7 @@ use super::{Ask, Method, Motion, Moving, Start, stone};
 use crate::error::{Error, within};
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{Friction, centre_velocity};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::numbers::larger_or_nan;
 use crate::numbers::vector::Symmetric;
@@ -229,7 +229,7 @@ fn turns_over(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<Option<bool>, Error> {
     let state = State { theta: lean, w1: 0.0, w2: 0.0, w3: spin };
-    let slip = centre_velocity(top, &state, [0.0; 2]).map(|v| -v);
+    let slip = centre_velocity(top, &state, Slip::default()).map(|v| -v).into();
     let start = Start { slip, ..state.into() };
     decide_whether_positive(
         friction,

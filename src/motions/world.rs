@@ -112,7 +112,7 @@ impl Measured {
         let rise = v.z - centre_rise(&body, &state);
         let few = NO_RISE * (v.amax() + w.amax() * (1.0 + rim.ell.abs()));
         let aloft = (gap > NEAR_THE_TABLE || rise > few).then_some(z.max(rim.height(angle)));
-        let phi = euler_angles(q)[0];
+        let phi = euler_angles(q).phi;
         let (sin, cos) = phi.sin_cos();
         let lever = rim.lever(angle);
         let found = Start::from_twist(self.body(), q, w, v, aloft)?;
@@ -131,7 +131,7 @@ impl Measured {
         ask: &Ask,
         go_on: impl FnMut() -> bool,
     ) -> Result<Option<MeasuredMotion>, Error> {
-        let turn = euler_angles(&start.orientation)[2];
+        let turn = euler_angles(&start.orientation).psi;
         let found = self.roll(self.start_in_world(start)?, seconds, ask, go_on)?;
         Ok(found.map(|motion| MeasuredMotion { turn, ..motion }))
     }

@@ -121,7 +121,7 @@ impl DriveLaw for PythonLaw<'_, '_> {
     /// and the couple.
     fn push(&self, _: &Body, now: &Moment) -> Push {
         let State { theta, w1, w2, w3 } = now.state;
-        let ([along, across], at, v) = (now.slip, now.contact_point, now.velocity);
+        let ([along, across], at, v) = (now.slip.pair(), now.contact_point, now.velocity);
         let numbers = [now.time, theta, w1, w2, w3, along, across, now.phi, now.psi, at.x, at.y];
         let numbers = numbers.into_iter().chain([now.height, v.x, v.y]);
         let rows = now.axes().transpose();

@@ -8,7 +8,7 @@ use crate::error::room;
 use crate::laws::loss::{COUNT, Losses};
 use crate::laws::state::State;
 use crate::many::columns::LossColumns;
-use crate::many::drifts::{self as drift, Centre, DriftOutput, DriftStarts, Question};
+use crate::many::drifts::{self as drift, Centre, DriftAnswer, DriftOutput, DriftStarts, Question};
 use crate::motions::drift::Drift;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -90,10 +90,16 @@ pub fn drift_ask<'py>(
     };
     let of: Vec<usize> = of.as_slice()?.iter().map(|i| *i as usize).collect();
     let x = x.as_slice()?;
-    let mut out = room(x.len() * drift::WIDTH)?;
-    out.resize(x.len() * drift::WIDTH, f64::NAN);
+    let mut found = room(x.len())?;
+    found.resize(x.len(), DriftAnswer::NONE);
     let mut watch = Watch::new(None);
-    py.detach(|| drift::ask(&starts, question, (&of, x), &mut out, threads, |share| watch.go_on(share)))?;
+    py.detach(|| drift::ask(&starts, question, (&of, x), &mut found, threads, |share| watch.go_on(share)))?;
     watch.done(py)?;
+    let mut out = room(x.len() * 5)?;
+    out.extend(found.iter().flat_map(|of| {
+        // Only the state at a time has more than one number.
+        let first = if question == Question::At { of.theta } else { of.time };
+        [first, of.w1, of.w3, of.precession, of.friction_coefficient]
+    }));
     Ok(PyArray1::from_vec(py, out))
 }

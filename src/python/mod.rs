@@ -25,7 +25,7 @@ use crate::motions::turning::jellett_spin;
 use crate::states::sideways::slope_drift;
 use crate::states::steady::MOST;
 use crate::states::{stability, steady};
-use crate::{Body, Contact, Error, Scale, State};
+use crate::{Body, Contact, Error, Scale, Slip, State};
 use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use ufunc::{ArrayFunction, Value};
@@ -67,8 +67,8 @@ fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
 }
 
 /// Two numbers of a state with a slip: `x` has theta, w1, w2, w3, the slip, then the numbers of the body.
-fn of_slip(x: &[f64], f: impl Fn(&Body, &State, [f64; 2]) -> [f64; 2]) -> [f64; 2] {
-    body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), [x[4], x[5]]))
+fn of_slip(x: &[f64], f: impl Fn(&Body, &State, Slip) -> [f64; 2]) -> [f64; 2] {
+    body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), Slip::new(x[4], x[5])))
 }
 
 /// The inclination at which a capsule lands on its other side; NaN for any other tube.
@@ -85,8 +85,8 @@ fn posture(code: f64) -> Result<Posture, Error> {
 }
 
 /// One number, chosen by `pick`, of the state and the slip of a thrown or pressed body; NaN for an error.
-fn number_of_throw(thrown: Result<(State, [f64; 2]), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
-    or_nan(thrown.map(|(y, slip)| pick(&y, slip)))
+fn number_of_throw(thrown: Result<(State, Slip), Error>, pick: impl Fn(&State, [f64; 2]) -> f64) -> f64 {
+    or_nan(thrown.map(|(y, slip)| pick(&y, slip.pair())))
 }
 
 /// A number of a pressed body: `x` has impulse, angle, friction of finger and table, then the numbers of the body.
@@ -261,7 +261,7 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "energy_slip",
         inputs: 12,
-        value: Value::One(|x| of_body(&x[6..], |b| slip::energy(b, &state_of(x), [x[4], x[5]]))),
+        value: Value::One(|x| of_body(&x[6..], |b| slip::energy(b, &state_of(x), Slip::new(x[4], x[5])))),
     },
     ArrayFunction { name: "centre_along", inputs: 12, value: Value::One(|x| of_slip(x, centre_velocity)[0]) },
     ArrayFunction {
@@ -355,12 +355,12 @@ static LAWS: &[ArrayFunction] = &[
     ArrayFunction {
         name: "slope_drift",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[0])),
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y).across)),
     },
     ArrayFunction {
         name: "slope_resonance",
         inputs: 10,
-        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y)[1])),
+        value: Value::One(|x| of_state(x, |y, b| slope_drift(b, y).resonance)),
     },
     ArrayFunction {
         name: "tripped_w2",
@@ -486,7 +486,7 @@ mod _core {
     #[pyfunction]
     fn thrown(velocity: f64, backspin: f64, body: [f64; BODY]) -> PyResult<([f64; 4], [f64; 2])> {
         let (state, slip) = throw::thrown(&body_of(&body)?, velocity, backspin)?;
-        Ok((state.into(), slip))
+        Ok((state.into(), slip.into()))
     }
 
     /// theta, w1, w2, w3 and the slip of a body on its side that a finger has pressed, or ValueError.
@@ -499,7 +499,7 @@ mod _core {
         body: [f64; BODY],
     ) -> PyResult<([f64; 4], [f64; 2])> {
         let (state, slip) = throw::pressed(&body_of(&body)?, impulse, angle, finger, table)?;
-        Ok((state.into(), slip))
+        Ok((state.into(), slip.into()))
     }
 
     /// Half length, bore and fillet of a tube from its dimensions, or ValueError.

@@ -226,7 +226,7 @@ fn motion_columns<S: StateArrays>(
         && S::RIMS
         && !path.aloft.is_empty()
     {
-        rows.add("slip_other", 2, &|i, to| to.extend(&path.other_rim[i].slip))?;
+        rows.add("slip_other", 2, &|i, to| to.extend(path.other_rim[i].slip.pair()))?;
         if m.forces.is_some() {
             rows.add("normal_other", 0, &|i, to| to.push(path.other_rim[i].force.normal))?;
             rows.add("friction_other", 0, &|i, to| to.push(path.other_rim[i].force.friction()))?;
@@ -235,7 +235,7 @@ fn motion_columns<S: StateArrays>(
     if let Some(path) = &m.path
         && rubs(ask)
     {
-        rows.add("slip", 2, &|i, to| to.extend(path.slip[i]))?;
+        rows.add("slip", 2, &|i, to| to.extend(path.slip[i].pair()))?;
         rows.add("dissipated", 0, &|i, to| to.push(path.dissipated[i]))?;
     }
     if !ask.is_level() && m.poses.is_some() {
@@ -248,7 +248,7 @@ fn motion_columns<S: StateArrays>(
     {
         let drilling = |i: usize| m.states[i].drilling() - ask.turning;
         let creep = |i: usize| {
-            let speed = path.slip[i][0].hypot(path.slip[i][1]);
+            let speed = path.slip[i].speed();
             if speed > 0.0 { speed / (friction.patch() * drilling(i).abs()) } else { 0.0 }
         };
         rows.add("drilling", 0, &|i, to| to.push(drilling(i)))?;
@@ -268,7 +268,7 @@ fn motion_columns<S: StateArrays>(
     {
         let couple = S::couple_on_face(body, ask);
         let of = |i: usize| match path.kinds[i] {
-            Kind::OnItsFace => couple(&m.states[i], path.slip[i]),
+            Kind::OnItsFace => couple(&m.states[i], path.slip[i].pair()),
             _ => f64::NAN,
         };
         rows.add("couple", 0, &|i, to| to.push(of(i)))?;
@@ -314,7 +314,7 @@ pub fn roll<'py>(
     times: PyReadonlyArray1<'py, f64>,
     asked: MotionAsked,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (times, start) = (times.as_slice()?, (asked.slip.unwrap_or_default(), asked.t0));
+    let (times, start) = (times.as_slice()?, (asked.slip.unwrap_or_default().into(), asked.t0));
     let ask = asked.ask()?;
     let loses = asked.couple.is_some() || asked.drive.is_some() || !ask.losses.is_none();
     match (body, state) {
@@ -475,7 +475,7 @@ fn dictionary<'py, S: StateArrays>(
     out.set_item(intern!(py, "status"), m.ending() as u8)?;
     if let Some(event) = m.event {
         let numbers = event.state.numbers().as_ref().to_vec();
-        let slip = m.path.as_ref().filter(|_| rubs).map(|path| path.last_slip);
+        let slip = m.path.as_ref().filter(|_| rubs).map(|path| path.last_slip.pair());
         out.set_item(intern!(py, "event"), (event.time, numbers, slip, event.rim))?;
     }
     let (method, setting) = match m.method {
@@ -519,7 +519,12 @@ fn dictionary<'py, S: StateArrays>(
         for phase in &path.phases {
             phases.extend([phase.time, f64::from(phase.kind as u8), f64::from(phase.rim)]);
             phases.extend(
-                phase.slip.iter().chain(&<[f64; 2]>::from(phase.aloft)).chain(phase.state.numbers().as_ref()),
+                phase
+                    .slip
+                    .pair()
+                    .iter()
+                    .chain(&<[f64; 2]>::from(phase.aloft))
+                    .chain(phase.state.numbers().as_ref()),
             );
         }
         out.set_item(

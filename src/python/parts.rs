@@ -1,7 +1,7 @@
 //! Bodies put together from parts or circles, for Python.
 
 use crate::laws::body::parts::{Amount, Assembled, BodyPart, Form, assembled};
-use crate::laws::body::{Body, circles_of_rows};
+use crate::laws::body::{Body, CircleBorder, circles_of_rows};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -45,7 +45,7 @@ pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(Numbers
 #[pyfunction]
 pub fn body_circles(body: [f64; 6], rows: ToldCircles<3>) -> PyResult<(ToldCircles<3>, ToldCircles<6>)> {
     let body = Body::of_rows(body, &rows)?;
-    let borders = body.borders().into_iter().enumerate().map(|(k, [theta, span])| {
+    let borders = body.borders().into_iter().enumerate().map(|(k, CircleBorder { theta, span })| {
         let [radius, rate, friction] =
             body.apex(k).map_or([f64::NAN; 3], |apex| [apex.radius, apex.rate, apex.friction]);
         [theta, span, radius, rate, friction, f64::from(u8::from(body.rests().contains(&k)))]

@@ -4,7 +4,7 @@ use super::options::table_of;
 use super::parts::NumbersOfBody;
 use crate::Body;
 use crate::laws::loss::{COUNT, Losses};
-use crate::laws::steep::{Posture, shares, slip_slope, tip_slope};
+use crate::laws::steep::{Incline, Posture, shares, slip_slope, tip_slope};
 use pyo3::prelude::*;
 
 /// The slopes beyond which a body of several circles slips and tips, or ValueError.
@@ -32,7 +32,7 @@ pub fn shares_on_slope(
 ) -> PyResult<[f64; 3]> {
     let mu = table_of(contact.0)?.with(contact.1).mu();
     let losses = losses.map_or(Losses::NONE, |coefficients| Losses { coefficients });
-    let on = Posture::try_from(posture)?;
-    let found = shares(&Body::of_rows(body.0, &body.1)?, theta, mu, &losses, on, slope_and_phi)?;
+    let (on, [slope, phi]) = (Posture::try_from(posture)?, slope_and_phi);
+    let found = shares(&Body::of_rows(body.0, &body.1)?, theta, mu, &losses, on, Incline::new(slope, phi))?;
     Ok([found.slipping, found.rolling, found.tipping])
 }

@@ -64,7 +64,7 @@ pub fn lever(x: &[f64]) -> [f64; MOST] {
 
 /// The slip of a stone whose centre of mass rests: `x` has the numbers of the stone, a vertical and w.
 pub fn slip(x: &[f64]) -> [f64; MOST] {
-    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]))
+    of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]).pair())
 }
 
 /// The names of the numbers of a stone.
@@ -148,7 +148,7 @@ pub fn rocking(stone: [f64; STONE], spin: f64) -> PyResult<[f64; 12]> {
     let mut all = [0.0; 12];
     all[..2].copy_from_slice(&found.growth);
     all[2..4].copy_from_slice(&found.frequency);
-    all[4..].copy_from_slice(found.eigenvalues.as_flattened());
+    all[4..].copy_from_slice(found.eigenvalues.map(|x| [x.re, x.im]).as_flattened());
     Ok(all)
 }
 

@@ -297,7 +297,7 @@ impl Scene {
             }
         }
         let m = losses.couple(&body.told_at(y.theta), &y, scale.force(normal_force));
-        let phi = euler_angles(orientation)[0];
+        let phi = euler_angles(orientation).phi;
         Ok((axes(phi, y.theta) * Vector3::from(m)).map(|m| scale.newton_metres(m)))
     }
 

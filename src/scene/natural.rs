@@ -9,7 +9,7 @@
 use super::SceneError;
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::laws::stone::{Ellipsoid, StoneState};
 use crate::motions::ask::sample::Sample;
 use crate::motions::slope::{energy_beside, energy_of_fall};
@@ -97,12 +97,12 @@ pub(super) struct KnownMotion {
 impl Natural {
     /// A body with its start at time 0.
     pub(super) fn of_body(body: Body, start: Start, ask: Ask) -> Self {
-        Self::Body { body, start: start.with_time(0.0), ask: ask.with_pose(true).with_force(true) }
+        Self::Body { body, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
 
     /// A stone with its start at time 0.
     pub(super) fn of_stone(stone: Ellipsoid, start: Start<StoneState>, ask: Ask) -> Self {
-        Self::Stone { stone, start: start.with_time(0.0), ask: ask.with_pose(true).with_force(true) }
+        Self::Stone { stone, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
 
     /// The options of the motion.
@@ -127,7 +127,7 @@ impl Natural {
         }
         match self {
             Self::Body { body, start, ask } => {
-                let ask = ask.with_pose(true).with_force(true);
+                let ask = ask.with_pose().with_force();
                 let m = motion::roll_with(body, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
                 let rows: Option<_> = (0..m.states.len()).map(|i| body_at(&m, body, &ask, i)).collect();
@@ -135,7 +135,7 @@ impl Natural {
                 told(m, rows.ok_or(UNTOLD)?, bounds, &ask)
             }
             Self::Stone { stone: of, start, ask } => {
-                let ask = ask.with_pose(true).with_force(true);
+                let ask = ask.with_pose().with_force();
                 let m = stone::roll(of, *start, times, &ask, || true)?;
                 let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
                 let rows: Option<Vec<Known>> =
@@ -281,7 +281,8 @@ fn stone_at(m: &Motion<StoneState>, of: &Ellipsoid, ask: &Ask, i: usize) -> Opti
     let position = Point3::from(pose.centre);
     let [a, b, c, d] = now.state.orientation();
     let least = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d));
-    let ([along, across], AboveTable { height, lift, .. }) = (now.slip.unwrap_or_default(), now.aloft);
+    let (Slip { u_h: along, u_2: across }, AboveTable { height, lift, .. }) =
+        (now.slip.unwrap_or_default(), now.aloft);
     let slip = pose.orientation * (least.inverse() * Vector3::new(along, across, lift));
     let own = Vector3::from(now.state.w);
     let w = pose.orientation * own;

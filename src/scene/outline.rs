@@ -130,7 +130,7 @@ fn hull_of(body: &Body) -> Vec<[f64; 2]> {
     const NARROW: f64 = 1e-6;
     let circles = body.circles();
     let mut ends = vec![0.0];
-    ends.extend(body.borders().iter().map(|[border, _]| *border));
+    ends.extend(body.borders().iter().map(|border| border.theta));
     ends.push(PI);
     let mut last = [0.0, -circles[0].depth - circles[0].fillet];
     let mut all = Vec::new();

@@ -40,8 +40,8 @@ pub struct Rocking {
     pub growth: [f64; 2],
     /// The angular frequency of each mode; 0 for a mode that grows or decays without oscillation.
     pub frequency: [f64; 2],
-    /// The four eigenvalues, as real and imaginary parts.
-    pub eigenvalues: [[f64; 2]; 4],
+    /// The four eigenvalues.
+    pub eigenvalues: [nalgebra::Complex<f64>; 4],
 }
 
 impl Rocking {
@@ -252,7 +252,7 @@ impl Ellipsoid {
         }
         let growth = [all[0].re.hi.max(all[1].re.hi), all[2].re.hi.max(all[3].re.hi)];
         let frequency = [all[1].im.hi.abs(), all[3].im.hi.abs()];
-        Rocking { growth, frequency, eigenvalues: all.map(|x| [x.re.hi, x.im.hi]) }
+        Rocking { growth, frequency, eigenvalues: all.map(|x| nalgebra::Complex::new(x.re.hi, x.im.hi)) }
     }
 }
 

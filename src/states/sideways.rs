@@ -20,7 +20,7 @@
 //! let tube = Body::tube(6.0, 0.8)?;
 //! let State { theta, w1, w3, .. } = steady::state(&tube, 1.45)?;
 //! let [one, other] = [1.0, -1.0].map(|way| State { theta, w1: way * w1, w2: 0.0, w3: way * w3 });
-//! let ([one, _], [other, _]) = (slope_drift(&tube, &one), slope_drift(&tube, &other));
+//! let [one, other] = [one, other].map(|y| slope_drift(&tube, &y).across);
 //! assert!((one + other).abs() < 1e-12);
 //! # Ok::<(), spincyl::Error>(())
 //! ```
@@ -31,18 +31,28 @@ use crate::laws::contact::Contact;
 use crate::laws::contact::rolling::centre_velocity;
 use crate::laws::state::{State, drilling_of};
 
-/// The velocity across the slope, along y, over the sine of the slope, and kappa/Om^2; NaN for a state that is not steady in
-/// rolling, and that does not precess.
+/// How a body that spins steadily drifts on a small slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct SlopeDrift {
+    /// The velocity across the slope, along y, in sqrt(g R), over the sine of the slope.
+    pub across: f64,
+    /// kappa/Om^2: the squared frequency of the nutation over that of the precession, in resonance at 1.
+    pub resonance: f64,
+}
+
+/// The drift of a body in a steady state of rolling; both numbers are NaN for a state that is not steady in rolling, and
+/// that does not precess.
 ///
 /// ```
 /// use spincyl::{Body, sideways::slope_drift, steady};
 ///
 /// let tube = Body::tube(6.0, 0.8)?;
-/// let [across, resonance] = slope_drift(&tube, &steady::state(&tube, 1.45)?);
-/// assert!((across - 0.397_597_235_3).abs() < 1e-10 && resonance < 0.3);
+/// let drift = slope_drift(&tube, &steady::state(&tube, 1.45)?);
+/// assert!((drift.across - 0.397_597_235_3).abs() < 1e-10 && drift.resonance < 0.3);
 /// # Ok::<(), spincyl::Error>(())
 /// ```
-pub fn slope_drift(body: &Body, y: &State) -> [f64; 2] {
+pub fn slope_drift(body: &Body, y: &State) -> SlopeDrift {
     let (law, angle, &State { w1, w3, .. }) = (Contact::Rolling.reduced(body), y.theta.sin_cos(), y);
     let (of, rim, (i1, i3), (s, c)) = (law.at(angle), law.shape.rim, (law.shape.i1, law.shape.i3), angle);
     let [radius, depth, height] = [rim.radius(angle), rim.depth(angle), rim.height(angle)];
@@ -57,5 +67,6 @@ pub fn slope_drift(body: &Body, y: &State) -> [f64; 2] {
         (height + s3 * shares[0] - s1 * shares[1]) / (law.inertia(|| angle) * (kappa - turns * turns));
     let aside = -(shares[1] + (w1_t - ct * w1) * swings) / s;
     let across = shares[0] * radius + shares[1] * depth - (speed_t + height * turns) * swings;
-    [0.5 * (across - speed / turns * aside), kappa / (turns * turns)]
+    let across = 0.5 * (across - speed / turns * aside);
+    SlopeDrift { across, resonance: kappa / (turns * turns) }
 }

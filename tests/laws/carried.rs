@@ -6,7 +6,7 @@ use spincyl::body::Circle;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, RestsOn, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 
 /// A cup, a cone, a bottle, the same upside down, unequal balls, and a hemisphere, whose joint is smooth.
 fn bodies() -> Vec<Body> {
@@ -26,7 +26,7 @@ fn bodies() -> Vec<Body> {
 fn drawn(next: &mut impl FnMut() -> f64) -> Start {
     let mut number = || 2.0 * next() - 1.0;
     let [w1, w2, w3, along, across] = [(); 5].map(|()| number());
-    Start::from(State { theta: 0.2 + 2.7 * next(), w1, w2, w3 }).with_slip([along, across])
+    Start::from(State { theta: 0.2 + 2.7 * next(), w1, w2, w3 }).with_slip(Slip::new(along, across))
 }
 
 /// Motions on all kinds of tables, at times a little apart in threes.
@@ -42,9 +42,12 @@ fn motions(body: &Body, next: &mut impl FnMut() -> f64) -> Vec<Motion> {
         Ask::default(),
     ];
     let all = asks.into_iter().filter_map(|ask| {
-        let start =
-            if ask == asks[3] || ask == asks[4] { drawn(next).with_slip([0.0; 2]) } else { drawn(next) };
-        roll_with(body, start, &times, &ask.with_pose(true).with_force(true), || true).ok().flatten()
+        let start = if ask == asks[3] || ask == asks[4] {
+            drawn(next).with_slip(Slip::default())
+        } else {
+            drawn(next)
+        };
+        roll_with(body, start, &times, &ask.with_pose().with_force(), || true).ok().flatten()
     });
     all.collect()
 }

@@ -6,7 +6,7 @@ use spincyl::contact::Contact;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Start, roll, roll_with};
-use spincyl::{Body, State, stability, steady};
+use spincyl::{Body, Slip, State, stability, steady};
 
 /// A power of two, by which all lengths change without a rounding.
 const UNIT: f64 = 4.0;
@@ -63,8 +63,9 @@ fn a_body_in_another_unit_of_length_has_the_same_states_and_moves_the_same_way()
         let losses = Losses::NONE.with(Law::DryContour, 0.03).with(Law::Drilling, 0.01);
         let scaled = Losses::NONE.with(Law::DryContour, 0.03).with(Law::Drilling, UNIT * 0.01);
         for [losses, scaled] in [[Losses::NONE; 2], [losses, scaled]] {
-            let start =
-                |y, factor: f64| Start::from(state(y)).with_slip([factor * slip[0], factor * slip[1]]);
+            let start = |y, factor: f64| {
+                Start::from(state(y)).with_slip(Slip::new(factor * slip[0], factor * slip[1]))
+            };
             let m = roll_with(&body, start(y, 1.0), &times, &ask(losses), || true).unwrap().unwrap();
             let n = roll_with(&large, start(there, 2.0), &later, &ask(scaled), || true).unwrap().unwrap();
             assert_eq!(
@@ -125,7 +126,7 @@ fn a_cup_that_is_rolled_moves_round_the_apex_of_its_cone_and_keeps_its_energy() 
     let w_h = rate * s / c;
     let state = State { theta: body.theta_end(), w1: c * w_h, w2: 0.0, w3: -s * w_h };
     let round = std::f64::consts::TAU / rate;
-    let ask = Ask::on(Friction::coulomb(0.9)).with_restitution(0.0).with_pose(true);
+    let ask = Ask::on(Friction::coulomb(0.9)).with_restitution(0.0).with_pose();
     let m = roll_with(&body, Start::from(state), &[0.0, 0.5 * round, round], &ask, || true).unwrap().unwrap();
     let at = |i: usize| m.poses.as_ref().unwrap()[i].contact_point;
     let [first, far, back] = [0, 1, 2].map(at);

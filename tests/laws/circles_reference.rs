@@ -7,7 +7,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{PI, TAU};
 
 /// A motion of the table.
@@ -162,7 +162,7 @@ fn case(of: &Value) -> Case {
         name: of["name"].as_str().unwrap().to_string(),
         circles: of["circles"].as_array().unwrap().iter().map(circle).collect(),
         moments: [moments[0], moments[1]],
-        ask: Ask::on(friction).with_losses(losses).with_restitution(0.0).with_pose(true),
+        ask: Ask::on(friction).with_losses(losses).with_restitution(0.0).with_pose(),
         start,
         apex: of["apex"].as_f64(),
         rows: of["rows"].as_array().unwrap().iter().map(row).collect(),
@@ -213,7 +213,7 @@ impl Case {
             }
             start = start.told_from_circle(self.lower(), &self.circles);
         }
-        let start = Start::from(start.state).with_slip(start.slip);
+        let start = Start::from(start.state).with_slip(start.slip.into());
         roll_with(&body, start, &self.times(), &self.ask, || true).unwrap().unwrap()
     }
 
@@ -236,14 +236,14 @@ impl Case {
     /// A row of the library as told by the body.
     fn told(&self, m: &Motion, i: usize) -> Told {
         let (path, pose) = (m.path.as_ref().unwrap(), m.poses.as_ref().unwrap()[i]);
-        let [u, v] = path.other_rim[i].slip;
+        let Slip { u_h: u, u_2: v, .. } = path.other_rim[i].slip;
         let at = pose.contact_point;
         let lies = !u.is_nan();
         Told {
             circle: if lies { self.lower() } else { path.rims[i].into() },
             other: lies.then_some((self.lower() + 1, [u, v])),
             state: m.states[i],
-            slip: path.slip[i],
+            slip: path.slip[i].into(),
             // The origin is where the first circle touches at the start, not the circle from which the start is told.
             pose: [pose.phi.radians(), pose.psi.radians(), at.x + self.first_at(), at.y],
         }
@@ -352,7 +352,7 @@ fn phases_begin_and_motions_end_where_those_of_the_references_do() {
                 circle: if lies { lower } else { phase.rim.into() },
                 other: lies.then(|| row.told.told_from_circle(lower, &case.circles).other.unwrap()),
                 state: phase.state,
-                slip: phase.slip,
+                slip: phase.slip.into(),
                 pose: row.told.pose,
             };
             let [off, _] = told.off(&row.told, &case.circles);

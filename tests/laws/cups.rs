@@ -8,7 +8,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{PI, TAU};
 
 /// A body on its two circles, and their numbers at the border.
@@ -48,7 +48,7 @@ impl OnTwo {
     fn start(&self, [drilling, rolling]: [f64; 2], slip: [f64; 2]) -> Start {
         let (s, c) = (self.s, self.c);
         let (w1, w3) = (s * drilling + c * rolling, c * drilling - s * rolling);
-        Start::from(State { theta: self.body.theta_end(), w1, w2: 0.0, w3 }).with_slip(slip)
+        Start::from(State { theta: self.body.theta_end(), w1, w2: 0.0, w3 }).with_slip(slip.into())
     }
 
     /// The start with these w_z and w_h, and with this velocity of the centre along the lean and across it.
@@ -69,7 +69,7 @@ impl OnTwo {
 }
 
 fn ask(mu: f64) -> Ask {
-    Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_pose(true).with_force(true)
+    Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_pose().with_force()
 }
 
 fn kinds(m: &Motion) -> Vec<Kind> {
@@ -162,7 +162,7 @@ fn the_narrow_end_of_what_rolls_round_its_apex_rises_above_a_rate_and_its_fricti
         let holds = cup.height * wide / cup.inertia;
         let m = rolled(1.0 - near, 1.1 * holds);
         assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
-        assert!(m.path.as_ref().unwrap().other_rim[0].slip[0] == 0.0);
+        assert!(m.path.as_ref().unwrap().other_rim[0].slip.u_h == 0.0);
         let m = rolled(1.0 + near, 1.1 * holds);
         assert_eq!(kinds(&m), [Kind::Rolling], "{:?}", m.event);
         assert_eq!(m.path.as_ref().unwrap().rims[0], 1 - narrow as u8, "the wide end carries it");
@@ -171,7 +171,7 @@ fn the_narrow_end_of_what_rolls_round_its_apex_rises_above_a_rate_and_its_fricti
         assert_eq!(kinds(&m), [Kind::RollingRoundItsApex]);
         let m = rolled(0.5, 0.25 * holds * (1.0 - 1e-3));
         assert_eq!(kinds(&m)[0], Kind::Lying);
-        let [along, _] = m.path.as_ref().unwrap().slip[0];
+        let Slip { u_h: along, .. } = m.path.as_ref().unwrap().slip[0];
         assert!(along * cup.c < 0.0, "away from the apex: {along}");
     }
 }
@@ -406,7 +406,7 @@ fn dry_friction_along_the_contour_keeps_a_body_that_slides_across_from_rolling_b
         let m = moved(1.001);
         assert!(m.states[0].w1.abs().max(m.states[0].w3.abs()) < 1e-15, "{:?} {:?}", m.states[0], cup.body);
         let path = m.path.as_ref().unwrap();
-        assert!((path.slip[0][1] - 0.5 * speed).abs() < 1e-13 && path.slip[0][0].abs() < 1e-15);
+        assert!((path.slip[0].u_2 - 0.5 * speed).abs() < 1e-13 && path.slip[0].u_h.abs() < 1e-15);
         assert!(cup.turning(&moved(0.999).states[0])[1].abs() > 1e-5, "{:?}", cup.body);
         held += 1;
     }

@@ -5,7 +5,7 @@ use spincyl::contact::{Contact, Table, lossy, slip::Friction};
 use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Limit, Method, Motion, Start, roll_with};
-use spincyl::{Body, Error, State, newton, steady};
+use spincyl::{Body, Error, Slip, State, newton, steady};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
@@ -28,7 +28,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
         3 => (Table::Rolling { mu: 0.2 + r() }, false),
         _ => (Table::of(Contact::Smooth, 0.0), false),
     };
-    (body.unwrap(), Start::from(state).with_slip(if slips { slip } else { [0.0; 2] }), table)
+    (body.unwrap(), Start::from(state).with_slip(if slips { slip.into() } else { Slip::default() }), table)
 }
 
 /// The largest difference of states and slips, and of the ends, beside the sum of the two claims.
@@ -61,7 +61,7 @@ fn a_couple_of_the_air_that_a_user_writes_moves_a_body_as_that_of_the_library_do
             w.map(|x| -(b + b2 * fast) * x)
         };
         let losses = Losses::of(Law::AirLinear, b) + Losses::of(Law::AirQuadratic, b2);
-        let ask = Ask::on(table).with_pose(true).with_force(true);
+        let ask = Ask::on(table).with_pose().with_force();
         let theirs = own(&body, start, &times, &ask, Custom::default().with_couple(&air)).unwrap();
         let ours = roll_with(&body, start, &times, &ask.with_losses(losses), || true).unwrap().unwrap();
         let [off, claimed] = apart(&theirs, &ours);
@@ -177,7 +177,7 @@ fn a_hoop_under_stribecks_friction_slips_for_the_integral_of_the_inverse_coeffic
     let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.7f64).powi(2)).exp();
     let hoop = Body::tube(0.0, 1.0).unwrap();
     let state = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-    let start = Start::from(state).with_slip([0.0, 5.0]);
+    let start = Start::from(state).with_slip(Slip::new(0.0, 5.0));
     let ask = Ask::on(Friction::coulomb(0.4)).with_method(Method::Tolerance(1e-12));
     let m = own(&hoop, start, &[0.0, 20.0], &ask, Custom::default().with_friction(&stribeck)).unwrap();
     let (mut lasts, n) = (0.0, 4000);
@@ -214,7 +214,7 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     assert_eq!(refused(Custom::default().with_friction(&kind), Ask::default()).0, "contact");
     let patch = Friction::Coulomb { mu: 0.2, fixed: 0.2, patch: 0.05 };
     assert_eq!(refused(Custom::default().with_friction(&kind), Ask::on(patch)).0, "patch");
-    assert_eq!(refused(Custom::default(), Ask::default().with_beyond(true)).0, "beyond");
+    assert_eq!(refused(Custom::default(), Ask::default().with_beyond()).0, "beyond");
 }
 
 /// The couple of a law that counts its calls after the check, which is over at the first call with the state at the start.
@@ -273,7 +273,8 @@ fn a_law_that_is_nan_or_gives_energy_on_the_way_is_named_with_the_state() {
     // With a coefficient of friction beyond the speeds of the check.
     let negative = |speed: f64| if speed < 2000.0 { 0.3 } else { 0.3 - 1e-3 * (speed - 2000.0) };
     let hoop = Body::tube(0.0, 1.0).unwrap();
-    let thrown = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 }).with_slip([0.0, 3000.0]);
+    let thrown =
+        Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 }).with_slip(Slip::new(0.0, 3000.0));
     let laws = Custom::default().with_friction(&negative);
     let found = own(&hoop, thrown, &[5.0], &Ask::on(Friction::coulomb(0.4)), laws);
     assert!(
@@ -377,7 +378,7 @@ fn a_couple_that_depends_on_the_normal_force_has_the_one_of_newtons_equations_in
             [y.w1, y.w2, y.w3].map(|w| -(0.02 + 0.1 * normal + 0.05 * normal * normal) * w)
         };
         let (t, h) = (0.05, 1e-4);
-        let ask = Ask::on(table).with_force(true);
+        let ask = Ask::on(table).with_force();
         let found = own(&body, start, &[t - h, t, t + h], &ask, Custom::default().with_couple(&law));
         let Ok(m) = found else { continue };
         let kinds = m.path.as_ref().map(|path| path.kinds.clone()).unwrap_or_default();

@@ -10,7 +10,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Method, Motion, Start};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, Slip, State};
 use std::cell::Cell;
 
 /// A stone and a start, at random; half of the starts have no slip.
@@ -25,7 +25,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let vertical = Vector3::new(speed(), speed(), speed() + 0.5).normalize().into();
     let (w, slip) = ([speed(), speed(), 2.0 * speed()], [speed(), speed()]);
     let start = Start::from(StoneState { vertical, w });
-    let start = if r() < 0.5 { start } else { start.with_slip(slip) };
+    let start = if r() < 0.5 { start } else { start.with_slip(slip.into()) };
     (Ellipsoid::new(axes, inertia, offset).unwrap(), start)
 }
 
@@ -105,7 +105,7 @@ fn energy_and_heat_of_a_stone_under_stribecks_friction_keep_their_sum() {
         let path = m.path.as_ref().unwrap();
         let sum = |i: usize| {
             let lost = path.work_lost.get(i).copied().unwrap_or(0.0);
-            energy(&stone, &m.states[i], path.slip[i]) + path.dissipated[i] + lost
+            energy(&stone, &m.states[i], path.slip[i].into()) + path.dissipated[i] + lost
         };
         for i in 1..m.states.len() {
             let off = (sum(i) - sum(0)).abs();
@@ -127,9 +127,9 @@ fn a_ball_is_the_same_under_stribecks_friction_as_a_body_and_as_a_stone() {
     let (s, c) = 0.7f64.sin_cos();
     let (w, slip) = ([0.8, -0.4, 2.0], [1.5, -0.6]);
     let body = State { theta: 0.7, w1: w[0], w2: w[1], w3: w[2] };
-    let a = custom::roll_with(&ball, Start::from(body).with_slip(slip), &times, &ask, laws, || true);
+    let a = custom::roll_with(&ball, Start::from(body).with_slip(slip.into()), &times, &ask, laws, || true);
     let turned = StoneState { vertical: [s, 0.0, c], w };
-    let b = own(&stone, Start::from(turned).with_slip(slip), &times, &ask, &stribeck).unwrap();
+    let b = own(&stone, Start::from(turned).with_slip(slip.into()), &times, &ask, &stribeck).unwrap();
     let a = a.unwrap().unwrap();
     let (ours, theirs) = (a.path.as_ref().unwrap(), b.path.as_ref().unwrap());
     for (i, (y, stone)) in a.states.iter().zip(&b.states).enumerate() {
@@ -144,7 +144,7 @@ fn a_ball_is_the_same_under_stribecks_friction_as_a_body_and_as_a_stone() {
 #[test]
 fn a_law_of_a_stone_that_is_wrong_is_refused_by_name_and_one_that_fails_ends_the_motion() {
     let (stone, ask) = (Ellipsoid::uniform([1.0, 0.8, 0.6]).unwrap(), Ask::on(Friction::coulomb(0.3)));
-    let start = Start::from(stone.spinning(2.0, 0.3, 0.1)).with_slip([1.0, 0.5]);
+    let start = Start::from(stone.spinning(2.0, 0.3, 0.1)).with_slip(Slip::new(1.0, 0.5));
     let name = |found: Result<Motion<StoneState>, Error>| match found {
         Err(Error::OutOfRange { name, .. }) => name,
         other => panic!("{other:?}"),
@@ -153,7 +153,7 @@ fn a_law_of_a_stone_that_is_wrong_is_refused_by_name_and_one_that_fails_ends_the
     assert_eq!(name(of(&|speed: f64| 0.3 - speed, &ask)), "mu");
     assert_eq!(name(of(&|_: f64| 0.4, &ask)), "static");
     assert_eq!(name(of(&|_: f64| 0.2, &Ask::default())), "contact");
-    assert_eq!(name(of(&|_: f64| 0.2, &ask.with_beyond(true))), "beyond");
+    assert_eq!(name(of(&|_: f64| 0.2, &ask.with_beyond())), "beyond");
     let patch = Ask::on(Friction::Coulomb { mu: 0.3, fixed: 0.3, patch: 0.05 });
     assert_eq!(name(of(&|_: f64| 0.3, &patch)), "patch");
     let still = |_: &Body, _: &State, _: f64| [0.0; 3];

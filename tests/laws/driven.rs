@@ -9,7 +9,7 @@ use spincyl::custom::{self, Custom, InSi, Moment, MomentInSi, Push};
 use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, path::Kind, roll_with};
-use spincyl::{Body, Error, State, steady};
+use spincyl::{Body, Error, Slip, State, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const NO_COUPLE: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
@@ -43,7 +43,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
         2 => (Friction::Viscous { c: 0.1 + r() }.into(), true),
         _ => (Table::Rolling { mu: 0.2 + r() }, false),
     };
-    let start = Start::from(state).with_slip(if slips { slip } else { [0.0; 2] });
+    let start = Start::from(state).with_slip(if slips { slip.into() } else { Slip::default() });
     (body.unwrap(), start.with_heading(6.0 * r() - 3.0).with_place([r(), r()]), table)
 }
 
@@ -81,7 +81,7 @@ fn a_ball_that_a_force_shakes_rolls_with_five_sevenths_of_its_acceleration() {
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 });
     for since in [0.0, 2.5] {
         let times: Vec<f64> = (0..=40).map(|i| since + 0.5 * f64::from(i)).collect();
-        let ask = Ask::on(Friction::coulomb(0.5)).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(0.5)).with_pose();
         let m = driven(&ball, start.with_time(since), &times, &ask, &shake).unwrap();
         assert_eq!((m.ending(), m.states.len()), (Ending::Done, 41));
         for (t, pose) in times.iter().zip(m.poses.unwrap()) {
@@ -104,11 +104,11 @@ fn a_ball_in_the_air_follows_the_force_and_the_couple_that_act_on_it() {
         Push::new(force, now.axes().transpose() * Vector3::new(0.0, 0.0, k))
     };
     let (height, lift) = (0.4, 1.0);
-    let start = Start::from(State { theta: 1.1, w1: 0.3, w2: -0.2, w3: 0.4 }).with_slip([0.5, 0.2]);
+    let start = Start::from(State { theta: 1.1, w1: 0.3, w2: -0.2, w3: 0.4 }).with_slip(Slip::new(0.5, 0.2));
     let start = start.with_aloft(Some(AboveTable::new(height, lift))).with_heading(0.4);
     for since in [0.0, 2.5] {
         let times: Vec<f64> = (0..=20).map(|i| since + 0.1 * f64::from(i)).collect();
-        let ask = Ask::on(Friction::coulomb(0.5)).with_pose(true).with_restitution(0.0);
+        let ask = Ask::on(Friction::coulomb(0.5)).with_pose().with_restitution(0.0);
         let m = driven(&ball, start.with_time(since), &times, &ask, &wind).unwrap();
         let all: Vec<_> = m.samples().collect();
         let (v, at) = (all[0].velocity(&ball).unwrap(), all[0].centre(&ball).unwrap());
@@ -134,7 +134,7 @@ fn a_motor_turns_a_hoop_faster_until_friction_no_longer_holds_its_rim() {
     let motor = |_: &Body, now: &Moment| Push::new(Vector2::zeros(), Vector3::new(0.0, 0.0, k * now.time));
     let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 1.0 });
     let times = [0.0, 5.0, 10.0, 20.0];
-    let ask = Ask::on(Friction::coulomb(mu)).with_force(true);
+    let ask = Ask::on(Friction::coulomb(mu)).with_force();
     let m = driven(&hoop, start, &times, &ask, &motor).unwrap();
     for (t, y) in times.iter().zip(&m.states).take(3) {
         assert!((y.w3 - (1.0 + 0.25 * k * t * t)).abs() < 1e-9);
@@ -162,7 +162,7 @@ fn a_constant_force_moves_a_body_as_a_slope_does_on_a_level_table_and_on_another
         let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
         let beside = own.cos() * slope.tan() - own.sin();
         let pull = |_: &Body, _: &Moment| Push::new(Vector2::new(beside, 0.0), NO_COUPLE);
-        let ask = Ask::on(table).with_pose(true).with_slope(own);
+        let ask = Ask::on(table).with_pose().with_slope(own);
         let (start, ask) = if i % 3 == 0 { tossed(&mut r, start, ask) } else { (start, ask) };
         let (e, m) = (ask.restitution, driven(&body, start, &times, &ask, &pull));
         let State { theta, w1, w2, w3 } = start.state;
@@ -172,12 +172,12 @@ fn a_constant_force_moves_a_body_as_a_slope_does_on_a_level_table_and_on_another
             table => table,
         };
         let on_slope = Start::from(fast)
-            .with_slip(start.slip.map(|u| pace * u))
+            .with_slip(Slip::new(pace * start.slip.u_h, pace * start.slip.u_2))
             .with_aloft(start.aloft.map(|aloft| AboveTable::new(aloft.height, pace * aloft.lift)))
             .with_heading(start.heading)
             .with_place(start.place);
         let later: Vec<f64> = times.iter().map(|t| t / pace).collect();
-        let mut ask = Ask::on(table).with_pose(true).with_slope(slope);
+        let mut ask = Ask::on(table).with_pose().with_slope(slope);
         ask.restitution = e;
         let of = roll_with(&body, on_slope, &later, &ask, || true);
         let (m, of) = match (m, of) {
@@ -244,7 +244,7 @@ fn a_drive_that_resists_as_the_air_does_moves_a_body_as_the_air_does() {
 fn stirs(_: &Body, now: &Moment) -> Push {
     let (sin, cos) = (0.7 * now.time).sin_cos();
     let force = Vector2::new(0.2 * cos, 0.1 * sin) - 0.05 * now.velocity
-        + 0.02 * Vector2::new(now.slip[0], now.slip[1] * now.phi.cos())
+        + 0.02 * Vector2::new(now.slip.u_h, now.slip.u_2 * now.phi.cos())
         - 0.01 * now.contact_point.coords;
     let couple = Vector3::new(0.1 * sin, 0.05, 0.06 * cos) + 0.01 * Vector3::new(now.psi.sin(), 0.0, 0.0);
     Push::new(force, now.axes().transpose() * couple)
@@ -258,7 +258,7 @@ fn energy_with_heat_and_what_is_lost_is_conserved_where_a_drive_gives_and_takes(
         let (body, start, table) = any(&mut r);
         let times: Vec<f64> = (0..=20).map(|i| 0.25 * f64::from(i)).collect();
         let slope = if i % 2 == 0 { 0.0 } else { 0.5 * r() - 0.25 };
-        let ask = Ask::on(table).with_losses(Losses::of(Law::AirQuadratic, 0.01)).with_pose(true);
+        let ask = Ask::on(table).with_losses(Losses::of(Law::AirQuadratic, 0.01)).with_pose();
         let ask = ask.with_slope(slope);
         let (start, ask) = if i % 3 == 0 { tossed(&mut r, start, ask) } else { (start, ask) };
         let Ok(m) = driven(&body, start, &times, &ask, &stirs) else { continue };
@@ -286,7 +286,7 @@ fn a_table_that_is_told_from_another_direction_has_the_same_motion() {
         let (body, start, table) = any(&mut r);
         let by = 5.0 * r();
         let times: Vec<f64> = (0..=16).map(|i| 0.25 * f64::from(i)).collect();
-        let ask = Ask::on(table).with_pose(true);
+        let ask = Ask::on(table).with_pose();
         let start = start.with_place([0.0; 2]);
         let turned = |body: &Body, now: &Moment| {
             let back = nalgebra::Rotation2::new(-by);
@@ -316,7 +316,7 @@ fn a_driven_motion_goes_on_from_any_of_its_moments_also_in_the_air() {
     };
     for _ in 0..200 {
         let (body, start, table) = any(&mut r);
-        let ask = Ask::on(table).with_pose(true).with_slope(0.2 * r());
+        let ask = Ask::on(table).with_pose().with_slope(0.2 * r());
         let (start, ask) = tossed(&mut r, start, ask);
         let times: Vec<f64> = (0..=12).map(|i| 0.25 * f64::from(i)).collect();
         let Ok(m) = driven(&body, start, &times, &ask, &wind) else { continue };
@@ -373,9 +373,9 @@ fn a_body_on_its_upper_circle_is_driven_as_the_same_body_told_from_its_other_end
         let mut speed = || r() - 0.5;
         let (w1, w2, w3, slip) = (speed(), 0.2 * speed(), 3.0 * speed(), [speed(), speed()]);
         let theta = body.theta_end() + 0.3 + 0.5 * r();
-        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_heading(r());
+        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip.into()).with_heading(r());
         let turned = Start::from(State { theta: PI - theta, w1, w2: -w2, w3: -w3 })
-            .with_slip(slip.map(|u| -u))
+            .with_slip(Slip::from(slip.map(|u| -u)))
             .with_heading(start.heading + PI);
         let pushes = |_: &Body, now: &Moment| {
             let (sin, cos) = (0.7 * now.time).sin_cos();

@@ -19,7 +19,7 @@ fn d9_d10_events_come_at_their_time() {
         for (method, allowed) in
             [(Method::Exact, 1e-12), (Method::Tolerance(1e-13), 1e-11), (Method::Step(1e-4), 1e-11)]
         {
-            let scene = by(method).with_table(Table::of(r.contact, mu)).with_pose(true).with_force(true);
+            let scene = by(method).with_table(Table::of(r.contact, mu)).with_pose().with_force();
             let times = [0.0, 0.5 * r.t, r.t + 1e-9, r.t + 1.0];
             let motion = moved(&r.body, &r.start, &times, scene).unwrap();
             let event = motion.event.unwrap();
@@ -29,7 +29,7 @@ fn d9_d10_events_come_at_their_time() {
             // no state after the event is returned, unless `beyond` is set
             assert_eq!((motion.times.len(), motion.states.len()), (2, 2));
             assert_eq!((motion.poses.unwrap().len(), motion.forces.unwrap().len()), (2, 2));
-            let beyond = moved(&r.body, &r.start, &times, scene.with_beyond(true)).unwrap();
+            let beyond = moved(&r.body, &r.start, &times, scene.with_beyond()).unwrap();
             assert_eq!((beyond.states.len(), beyond.event.map(|e| e.ending)), (4, Some(ending)));
         }
         checked += 1;
@@ -63,7 +63,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             [(Method::Exact, 1e-12), (Method::Step(1e-3), 1e-12), (Method::Tolerance(1e-13), 1e-12)]
         {
             let times: Vec<f64> = (0..200).map(|i| 0.01 * f64::from(i)).collect();
-            let motion = moved(&body, &y, &times, by(method).with_pose(true)).unwrap();
+            let motion = moved(&body, &y, &times, by(method).with_pose()).unwrap();
             let event = motion.event.unwrap();
             assert_eq!(event.ending, Ending::Face);
             assert!((event.time - time).abs() < allowed, "{method:?}, ell = {ell}: {:e}", event.time - time);
@@ -71,7 +71,7 @@ fn d8_a_head_on_fall_lands_on_the_face() {
             assert!(motion.states.iter().all(|y| numbers(y).iter().all(|x| x.is_finite()) && y.theta > 0.0));
             assert!(method != Method::Exact || motion.method == method, "{}", motion.error);
             // after a face has landed there are no states, even if `beyond` is set
-            let beyond = moved(&body, &y, &times, by(method).with_beyond(true)).unwrap();
+            let beyond = moved(&body, &y, &times, by(method).with_beyond()).unwrap();
             assert_eq!(beyond.states.len(), motion.states.len());
         }
     }
@@ -111,7 +111,7 @@ fn beyond_an_event_a_motion_still_ends_where_the_face_lands() {
         let body = Body::solid(ell).unwrap();
         let times: Vec<f64> = (0..51).map(|i| 0.1 * f64::from(i)).collect();
         let all = [Method::Exact, Method::Step(1e-3), Method::Tolerance(1e-9)].map(|method| {
-            moved(&body, &y, &times, by(method).with_table(Table::Rolling { mu }).with_beyond(true)).unwrap()
+            moved(&body, &y, &times, by(method).with_table(Table::Rolling { mu }).with_beyond()).unwrap()
         });
         for m in &all {
             assert_eq!(m.event.map(|e| (e.ending, e.time)), all[0].event.map(|e| (e.ending, e.time)));
@@ -164,7 +164,7 @@ fn an_integrator_that_stays_on_an_unstable_state_does_not_claim_to_be_right() {
     let body = Body::solid(2.5).unwrap();
     let balanced = state(1f64.atan2(2.5), 0.0, 0.0, 0.0);
     for (contact, t, off) in [(Contact::Smooth, 24.0, 1.3e-6), (Contact::Rolling, 60.0, 5.1e-4)] {
-        let scene = Ask::default().with_table(contact).with_pose(true);
+        let scene = Ask::default().with_table(contact).with_pose();
         // these doubles are not quite balanced, so that the body falls; `off` is from a model with 36 digits
         let exact = moved(&body, &balanced, &[t], scene).unwrap();
         let fallen = (exact.states[0].theta - balanced.theta).abs();
@@ -332,7 +332,9 @@ fn a_nearly_flat_start_at_rest_lifts_off_when_it_does() {
     let y = state(3.865140946119193e-06, 5.882624766680439e-07, 0.0, 17.96860430677607);
     for beyond in [false, true] {
         for method in [Method::Exact, Method::Tolerance(1e-10)] {
-            let m = moved(&body, &y, &[1.0, 2.0, 3.3], by(method).with_beyond(beyond)).unwrap();
+            let mut ask = by(method);
+            ask.beyond = beyond;
+            let m = moved(&body, &y, &[1.0, 2.0, 3.3], ask).unwrap();
             let event = m.event.unwrap();
             assert_eq!(event.ending, Ending::LiftOff, "{method:?}");
             assert!((event.time - 0.00753015615484).abs() < m.error.max(1e-11), "{:e}", event.time);

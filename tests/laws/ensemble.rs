@@ -72,7 +72,7 @@ fn every_motion_in_lanes_has_the_state_that_is_claimed() {
     for r in motions().into_iter().filter(|r| r.kind == "state") {
         for tol in [1e-6, 1e-10, 1e-13] {
             let times = [r.t];
-            let job = Job::new(&times).with_ask(Ask::on(r.contact).with_beyond(true)).with_tol(tol);
+            let job = Job::new(&times).with_ask(Ask::on(r.contact).with_beyond()).with_tol(tol);
             let many = Many::of(&[(r.body, r.start)]).run(&job, 1);
             let off = distance(&many.last(0), &r.values);
             assert!(off <= many.error[0], "{}: {off} > {}", r.scene, many.error[0]);
@@ -91,7 +91,7 @@ fn lanes_and_single_motions_agree_within_what_both_claim() {
     for (all, least) in [(kicked(drawn(1000)), drawn(700)), (kicked_rounded(drawn(600)), drawn(300))] {
         for (contact, tol) in BOTH.into_iter().flat_map(|of| [1e-6, 1e-11, 1e-13].map(|tol| (of, tol))) {
             let many = Many::of(&all)
-                .run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)).with_tol(tol), 2);
+                .run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond()).with_tol(tol), 2);
             let mut lanes = 0;
             for (i, (body, start)) in all.iter().enumerate() {
                 let in_lanes = many.method[i] == Answer::Lanes as u8;
@@ -154,7 +154,7 @@ fn the_extremes_are_those_of_a_dense_look() {
     let all = kicked(120);
     for span in [0.4, 9.0, -3.0] {
         let times = [span];
-        let many = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond(true)), 2);
+        let many = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond()), 2);
         for (i, (body, y)) in all.iter().enumerate() {
             let Ok(swing) = Swing::new(body, y, Contact::Rolling) else { continue };
             let mut found = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, 0.0];
@@ -252,7 +252,7 @@ fn rk4_in_lanes_is_rk4() {
     let all = kicked(128);
     let times = [1.0, 2.505];
     let many = Many::of(&all)
-        .run(&Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.01)).with_beyond(true)), 1);
+        .run(&Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.01)).with_beyond()), 1);
     let mut lanes = 0;
     for (i, (body, y)) in all.iter().enumerate() {
         if many.method[i] != Answer::Step as u8 {
@@ -271,11 +271,9 @@ fn rk4_in_lanes_is_rk4() {
     }
     assert!(lanes > 100, "{lanes}");
     // half the step has a sixteenth of the error, where that is well above the error of exact motions
-    let exact = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond(true)), 1);
-    let fine = Many::of(&all).run(
-        &Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.005)).with_beyond(true)),
-        1,
-    );
+    let exact = Many::of(&all).run(&Job::new(&times).with_ask(Ask::default().with_beyond()), 1);
+    let fine = Many::of(&all)
+        .run(&Job::new(&times).with_ask(Ask::default().with_method(Method::Step(0.005)).with_beyond()), 1);
     let clear = (0..all.len()).filter(|i| fine.error[*i] > 50.0 * exact.error[*i]);
     let ratios: Vec<f64> = clear.map(|i| many.error[i] / fine.error[i]).collect();
     assert!(ratios.len() > 5 && ratios.iter().all(|r| (12.0..18.0).contains(r)), "{ratios:?}");
@@ -365,7 +363,7 @@ fn a_body_released_at_rest_falls() {
     // a wide swing that starts next to its turning point: half the digits of its phase were lost
     let body = Body::solid(2.8057204670343325).unwrap();
     let y = State { theta: 0.2718205029824101, w1: 0.10806715919341818, w2: 0.0, w3: 0.3032062403632308 };
-    let lanes = Many::of(&[(body, y)]).run(&Job::new(&[7.0]).with_ask(Ask::default().with_beyond(true)), 1);
+    let lanes = Many::of(&[(body, y)]).run(&Job::new(&[7.0]).with_ask(Ask::default().with_beyond()), 1);
     let swing = Swing::new(&body, &y, Contact::Rolling).unwrap();
     let off = distance(&lanes.last(0), &numbers(&swing.state(7.0)));
     assert!(off <= lanes.error[0] + swing.error(7.0) && off < 1e-12, "{off:e}, claimed {:e}", lanes.error[0]);
@@ -379,12 +377,11 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
         let (body, y, contact) = wild(&mut r);
         let y = State { w2: almost_at_rest(&mut r), ..y };
         let times = [0.3 + 3.0 * r()];
-        let scene = by(Method::Tolerance(1e-13)).with_table(contact).with_beyond(true);
+        let scene = by(Method::Tolerance(1e-13)).with_table(contact).with_beyond();
         let Ok(truth) = moved(&body, &y, &times, scene) else { continue };
         let exact = moved(&body, &y, &times, scene.with_method(Method::Exact)).unwrap();
-        let posed = moved(&body, &y, &times, scene.with_method(Method::Exact).with_pose(true)).unwrap();
-        let lanes =
-            Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)), 1);
+        let posed = moved(&body, &y, &times, scene.with_method(Method::Exact).with_pose()).unwrap();
+        let lanes = Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond()), 1);
         let there = truth.states.len();
         assert!(exact.states.len() == there && posed.states.len() == there, "{y:?}");
         let Some(there) = truth.states.first() else { continue };
@@ -405,7 +402,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
 
 /// Whether a steady state is unchanged at a time, within its claim.
 fn stays(body: &Body, y: &State, t: f64) -> bool {
-    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::default().with_beyond(true)), 1);
+    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::default().with_beyond()), 1);
     distance(&many.last(0), &numbers(y)) <= many.error[0]
 }
 
@@ -429,7 +426,7 @@ proptest! {
     fn no_state_gives_a_wrong_number_unmarked(body in prop_oneof![2 => any_body(), 1 => any_rounded()], y in any_state(), t in 0.0..30.0f64) {
         let times = [t];
         for contact in BOTH {
-            let many = Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond(true)), 1);
+            let many = Many::of(&[(body, y)]).run(&Job::new(&times).with_ask(Ask::on(contact).with_beyond()), 1);
             if many.method[0] != Answer::Lanes as u8 {
                 continue;
             }
@@ -439,7 +436,7 @@ proptest! {
                 let (time, landed) = swing.landing(1.0).unwrap();
                 (landed, swing.error(time))
             } else {
-                let ask = by(Method::Tolerance(1e-12)).with_table(contact).with_beyond(true);
+                let ask = by(Method::Tolerance(1e-12)).with_table(contact).with_beyond();
                 let alone = moved(&body, &y, &times, ask).unwrap();
                 // if a face lands at the requested time, only one of the two may have landed
                 let Some(there) = alone.states.first() else {

@@ -6,7 +6,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::TAU;
 
 /// A motion of the table.
@@ -65,9 +65,9 @@ fn case(of: &Value) -> Case {
     let laws = laws.into_iter().chain([Law::AirLinear, Law::AirQuadratic]);
     let losses = laws.zip(numbers(&of["losses"])).fold(Losses::NONE, |all, (law, x)| all.with(law, x));
     let face = if of["face"] == "disc" { Face::Disc } else { Face::Ring };
-    let ask = Ask::on(friction).with_losses(losses).with_face(face).with_pose(true).with_force(true);
+    let ask = Ask::on(friction).with_losses(losses).with_face(face).with_pose().with_force();
     let [theta, w1, w2, w3, along, across] = numbers(&of["start"])[..] else { panic!("six numbers") };
-    let start = Start::from(State { theta, w1, w2, w3 }).with_slip([along, across]);
+    let start = Start::from(State { theta, w1, w2, w3 }).with_slip(Slip::new(along, across));
     let aloft = [number(&of["height"]), number(&of["lift"])];
     let row = |row: &Value| {
         let all = row.as_array().unwrap();
@@ -136,7 +136,7 @@ fn states_slips_heat_and_poses_on_a_face_are_those_of_the_references() {
         for (i, row) in case.samples().enumerate() {
             let now = &all[i + 1];
             let State { theta, w1, w2, w3 } = now.state;
-            let [u, v] = now.slip.unwrap();
+            let Slip { u_h: u, u_2: v, .. } = now.slip.unwrap();
             let known = [row.state.theta, row.state.w1, row.state.w2, row.state.w3, row.slip[0], row.slip[1]];
             let state =
                 most(&[theta, w1, w2, w3, u, v], &known).max(most(&[now.aloft.height], &[row.height]));

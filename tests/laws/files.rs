@@ -12,7 +12,7 @@ use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::{AfterImpact, Lands, Strike};
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Scale, State, steady};
+use spincyl::{Body, Scale, Slip, State, steady};
 use std::fmt::Debug;
 
 fn again<T: Serialize + DeserializeOwned>(x: &T) -> T {
@@ -94,12 +94,14 @@ fn options_and_starts_come_back_and_may_be_short() {
     for table in
         [Table::default(), Table::Rolling { mu: 0.3 }, Table::Smooth, Friction::Viscous { c: 2.0 }.into()]
     {
-        comes_back(Ask::on(table).with_pose(true));
+        comes_back(Ask::on(table).with_pose());
     }
     let sticky = Friction::Coulomb { mu: 0.2, fixed: f64::INFINITY, patch: 0.01 };
     comes_back(Ask::on(sticky).with_method(Method::Tolerance(1e-9)).with_restitution(0.5));
     comes_back(
-        Start::from(state(1.0, 0.1, 0.2, 0.3)).with_slip([1.0, 2.0]).with_aloft(AboveTable::new(0.5, 0.0)),
+        Start::from(state(1.0, 0.1, 0.2, 0.3))
+            .with_slip(Slip::new(1.0, 2.0))
+            .with_aloft(AboveTable::new(0.5, 0.0)),
     );
     let short: Ask =
         from_str(r#"{"losses": {"AirFilm": 1e-7, "DryContour": 0.01}, "table": "Smooth"}"#).unwrap();
@@ -195,7 +197,7 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
             from_str::<BodyPart>(&format!(r#"{{"form": {{{form}}}, "amount": {{"Mass": 2}}}}"#)).unwrap();
         objects += every_name_counts(&part);
     }
-    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true).with_restitution(0.5);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose().with_force().with_restitution(0.5);
     let falls = Start::from(state(0.4, 0.3, 0.2, 0.5)).with_aloft(AboveTable::new(0.3, 0.0));
     let motion = roll_with(coin.body(), falls, &[1.0, 40.0], &ask, || true).unwrap().unwrap();
     assert!(motion.path.as_ref().is_some_and(|path| !path.impacts.is_empty()));
@@ -204,8 +206,7 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
     let slow = slow.unwrap().unwrap();
     objects += every_name_counts(&slow) + every_name_counts(&slow.readings().next().unwrap());
     let egg = Ellipsoid::egg(0.02, 0.03, 0.001).unwrap();
-    let turns =
-        stone::roll(&egg, egg.spinning(1.0, 0.1, 0.0), &[1.0], &Ask::default().with_pose(true), || true);
+    let turns = stone::roll(&egg, egg.spinning(1.0, 0.1, 0.0), &[1.0], &Ask::default().with_pose(), || true);
     objects += every_name_counts(&egg) + every_name_counts(&turns.unwrap().unwrap());
     assert!(objects > 60, "{objects}");
 }
@@ -222,7 +223,7 @@ fn motions_come_back_whole() {
     for (body, y) in starts() {
         for ask in [
             Ask::default(),
-            Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true),
+            Ask::on(Friction::coulomb(0.2)).with_pose().with_force(),
             Ask::on(Friction::coulomb(0.2)).with_losses(Losses::of(Law::AirLinear, 1e-2)),
         ] {
             same(&roll_with(&body, y, &times, &ask, || true).unwrap().unwrap());
@@ -233,7 +234,7 @@ fn motions_come_back_whole() {
     for _ in 0..drawn(9) {
         let start = Start::from(state(0.4 + r(), 2.0 * r() - 1.0, r(), 3.0 * r() - 1.5))
             .with_aloft(AboveTable::new(0.3, 0.0));
-        let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.4).with_pose(true);
+        let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.4).with_pose();
         let motion = roll_with(&tube, start, &times, &ask, || true).unwrap().unwrap();
         same(&motion);
         let back: Motion = again(&motion);
@@ -243,7 +244,7 @@ fn motions_come_back_whole() {
     }
     assert!(turned > 0);
     let half = Ellipsoid::rattleback([1.0, 0.2, 0.17], None, 0.035, None).unwrap();
-    let ask = Ask::default().with_pose(true).with_force(true);
+    let ask = Ask::default().with_pose().with_force();
     same(&stone::roll(&half, half.spinning(-0.5, 1e-3, 1e-3), &times, &ask, || true).unwrap().unwrap());
     comes_back(StoneState::spinning(1.0, 0.1, 0.2));
     let coin = Measured::tube(&Tube::solid(24e-3, 2e-3, 8e-3)).unwrap();
@@ -268,15 +269,15 @@ fn numbers_that_have_names_are_arrays_and_bools_in_files() {
         "state": y, "slip": [0.5, 0.25], "time": 0.0, "aloft": [0.5, -1.0], "heading": 0.0, "place": [0.0, 0.0],
     });
     let read = Start::<State>::deserialize(&start).unwrap();
-    assert_eq!(read.aloft, Some(AboveTable::new(0.5, -1.0)));
+    assert_eq!((read.slip, read.aloft), (Slip::new(0.5, 0.25), Some(AboveTable::new(0.5, -1.0))));
     assert_eq!(serde_json::to_value(read).unwrap(), start);
     // The slip of the other rim, and then the force on it: its normal component, and those across and along the lean.
-    let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.0).with_force();
     let lies = Start::from(state(std::f64::consts::FRAC_PI_2, 0.2, 0.0, 0.0));
     let motion = roll_with(&Body::solid(2.0).unwrap(), lies, &[0.01], &ask, || true).unwrap().unwrap();
     let other = motion.samples().next().unwrap().other_rim.unwrap();
     let file = serde_json::to_value(&motion).unwrap();
-    let numbers = [other.slip[0], other.slip[1], other.force.normal, other.force.along, other.force.across];
+    let numbers = [other.slip.u_h, other.slip.u_2, other.force.normal, other.force.along, other.force.across];
     assert_eq!(file["path"]["other_rim"], json!([numbers]));
     assert!(numbers[2] > 0.1 && file["path"]["aloft"] == json!([[0.0, 0.0]]), "{numbers:?}");
 }
@@ -284,7 +285,7 @@ fn numbers_that_have_names_are_arrays_and_bools_in_files() {
 #[test]
 fn a_motion_from_a_file_that_lost_a_part_is_shorter_and_never_panics() {
     let (body, y) = starts().next().unwrap();
-    let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_pose().with_force();
     let motion = roll_with(&body, y, &[0.0, 1.0], &ask, || true).unwrap().unwrap();
     let mut file = serde_json::to_value(&motion).unwrap();
     for name in ["times", "poses", "forces"] {

@@ -6,17 +6,17 @@ use spincyl::contact::slip::{self, Friction};
 use spincyl::contact::{ImpactLaw, Table};
 use spincyl::motion::path::{Kind, Strike};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The motion of a body that starts in the air, or on the table where `aloft` is none, with poses.
 pub(crate) fn hops(body: &Body, start: &Start, table: Table, e: f64, times: &[f64]) -> Motion {
-    let ask = Ask::on(table).with_restitution(e).with_pose(true);
+    let ask = Ask::on(table).with_restitution(e).with_pose();
     roll_with(body, *start, times, &ask, || true).unwrap().unwrap()
 }
 
 pub(crate) fn dropped(state: State, slip: [f64; 2], height: f64, lift: f64) -> Start {
-    Start::from(state).with_slip(slip).with_aloft(AboveTable::new(height, lift))
+    Start::from(state).with_slip(slip.into()).with_aloft(AboveTable::new(height, lift))
 }
 
 pub(crate) fn impacts(m: &Motion) -> &[Strike] {
@@ -55,7 +55,7 @@ pub(crate) fn energy(body: &Body, y: &State, u: [f64; 3], height: f64) -> f64 {
 /// Energy, heat, what losses have taken and what the impacts before have taken, at one of the times.
 pub(crate) fn account(body: &Body, m: &Motion, i: usize) -> f64 {
     let path = m.path.as_ref().unwrap();
-    let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
+    let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
     let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
     energy(body, &m.states[i], [u, v, lift], height)
         + path.dissipated[i]
@@ -86,7 +86,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_rim_is_ever_below_the_t
     for k in 0..drawn(300) {
         let (body, start, mu, e) = any_drop(&mut r);
         let times: Vec<f64> = (0..120).map(|k| 0.05 * f64::from(k)).collect();
-        let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(other_law(k)).with_pose(true);
+        let ask = Ask::on(coulomb(mu)).with_restitution(e).with_impact_law(other_law(k)).with_pose();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| account(&body, &m, i);
@@ -112,7 +112,8 @@ fn a_smooth_table_that_gives_all_back_can_be_run_backward() {
         if path.kinds.last() != Some(&Kind::Flying) || path.impacts.len() > 8 {
             continue;
         }
-        let (y, [u, v], AboveTable { height, lift, .. }) = (m.states[0], path.slip[0], path.aloft[0]);
+        let (y, Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) =
+            (m.states[0], path.slip[0], path.aloft[0]);
         let back = State { w1: -y.w1, w2: -y.w2, w3: -y.w3, ..y };
         let there = hops(&body, &dropped(back, [-u, -v], height, -lift), ice, 1.0, &[3.0]);
         let (end, last) = (there.states[0], there.path.as_ref().unwrap());
@@ -135,7 +136,8 @@ fn the_mirror_image_of_a_motion_is_its_motion_to_the_last_bit() {
         let (body, start, mu, e) = any_drop(&mut r);
         let y = start.state;
         let mirror = State { w1: -y.w1, w3: -y.w3, ..y };
-        let image = Start::from(mirror).with_aloft(start.aloft).with_slip([start.slip[0], -start.slip[1]]);
+        let image =
+            Start::from(mirror).with_aloft(start.aloft).with_slip(Slip::new(start.slip.u_h, -start.slip.u_2));
         let of = |start: &Start| hops(&body, start, coulomb(mu), e, &[0.7, 1.9, 4.0]);
         let (one, two) = (of(&start), of(&image));
         // In contact the direction of a slip from rest has other roundings.
@@ -168,7 +170,7 @@ fn a_body_that_is_seen_from_its_other_rim_flies_and_lands_alike() {
         let (s, c) = y.theta.sin_cos();
         let apart = 2.0 * body.ell();
         let there = State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..y };
-        let slip = [-apart * c * y.w2 - start.slip[0], apart * y.w1 - start.slip[1]];
+        let slip = [-apart * c * y.w2 - start.slip.u_h, apart * y.w1 - start.slip.u_2];
         let other = dropped(there, slip, height + apart * c, lift + apart * s * y.w2);
         let of = |start: &Start| hops(&body, start, coulomb(mu), e, &[2.5]);
         let (one, two) = (of(&start), of(&other));
@@ -235,7 +237,7 @@ fn a_body_whose_normal_force_fails_for_a_moment_lands_twice_as_long_after() {
         let (w1, w3) = (3.0, launch * 6.0 / (tube.i3() * 3.0));
         let v = -tube.i1() / 6.0 * w1;
         let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-        let start = Start::from(state).with_slip([0.0, v + 6.0 * w1 - w3]);
+        let start = Start::from(state).with_slip(Slip::new(0.0, v + 6.0 * w1 - w3));
         let m = hops(&tube, &start, coulomb(0.3), 0.0, &[30.0]);
         let path = m.path.unwrap();
         let flies = path.phases.iter().position(|phase| phase.kind == Kind::Flying)?;
@@ -252,10 +254,10 @@ fn a_body_whose_normal_force_fails_for_a_moment_lands_twice_as_long_after() {
     assert!(lasts > 0.0 && lasts < 1e-2, "{lasts}");
     // N0 = -n t + m t^2/2 from the derivatives of N0 along the flight without contact is zero again after half of it.
     let law = |y: &State, u: [f64; 2]| {
-        slip::derivative(&tube, y, u, &Friction::coulomb(0.0), &Default::default()).2.normal
+        slip::derivative(&tube, y, u.into(), &Friction::coulomb(0.0), &Default::default()).2.normal
     };
     let normal = |t: f64| {
-        let start = dropped(leaves.state, leaves.slip, 0.0, 0.0);
+        let start = dropped(leaves.state, leaves.slip.into(), 0.0, 0.0);
         let m = hops(&tube, &start.with_aloft(AboveTable::new(1.0, 0.0)), coulomb(0.3), 0.0, &[t]);
         law(&m.states[0], [1.0, 0.0])
     };

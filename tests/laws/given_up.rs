@@ -8,11 +8,11 @@ use spincyl::ensemble::{Job, LossColumns, MotionOutput, MotionStarts, Summary, r
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Moving, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Slip, State, steady};
 
 /// A ball that slips and rolls under friction and air, and a stone that rattles; neither has an end.
 fn ball() -> (Body, Start, Ask) {
-    let start = Start::from(state(1.0, 0.3, 0.1, 4.0)).with_slip([0.5, 1.0]);
+    let start = Start::from(state(1.0, 0.3, 0.1, 4.0)).with_slip(Slip::new(0.5, 1.0));
     let ask = Ask::on(Friction::coulomb(0.1)).with_losses(Losses::of(Law::AirLinear, 1e-4));
     (Body::ball(-0.1, 0.41, 0.4).unwrap(), start, ask)
 }
@@ -97,11 +97,11 @@ fn steps_of_fixed_length_and_steps_within_a_tolerance_obey_the_same_limit() {
 #[test]
 fn beyond_its_events_a_motion_is_given_up_too() {
     let (ball, spun) = (Body::ball(-0.1, 0.41, 0.4).unwrap(), state(1.0, 0.0, 0.0, 2e3));
-    let ask = Ask::on(Table::Smooth).with_losses(Losses::of(Law::AirLinear, 1e-12)).with_beyond(true);
+    let ask = Ask::on(Table::Smooth).with_losses(Losses::of(Law::AirLinear, 1e-12)).with_beyond();
     let m = roll_with(&ball, spun, &[150.0], &ask.with_max_evaluations(5_000), || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Evaluations)));
     let stone = Ellipsoid::uniform([1.0, 1.0, 1.0]).unwrap();
-    let ask = Ask::default().with_beyond(true).with_max_evaluations(5_000);
+    let ask = Ask::default().with_beyond().with_max_evaluations(5_000);
     let m = stone::roll(&stone, stone.spinning(2e3, 0.0, 0.0), &[1e3], &ask, || true).unwrap().unwrap();
     assert_eq!(m.limit, Some(Limit::Evaluations));
 }
@@ -142,8 +142,8 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let tube = Body::solid(2.5).unwrap();
     let nods = steady::state(&tube, 1.3).unwrap().kicked(0.05);
     for ask in [
-        Ask::default().with_pose(true),
-        Ask::default().with_force(true),
+        Ask::default().with_pose(),
+        Ask::default().with_force(),
         Ask::default().with_method(Method::Tolerance(1e-9)),
     ] {
         let all: Vec<f64> = (0..100_000).map(|i| 0.01 * f64::from(i)).collect();
@@ -170,7 +170,7 @@ fn an_interrupted_motion_is_the_motion_up_to_there() {
     let part = part.unwrap().unwrap();
     assert!(part.is_interrupted() && !part.states.is_empty() && part.states.len() < 8000);
     // Before its first step a motion has nothing to return.
-    let forces = Ask::default().with_force(true).with_method(Method::Tolerance(1e-9));
+    let forces = Ask::default().with_force().with_method(Method::Tolerance(1e-9));
     assert!(
         roll_with(&tube, nods, &times(8000), &forces, || false).unwrap().is_none_or(|m| m.is_interrupted())
     );
@@ -191,7 +191,7 @@ fn each_limit_has_its_reason_in_words() {
     let tube = Body::tube(6.0, 0.8).unwrap();
     let (w1, w3, mu) = (3.392822265625, 3.324289864719004, 0.20241508483886717);
     let slips = Start::from(State { theta: std::f64::consts::FRAC_PI_2, w1, w2: 0.0, w3 });
-    let slips = slips.with_slip([0.0, (6.0 - tube.i1() / 6.0) * w1 - w3]);
+    let slips = slips.with_slip(Slip::new(0.0, (6.0 - tube.i1() / 6.0) * w1 - w3));
     let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-9));
     let m = roll_with(&tube, slips, &[2e5], &ask, || true).unwrap().unwrap();
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Changes)));

@@ -9,7 +9,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind, Lands};
 use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn moved(body: &Body, start: &Start, ask: &Ask, times: &[f64]) -> Motion {
@@ -46,7 +46,7 @@ fn any_start(body: &Body, r: &mut impl FnMut() -> f64) -> Start {
     let fast = [0.3, 1.0, 3.0][(3.0 * r()) as usize];
     let [w1, w2, w3] = core::array::from_fn(|_| if r() < 0.15 { 0.0 } else { fast * (2.0 * r() - 1.0) });
     let state = State { theta, w1, w2, w3 };
-    let start = Start::from(state).with_slip([2.0 * r() - 1.0, 2.0 * r() - 1.0]);
+    let start = Start::from(state).with_slip(Slip::new(2.0 * r() - 1.0, 2.0 * r() - 1.0));
     match (4.0 * r()) as u8 {
         0 => start.with_aloft(AboveTable::new(1.5 * r(), 2.0 * r() - 1.0)),
         1 => start.with_aloft(AboveTable::new(0.0, 2.0 * r() - 1.0)),
@@ -71,7 +71,8 @@ fn whatever_hops_keeps_its_energy_within_its_estimated_error_and_nothing_sinks_i
         let m = moved(&body, &start, &Ask::on(coulomb(mu)).with_restitution(e).with_losses(air), &times);
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
+            let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) =
+                (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             energy(&body, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]
@@ -227,7 +228,7 @@ fn a_body_that_leaves_the_table_against_the_air_lands_when_newtons_equations_say
             if other || hit.states[0].theta > FRAC_PI_2 - 0.01 {
                 continue;
             }
-            let lands = landing(&body, &pair[0].state, pair[0].slip, &air, 2.0 * lasts);
+            let lands = landing(&body, &pair[0].state, pair[0].slip.into(), &air, 2.0 * lasts);
             let off = lands.map_or(f64::INFINITY, |t| (t / lasts - 1.0).abs());
             assert!(off < 1e-5, "{body:?} {:?} {air:?}: {lasts} for {lands:?}", pair[0]);
             met += 1;
@@ -295,7 +296,7 @@ fn a_can_that_is_dropped_flat_rises_level_over_its_spot_to_the_square_of_its_res
             let height = 0.7;
             let fall = f64::sqrt(2.0 * height);
             let times = [fall, fall * (1.0 + e), fall * (1.0 + 2.0 * e) * 0.999];
-            let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose(true);
+            let ask = Ask::on(coulomb(0.5)).with_restitution(e).with_pose();
             let m = moved(&can, &dropped(state, [0.0; 2], height, 0.0), &ask, &times);
             let path = m.path.as_ref().unwrap();
             assert!((path.aloft[1].height - e * e * height).abs() < 1e-14, "{ell} {e}: {:?}", path.aloft);
@@ -386,7 +387,8 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
     for _ in 0..drawn(600) {
         let (body, start) = both_come_down(&mut r);
         let (mu, e) = (1.2 * r(), r());
-        let (y, [u, v], AboveTable { lift, .. }) = (start.state, start.slip, start.aloft.unwrap());
+        let (y, Slip { u_h: u, u_2: v, .. }, AboveTable { lift, .. }) =
+            (start.state, start.slip, start.aloft.unwrap());
         let ask = Ask::on(Table::from(Friction::coulomb(mu))).with_restitution(e);
         let first = |start: &Start| {
             let m = moved(&body, start, &ask, &[0.0, 1e-9]);
@@ -433,7 +435,7 @@ fn apart(a: &Motion, b: &Motion) -> f64 {
 
 /// A start at theta, w1, w2, w3 with a slip, moved within two tolerances; the motions, and their difference.
 fn within_both(body: &Body, y: [f64; 6], ask: &Ask, times: &[f64]) -> ([Motion; 2], f64) {
-    let start = Start::from(State::from([y[0], y[1], y[2], y[3]])).with_slip([y[4], y[5]]);
+    let start = Start::from(State::from([y[0], y[1], y[2], y[3]])).with_slip(Slip::new(y[4], y[5]));
     let both = [1e-14, 1e-10].map(|tol| moved(body, &start, &ask.with_method(Method::Tolerance(tol)), times));
     let off = apart(&both[0], &both[1]);
     (both, off)
@@ -531,7 +533,7 @@ fn bounces_that_are_summed_above_a_film_of_air_claim_what_the_film_does_at_a_con
     let state =
         State::from([0.6696691498500239, -0.23756640506288826, 1.232347931628101, -0.3763522090355309]);
     let start = Start::from(state)
-        .with_slip([-0.257834306992858, 0.8479262272929056])
+        .with_slip(Slip::new(-0.257834306992858, 0.8479262272929056))
         .with_aloft(AboveTable::new(0.4789478567397365, -1.151243805702898));
     let losses = Losses::of(Law::AirFilm, 0.0063086151208995855);
     let ask = Ask::on(coulomb(0.058676901727985425)).with_restitution(0.0400865823815999).with_losses(losses);

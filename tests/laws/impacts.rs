@@ -7,7 +7,7 @@ use spincyl::contact::slip::Friction;
 use spincyl::contact::{self, Contact, Table};
 use spincyl::motion::path::{AfterImpact, Hit, Kind};
 use spincyl::motion::{Ask, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::FRAC_PI_2;
 
 #[test]
@@ -188,7 +188,7 @@ fn a_slip_follows_rouths_equations_along_an_impact_also_where_friction_hardly_sl
     let mut slow = 0;
     for k in 0..drawn(60) {
         let (body, start, mu, e) = any_drop(&mut r);
-        let (state, [u, v]) = (start.state, start.slip);
+        let (state, Slip { u_h: u, u_2: v, .. }) = (start.state, start.slip);
         let [radius, depth, height, lever] = rim(&body, state.theta);
         let (i1, i3) = (body.i1(), body.i3());
         let (a_h, a_n, b) = (1.0 + height * height / i1, 1.0 + lever * lever / i1, height * lever / i1);
@@ -241,7 +241,7 @@ fn a_slip_that_jams_is_stopped_by_an_impact_without_a_fall() {
         }
         for (e, speed) in [(0.0, 1.0), (0.4, 0.3), (1.0, 2.0)] {
             let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
-            let start = Start::from(state).with_slip([speed * b.signum(), 0.0]);
+            let start = Start::from(state).with_slip(Slip::new(speed * b.signum(), 0.0));
             let hit = impacts(&hops(&body, &start, coulomb(mu), e, &[1e-3]))[0];
             // The slip stops after the impulse p, while the rim presses harder; then it sticks, and comes up again.
             let (p, k) = (speed / (mu * a_h - b.abs()), a_n - b * b / a_h);
@@ -268,13 +268,13 @@ fn a_jam_is_the_limit_of_landings_ever_slower_and_where_the_rim_may_leave_as_wel
         let (w1, w2, w3, u, v) = (speed(), speed(), speed(), speed(), speed());
         let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
         let (table, e) = (if film { Friction::Viscous { c: 3.0 }.into() } else { coulomb(0.95) }, r());
-        let start = Start::from(state).with_slip([u, v]);
+        let start = Start::from(state).with_slip(Slip::new(u, v));
         // Without restitution a jam is refused, and so tells us where one is.
         if roll_with(&body, start, &[0.0], &Ask::on(table), || true).is_ok() {
             continue;
         }
         let free = contact::force(Contact::Smooth, &body, &state).normal;
-        let ask = Ask::on(table).with_restitution(e).with_pose(true);
+        let ask = Ask::on(table).with_restitution(e).with_pose();
         let made = roll_with(&body, start, &[1e-9], &ask, || true);
         if free < 0.0 {
             assert!(made.unwrap_err().to_string().contains(": no unique contact force (Painleve)"));

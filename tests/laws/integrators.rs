@@ -258,7 +258,7 @@ fn d6_a_nearly_flat_body_turns_by_the_fixed_angle() {
         assert!((turn / limit - 1.0).abs() <= allowed, "{}: {turn} {limit}", r.scene);
         // the same angle by integration
         for (tol, allowed) in [(1e-9, 1e-6), (1e-12, 1e-9)] {
-            let scene = Ask::default().with_method(Method::Tolerance(tol)).with_pose(true).with_beyond(true);
+            let scene = Ask::default().with_method(Method::Tolerance(tol)).with_pose().with_beyond();
             let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
             let phi = motion.poses.unwrap()[0].phi.radians();
             assert!((phi - r.values[2]).abs() < allowed, "{} within {tol}: {phi} {}", r.scene, r.values[2]);
@@ -328,7 +328,7 @@ fn d11_the_suggested_step_is_within_a_factor_two_of_the_largest_that_keeps_the_n
 fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for tol in [1e-6, 1e-9, 1e-12] {
-            let scene = by(Method::Tolerance(tol)).with_table(r.contact).with_beyond(true);
+            let scene = by(Method::Tolerance(tol)).with_table(r.contact).with_beyond();
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let error = distance(&motion.states[0], &r.values);
             assert!(error <= 1e3 * tol, "{} {:?}: {error:e} within {tol:e}", r.scene, r.contact);
@@ -340,7 +340,7 @@ fn tolerances_are_kept_within_a_modest_factor_and_errors_are_said() {
 #[test]
 fn called_without_a_method_the_answer_is_right_to_nine_digits_and_says_how() {
     for r in motions().iter().filter(|r| r.kind == "state") {
-        let scene = Ask::default().with_table(r.contact).with_beyond(true);
+        let scene = Ask::default().with_table(r.contact).with_beyond();
         let motion = moved(&r.body, &r.start, &[r.t], scene).unwrap();
         let error = distance(&motion.states[0], &r.values);
         if r.t < 1e9 {

@@ -5,7 +5,7 @@ use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::exact::Swing;
 use spincyl::motion::{Ending, Method, Start, roll_with};
-use spincyl::{Body, Contact, Error, State, contact};
+use spincyl::{Body, Contact, Error, Slip, State, contact};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The first of 400 sampled times up to `t` at which the exact motion has left the model by more than
@@ -90,7 +90,7 @@ fn a_slip_that_hardly_begins_takes_no_tiny_steps_to_its_end() {
         let w1 = 3.180_904_52 * (1.0 + 1e-11 * f64::from(k));
         let state =
             State { theta: FRAC_PI_2, w1, w2: 0.0, w3: (1.05 + 0.55 * 129.0 / 199.0) * ell / (i3 * w1) };
-        let start = Start::from(state).with_slip([0.0, (ell - i1 / ell) * w1 - state.w3]);
+        let start = Start::from(state).with_slip(Slip::new(0.0, (ell - i1 / ell) * w1 - state.w3));
         let motion = roll_with(&body, start, &[0.0, 46.0], &ask, || true).unwrap().unwrap();
         let phases = &motion.path.as_ref().unwrap().phases;
         grazing += usize::from(phases.len() == 3 && phases[2].time - phases[1].time < 0.01);

@@ -5,7 +5,7 @@ use crate::losses::{follow, quarters, total};
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, path, path::Kind, roll_with};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Slip, State, steady};
 
 #[test]
 fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
@@ -28,17 +28,18 @@ fn a_drilling_that_friction_holds_stays_held_where_a_slip_begins() {
         assert!((total(&body, &motion, i) - total(&body, &motion, 0)).abs() < 1e-13, "{i}");
         assert!((1..4).contains(&i) == (drilling(y).abs() < 1e-14), "{i}: {:e}", drilling(y));
     }
-    assert!(path_of(&motion).slip[1] == [0.0; 2] && path_of(&motion).slip[2] != [0.0; 2]);
+    assert!(path_of(&motion).slip[1] == Slip::default() && path_of(&motion).slip[2] != Slip::default());
     // The reference is the limit of a couple that grows from zero up to a drilling rate of 1e-6.
     let rates = |y: &[f64; 6]| {
         let at = State::from([y[0], y[1], y[2], y[3]]);
         let losses = Losses::of(Law::Drilling, length * (drilling(&at).abs() / 1e-6).tanh().max(1e-30));
-        let (dy, du, _) = slip::derivative(&body, &at, [y[4], y[5]], &friction, &losses);
+        let (dy, du, _) = slip::derivative(&body, &at, Slip::new(y[4], y[5]), &friction, &losses);
         let [a, b, c, d] = numbers(&dy);
-        [a, b, c, d, du[0], du[1]]
+        [a, b, c, d, du.u_h, du.u_2]
     };
     let of = |i: usize| {
-        let ([a, b, c, d], [u, v]) = (numbers(&motion.states[i]), path_of(&motion).slip[i]);
+        let ([a, b, c, d], Slip { u_h: u, u_2: v, .. }) =
+            (numbers(&motion.states[i]), path_of(&motion).slip[i]);
         [a, b, c, d, u, v]
     };
     let (mut y, count) = (of(2), 20_000);
@@ -94,7 +95,8 @@ fn rolling_that_gives_way_as_the_contact_turns_round_loses_no_energy_and_wins_no
         }
         // slips that begin with psi' = 0 up to rounding
         let at_once = |phase: &&path::Phase| {
-            let begins = phase.kind == path::Kind::Slipping && phase.time > 0.0 && phase.slip == [0.0; 2];
+            let begins =
+                phase.kind == path::Kind::Slipping && phase.time > 0.0 && phase.slip == Slip::default();
             begins && phase.state.spin().abs() < 1e-11
         };
         turned += path_of(&path).phases.iter().filter(at_once).count();
@@ -215,7 +217,8 @@ fn a_slip_that_almost_ends_and_grows_again_costs_no_more_than_another() {
     };
     let times: Vec<f64> = (0..=300).map(|i| 0.01 * f64::from(i)).collect();
     let motion = coin(&start, 0.02, 0.3, &times);
-    let speeds: Vec<f64> = path_of(&motion).slip[100..240].iter().map(|[u, v]| u.hypot(*v)).collect();
+    let speeds: Vec<f64> =
+        path_of(&motion).slip[100..240].iter().map(|Slip { u_h: u, u_2: v, .. }| u.hypot(*v)).collect();
     let least = speeds.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(least < 1e-6 && least < 1e-2 * speeds[0] && least < 1e-2 * speeds[139], "{least:e}");
     // Each series counts as a hundred.
@@ -231,7 +234,7 @@ fn a_face_that_slips_under_losses_lands_also_where_no_step_is_short_enough() {
         w2: 2.852595868959427,
         w3: 1.0216215211876745,
     };
-    let start = Start::from(state).with_slip([0.5800046804106632, 0.3565063080910994]);
+    let start = Start::from(state).with_slip(Slip::new(0.5800046804106632, 0.3565063080910994));
     let losses = Losses::of(Law::DryContour, 0.028950077627950384) + Losses::of(Law::AirQuadratic, 1e-3);
     let ask = Ask::on(Friction::coulomb(0.6214365815671594)).with_restitution(0.0).with_losses(losses);
     let m = roll_with(&body, start, &[1.0], &ask, || true).unwrap().unwrap();

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use spincyl::contact::{Friction, Table, lossy, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Motion, roll_with};
-use spincyl::{Body, Contact, Error, State, newton, roll, steady};
+use spincyl::{Body, Contact, Error, Slip, State, newton, roll, steady};
 
 fn bodies() -> impl Strategy<Value = Body> {
     prop_oneof![2 => ordinary_tube(), 1 => any_rounded()]
@@ -61,12 +61,12 @@ pub(crate) fn total(body: &Body, motion: &Motion, i: usize) -> f64 {
 
 /// The sum of the slopes of the energy of a slipping body with respect to its state and slip.
 fn slopes(body: &Body, motion: &Motion, i: usize) -> f64 {
-    let (y, [along, across]) = (numbers(&motion.states[i]), path_of(motion).slip[i]);
+    let (y, Slip { u_h: along, u_2: across, .. }) = (numbers(&motion.states[i]), path_of(motion).slip[i]);
     let all = [y[0], y[1], y[2], y[3], along, across];
     let moved = |k: usize, by: f64| {
         let mut x = all;
         x[k] += by;
-        slip::energy(body, &[x[0], x[1], x[2], x[3]].into(), [x[4], x[5]])
+        slip::energy(body, &[x[0], x[1], x[2], x[3]].into(), Slip::new(x[4], x[5]))
     };
     (0..6).map(|k| (moved(k, 1e-6) - moved(k, -1e-6)).abs() / 2e-6).sum()
 }
@@ -172,7 +172,7 @@ proptest! {
         body in bodies(), y in any_state(), u in [-3.0..3.0f64, -3.0..3.0f64], mu in 0.0..0.4f64, losses in losses(),
     ) {
         let friction = Friction::coulomb(mu);
-        let (dy, _, force) = slip::derivative(&body, &y, u, &friction, &losses);
+        let (dy, _, force) = slip::derivative(&body, &y, u.into(), &friction, &losses);
         prop_assume!(force.normal > 0.0 && force.normal < 1e3);
         let couple = losses.couple(&body, &y, force.normal);
         let by_newton = newton::derivative(&body, &y, &force, couple);
@@ -377,7 +377,7 @@ fn the_pose_of_a_contact_that_has_settled_turns_at_the_rate_of_its_state() {
         let left = |i: i32| 10f64.powf(-1.0 - 0.05 * f64::from(i));
         let times: Vec<f64> =
             (0..60).flat_map(|i| [1.0, 0.99, 0.98].map(|share| end.time - share * left(i))).collect();
-        let ask = Ask::on(table).with_losses(losses).with_pose(true);
+        let ask = Ask::on(table).with_losses(losses).with_pose();
         let m = roll_with(&disk, start, &times, &ask, || true).unwrap().unwrap();
         let poses = m.poses.as_ref().unwrap();
         for i in (0..times.len() - 2).step_by(3) {
@@ -399,7 +399,7 @@ fn a_face_whose_contact_has_stopped_falls_about_a_fixed_point_of_the_rim() {
     let start = steady::state(&coin, 0.02).unwrap();
     let losses = Losses::of(Law::DryContour, 5e-3);
     let (stop, _) = stop_of(&coin, &start, losses);
-    let ask = Ask::on(ROLLS).with_losses(losses).with_pose(true);
+    let ask = Ask::on(ROLLS).with_losses(losses).with_pose();
     let times: Vec<f64> = (0..=50).map(|i| stop + 1e-3 * f64::from(i)).collect();
     let path = roll_with(&coin, start, &times, &ask, || true).unwrap().unwrap();
     assert_eq!(path.ending(), Ending::Face);

@@ -5,17 +5,17 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Hit, Kind, OtherRim};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, Slip, State};
 use std::f64::consts::FRAC_PI_2;
 
 /// A body on its side, whose centre moves with the velocity v along the axis and across it.
 fn lying(body: &Body, w1: f64, w3: f64, [along, across]: [f64; 2]) -> Start {
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-    Start::from(state).with_slip([along, across + body.ell() * w1 - w3])
+    Start::from(state).with_slip(Slip::new(along, across + body.ell() * w1 - w3))
 }
 
 fn ask(friction: Friction, losses: Losses) -> Ask {
-    Ask::on(friction).with_restitution(0.0).with_losses(losses).with_pose(true).with_force(true)
+    Ask::on(friction).with_restitution(0.0).with_losses(losses).with_pose().with_force()
 }
 
 fn moved(body: &Body, start: Start, mu: f64, times: &[f64]) -> Motion {
@@ -163,7 +163,7 @@ fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64) {
     let mut speed = || 3.0 * r() - 1.5;
     let (w1, w3, u, v) = (speed(), speed(), speed(), speed());
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-    (body, Start::from(state).with_slip([u, v]), 0.05 + 0.5 * r())
+    (body, Start::from(state).with_slip(Slip::new(u, v)), 0.05 + 0.5 * r())
 }
 
 /// Kinetic and potential energy, from the velocity of the centre.
@@ -198,9 +198,9 @@ fn energy_heat_and_losses_are_constant_while_both_rims_press_and_their_friction_
                 path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
             let AboveTable { height, lift, .. } = path.aloft[i];
             let rise = height + lift * (lift / 2.0 + lever(&body, &m.states[i]) * m.states[i].w2);
-            energy(&body, &m.states[i], path.slip[i]) + rise + path.dissipated[i] + lost + struck
+            energy(&body, &m.states[i], path.slip[i].into()) + rise + path.dissipated[i] + lost + struck
         };
-        let first = energy(&body, &start.state, start.slip);
+        let first = energy(&body, &start.state, start.slip.into());
         for (i, kind) in path.kinds.iter().enumerate() {
             met[*kind as usize] += 1;
             assert!(
@@ -209,7 +209,7 @@ fn energy_heat_and_losses_are_constant_while_both_rims_press_and_their_friction_
                 whole(i) - first
             );
             if !matches!(kind, Kind::Lying | Kind::Pivoting | Kind::RollingOnItsSide) {
-                assert!(path.other_rim[i].slip[0].is_nan() && path.other_rim[i].force.normal.is_nan());
+                assert!(path.other_rim[i].slip.u_h.is_nan() && path.other_rim[i].force.normal.is_nan());
                 continue;
             }
             let here = m.forces.as_ref().unwrap()[i];
@@ -254,7 +254,7 @@ fn the_mirror_image_of_a_lying_body_moves_as_its_mirror_image() {
         let (body, start, mu) = any_lying(&mut r);
         let y = start.state;
         let mirror = State { w1: -y.w1, w3: -y.w3, ..y };
-        let image = Start::from(mirror).with_slip([start.slip[0], -start.slip[1]]);
+        let image = Start::from(mirror).with_slip(Slip::new(start.slip.u_h, -start.slip.u_2));
         let (one, two) = (moved(&body, start, mu, &[1.0, 4.0]), moved(&body, image, mu, &[1.0, 4.0]));
         for (a, b) in one.states.iter().zip(&two.states) {
             let far = one.error + two.error + 1e-13;
@@ -333,7 +333,7 @@ fn a_short_cylinder_rocks_from_rim_to_rim_for_the_time_of_housners_block() {
     for (ell, lies) in [(0.55, false), (0.62, true)] {
         let ice = Body::solid(ell).unwrap();
         let falls = State { theta: 1.2, w1: 0.0, w2: -0.1, w3: 0.0 };
-        let m = moved(&ice, Start::from(falls).with_slip([0.3, 0.0]), 0.0, &[9.0]);
+        let m = moved(&ice, Start::from(falls).with_slip(Slip::new(0.3, 0.0)), 0.0, &[9.0]);
         let path = m.path.as_ref().unwrap();
         assert_eq!(path.phases.len() == 2, lies, "{ell} {:?}", path.phases);
     }
@@ -408,7 +408,7 @@ fn what_two_rims_do_not_determine_is_refused_by_its_name() {
     let body = Body::solid(0.2).unwrap();
     let of = |w3: f64| {
         let state = State { theta: FRAC_PI_2, w1: 5.0, w2: 0.0, w3 };
-        let start = Start::from(state).with_slip([0.5, 0.0]);
+        let start = Start::from(state).with_slip(Slip::new(0.5, 0.0));
         roll_with(&body, start, &[0.01], &ask(Friction::coulomb(1.0), Losses::NONE), || true)
     };
     for (w3, refused) in [(-0.25, true), (-0.2, true), (-0.5, false), (0.3, false)] {
@@ -436,10 +436,9 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
     let times: Vec<f64> = (1..=400).map(|i| 0.01 * f64::from(i)).collect();
     for ([ell, i1, i3], [theta, w1, w2, w3], slip, [mu, fixed], law) in scenes {
         let body = Body::new(ell, i1, i3).unwrap();
-        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip);
-        let ask = ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03))
-            .with_pose(true)
-            .with_force(true);
+        let start = Start::from(State { theta, w1, w2, w3 }).with_slip(slip.into());
+        let ask =
+            ask(Friction::Coulomb { mu, fixed, patch: 0.0 }, Losses::of(law, 0.03)).with_pose().with_force();
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let (poses, path) = (m.poses.as_ref().unwrap(), m.path.as_ref().unwrap());
         let lies = |i: usize| path.kinds[i] as u8 >= Kind::Lying as u8;
@@ -448,8 +447,8 @@ fn on_both_rims_the_lean_turns_no_faster_than_the_body_whichever_rim_sticks() {
             if lies(i - 1) && lies(i) {
                 seen += 1;
                 // Friction at neither rim gives energy, whichever of them the motion is followed from.
-                let (push, [u, v]) = (m.forces.as_ref().unwrap()[i], path.slip[i]);
-                let OtherRim { slip: [u_up, v_up], force: pull, .. } = path.other_rim[i];
+                let (push, Slip { u_h: u, u_2: v, .. }) = (m.forces.as_ref().unwrap()[i], path.slip[i]);
+                let OtherRim { slip: Slip { u_h: u_up, u_2: v_up, .. }, force: pull, .. } = path.other_rim[i];
                 // A force has its name from the direction of rolling, which is across the lean.
                 assert!(push.across * u + push.along * v < 1e-12, "{body:?} {}", m.times[i]);
                 assert!(pull.across * u_up + pull.along * v_up < 1e-12, "{body:?} {}", m.times[i]);
@@ -469,7 +468,7 @@ fn a_coin_that_spins_down_on_its_edge_rolls_to_and_fro_until_rolling_resistance_
     let losses = Losses::of(Law::RollingResistance, 0.05 / 12.875);
     for k in 0..10 {
         let state = State { theta: FRAC_PI_2, w1: 1.5 + 0.01 * f64::from(k), w2: 0.0, w3: -0.0828 };
-        let start = Start::from(state).with_slip([0.0026, 0.2545]);
+        let start = Start::from(state).with_slip(Slip::new(0.0026, 0.2545));
         let m = losing(&coin, start, Friction::coulomb(0.3), losses, &[100.0]);
         assert_eq!(m.event.map(|end| end.ending), Some(Ending::Stops));
         assert!(m.evaluations < 50_000, "{}", m.evaluations);

@@ -15,7 +15,7 @@ use spincyl::{Body, Contact, State};
 /// lane computed it.
 fn share(body: &Body, y: &State, contact: Contact, t: f64) -> Option<f64> {
     let swing = Swing::new(body, y, contact).ok()?;
-    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::on(contact).with_beyond(true)), 1);
+    let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::on(contact).with_beyond()), 1);
     let off = distance(&many.last(0), &numbers(&swing.state(t)));
     (many.method[0] == Answer::Lanes as u8).then(|| off / (many.error[0] + swing.error(t)))
 }

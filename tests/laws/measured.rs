@@ -81,7 +81,7 @@ fn readings_are_the_samples_in_other_units() {
     let (ending, second) = motion.end();
     assert_eq!((ending, motion.readings().count()), (Ending::Face, 2));
     let times = [0.0, coin.scale().time(1.0), coin.scale().time(1e3)];
-    let ask = ask.with_pose(true).with_force(true);
+    let ask = ask.with_pose().with_force();
     let plain = roll_with(coin.body(), start, &times, &ask, || true).unwrap().unwrap();
     assert_eq!(second, Some(coin.scale().seconds(plain.event.unwrap().time)));
     assert_eq!(motion.natural.states, plain.states);

@@ -1,7 +1,7 @@
 //! Bodies made from their outline: the moments of uniform solids of revolution, and the circles on which they stand.
 
 use crate::common::wander;
-use spincyl::body::Circle;
+use spincyl::body::{Circle, CircleBorder};
 use spincyl::contact::{Contact, Friction};
 use spincyl::ensemble::{Job, MotionColumns, MotionOutput, roll as roll_many};
 use spincyl::motion::{Ask, Method, Start, roll_with};
@@ -38,7 +38,7 @@ fn known() -> Vec<(Body, [f64; 6])> {
 #[test]
 fn uniform_bodies_of_two_circles_have_the_numbers_that_are_known_of_them() {
     for (body, told) in known() {
-        let ([[theta, span]], [low, high]) =
+        let ([CircleBorder { theta, span, .. }], [low, high]) =
             (body.borders()[..].try_into().unwrap(), body.circles()[..].try_into().unwrap());
         let (s, c) = theta.sin_cos();
         let lever = |circle: Circle| circle.depth * s - circle.radius * c;
@@ -74,7 +74,7 @@ fn the_narrow_end_rises_where_the_table_no_longer_presses_it() {
         let apex = body.apex(0).unwrap();
         assert!((apex.radius - radius).abs() < 6e-7 && (apex.rate - rate).abs() < 6e-11, "{apex:?}");
         assert!((apex.friction - friction).abs() < 6e-5 && body.rests() == [0], "{apex:?}");
-        let [[theta, span]] = body.borders()[..] else { panic!("{body:?}") };
+        let [CircleBorder { theta, span, .. }] = body.borders()[..] else { panic!("{body:?}") };
         let (s, c) = theta.sin_cos();
         let far = apex.contacts[1] - apex.contacts[0];
         assert!((far.abs() - span).abs() < 1e-12 * span, "the contacts are on one line with the apex");
@@ -180,7 +180,7 @@ fn a_bottle_and_a_double_cone_stand_on_every_circle_of_their_hull() {
         Body::lathe(&[[1.0, 0.0], [1.0, 3.0], [0.4, 4.0], [0.3, 4.0], [0.3, 5.0], [0.35, 5.0], [0.35, 5.2]]);
     let bottle = bottle.unwrap();
     assert_eq!(bottle.circles().iter().map(|circle| circle.radius).collect::<Vec<_>>(), [1.0, 1.0, 0.35]);
-    let ends: Vec<f64> = bottle.borders().iter().map(|[theta, _]| *theta).collect();
+    let ends: Vec<f64> = bottle.borders().iter().map(|border| border.theta).collect();
     assert_eq!(ends[0], FRAC_PI_2);
     assert!((ends[1] - (FRAC_PI_2 + 0.65f64.atan2(2.2))).abs() < 1e-14);
     let double = Body::lathe(&[[0.0, -1.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
@@ -188,7 +188,8 @@ fn a_bottle_and_a_double_cone_stand_on_every_circle_of_their_hull() {
     assert_eq!([tip.radius, rim.radius, top.radius], [0.0, 1.0, 0.0]);
     assert!(rim.depth.abs() < 1e-15 && (tip.depth - 1.0).abs() < 1e-15);
     let quarter = std::f64::consts::FRAC_PI_4;
-    for ([theta, span], told) in double.borders().into_iter().zip([quarter, 3.0 * quarter]) {
+    for (CircleBorder { theta, span, .. }, told) in double.borders().into_iter().zip([quarter, 3.0 * quarter])
+    {
         assert!((theta - told).abs() < 1e-15 && (span - 2f64.sqrt()).abs() < 1e-15);
     }
     // The integrals of r^2, r^4 and r^2 z^2 with r = 1 - |z| are 2/3, 2/5 and 1/15.

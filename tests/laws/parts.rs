@@ -338,9 +338,9 @@ fn a_body_of_parts_stands_on_its_lowest_points_at_every_inclination() {
         tried += 1;
         let (body, end) = (&found.body, found.body.theta_end());
         let (circles, borders) = (body.circles(), body.borders());
-        assert!(borders.len() + 1 == circles.len() && borders.first().map_or(PI, |first| first[0]) == end);
+        assert!(borders.len() + 1 == circles.len() && borders.first().map_or(PI, |first| first.theta) == end);
         let carries = |theta: f64| {
-            let circle = &circles[borders.iter().filter(|[border, _]| theta > *border).count()];
+            let circle = &circles[borders.iter().filter(|border| theta > border.theta).count()];
             let low = circle.depth * theta.cos() + circle.radius * theta.sin() + circle.fillet;
             low * found.radius - found.centre * theta.cos()
         };

@@ -8,7 +8,7 @@ use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::turning::{jellett_rising_spin, jellett_spin, rising_spin, turning_spin};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Slip, State, steady};
 use std::f64::consts::PI;
 
 fn on(mu: f64, patch: f64) -> Friction {
@@ -16,7 +16,7 @@ fn on(mu: f64, patch: f64) -> Friction {
 }
 
 fn rolled(body: &Body, start: Start, friction: Friction, times: &[f64]) -> Motion {
-    roll_with(body, start, times, &Ask::on(friction).with_force(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &Ask::on(friction).with_force(), || true).unwrap().unwrap()
 }
 
 fn drilling(y: &State) -> f64 {
@@ -41,7 +41,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let state = State { theta: 0.0, w1: speed(), w2: 0.3 * speed(), w3: speed() };
     let slip = [0.3 * speed(), 0.3 * speed()];
     let state = State { theta: 0.4 + 0.8 * r(), ..state };
-    (body.unwrap(), Start::from(state).with_slip(slip), 0.1 + 0.5 * r(), 10f64.powf(-1.0 - 1.5 * r()))
+    (body.unwrap(), Start::from(state).with_slip(slip.into()), 0.1 + 0.5 * r(), 10f64.powf(-1.0 - 1.5 * r()))
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn a_ball_that_rolls_heavily_creeps_with_a_constant_k_and_slows_down_evenly() {
     let m = roll_with(&ball, Start::from(state), &times, &ask, || true).unwrap().unwrap();
     let slips = &m.path.as_ref().unwrap().slip;
     let seen = |i: usize| {
-        let (y, [u, v]) = (m.states[i], slips[i]);
+        let (y, Slip { u_h: u, u_2: v, .. }) = (m.states[i], slips[i]);
         let rolling = y.theta.cos() * y.w1 - y.theta.sin() * y.w3;
         // The slip is along the velocity of the centre.
         assert!((u * rolling + v * y.w2).abs() < 1e-12);
@@ -97,7 +97,7 @@ fn a_drilling_that_friction_holds_does_not_begin_again_by_the_errors_of_the_step
     // The steps follow the pose. Its drilling ends long before its rolling.
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
     let state = State { theta: 1.0, w1: 1.6, w2: 0.7, w3: 2.2 };
-    let ask = Ask::on(on(0.2, 0.07)).with_losses(Losses::of(Law::RollingResistance, 0.01)).with_pose(true);
+    let ask = Ask::on(on(0.2, 0.07)).with_losses(Losses::of(Law::RollingResistance, 0.01)).with_pose();
     for tol in [1e-5, 1e-6, 1e-7] {
         let ask = ask.with_method(Method::Tolerance(tol));
         let m = roll_with(&ball, Start::from(state), &[1000.0], &ask, || true).unwrap().unwrap();
@@ -117,14 +117,14 @@ fn a_homogeneous_ball_slips_straight_on_whatever_its_side_spin() {
         let (u, spin, lean) = (0.5 + r(), 4.0 * r() - 2.0, 0.5 + r());
         // Seen from an axis that leans and is not turned, e_h stays e_h.
         let state = State { theta: lean, w1: spin * lean.sin(), w2: 0.0, w3: spin * lean.cos() };
-        let mut ask = Ask::on(on(mu, eps)).with_pose(true);
+        let mut ask = Ask::on(on(mu, eps)).with_pose();
         ask.force = true;
-        let start = Start::from(state).with_slip([u, 0.0]);
+        let start = Start::from(state).with_slip(Slip::new(u, 0.0));
         let times: Vec<f64> = (1..20).map(|k| 0.05 * f64::from(k) * u / mu).collect();
         let m = roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap();
         for (pose, slip) in m.poses.as_ref().unwrap().iter().zip(&m.path.as_ref().unwrap().slip) {
             let (sin, cos) = pose.phi.radians().sin_cos();
-            let across = slip[0] * sin + slip[1] * cos;
+            let across = slip.u_h * sin + slip.u_2 * cos;
             assert!(across.abs() < 1e-11, "{across:e}");
         }
     }
@@ -142,7 +142,7 @@ fn energy_and_heat_have_a_constant_sum_and_friction_acts_against_the_slip() {
         let spread = sums.iter().fold(0.0, |most: f64, e| larger(most, (e - sums[0]).abs()));
         assert!(spread < 1e-11 + m.error, "{body:?} {start:?} {mu} {eps}: {spread:e}, claims {:e}", m.error);
         let path = m.path.as_ref().unwrap();
-        for (i, (y, [u, v])) in m.states.iter().zip(&path.slip).enumerate() {
+        for (i, (y, Slip { u_h: u, u_2: v, .. })) in m.states.iter().zip(&path.slip).enumerate() {
             let speed = u.hypot(*v);
             if speed < 1e-6 || path.kinds[i] != Kind::Slipping {
                 continue;
@@ -167,7 +167,7 @@ fn jelletts_number_of_a_ball_falls_by_the_couple_alone() {
         let y = State { theta: 0.0, w1: speed(), w2: speed(), w3: speed() };
         let (slip, y) = ([speed(), speed()], State { theta: 0.2 + 2.5 * r(), ..y });
         let (mu, eps) = (0.3, 0.05);
-        let (d, _, f) = derivative(&body, &y, slip, &on(mu, eps), &Losses::NONE);
+        let (d, _, f) = derivative(&body, &y, slip.into(), &on(mu, eps), &Losses::NONE);
         let (s, c) = y.theta.sin_cos();
         let turned = i1 * (d.w1 * s + y.w1 * c * d.theta) + i3 * (d.w3 * (ell + c) - y.w3 * s * d.theta);
         let spin = drilling(&y);
@@ -183,8 +183,8 @@ fn the_mirror_image_of_a_motion_is_its_motion() {
     for _ in 0..drawn(20) {
         let (body, start, mu, eps) = any(&mut r);
         let State { theta, w1, w2, w3 } = start.state;
-        let image =
-            Start::from(State { theta, w1: -w1, w2, w3: -w3 }).with_slip([start.slip[0], -start.slip[1]]);
+        let image = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
+            .with_slip(Slip::new(start.slip.u_h, -start.slip.u_2));
         let [a, b] = [start, image].map(|start| rolled(&body, start, on(mu, eps), &[1.0, 3.0]));
         for (y, z) in a.states.iter().zip(&b.states) {
             assert_eq!([y.theta, y.w1, y.w2, y.w3], [z.theta, -z.w1, z.w2, -z.w3]);
@@ -196,7 +196,7 @@ fn the_mirror_image_of_a_motion_is_its_motion() {
 fn a_patch_that_shrinks_tends_to_a_point_with_the_square_where_it_slips_and_to_rolling_in_proportion() {
     let body = Body::ball(-0.2, 0.4, 0.42).unwrap();
     let state = State { theta: 0.3, w1: 0.5, w2: 0.1, w3: 4.0 };
-    let start = Start::from(state).with_slip([1.2, -0.4]);
+    let start = Start::from(state).with_slip(Slip::new(1.2, -0.4));
     let at = |eps: f64, t: f64| *rolled(&body, start, on(0.3, eps), &[t]).states.last().unwrap();
     let apart = |a: State, b: State| {
         (a.theta - b.theta).abs().max((a.w1 - b.w1).abs()).max((a.w2 - b.w2).abs()).max((a.w3 - b.w3).abs())
@@ -217,7 +217,7 @@ fn a_tippe_top_turns_over_on_a_dry_table_with_a_patch_and_on_a_point_it_never_do
     let top = Body::ball(-0.2, 0.4, 0.42).unwrap();
     let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: 7.0 };
     // Its centre is at rest.
-    let start = Start::from(state).with_slip([0.0, -7.0 * 0.1f64.sin()]);
+    let start = Start::from(state).with_slip(Slip::new(0.0, -7.0 * 0.1f64.sin()));
     let times: Vec<f64> = (1..1200).map(|k| 0.05 * f64::from(k)).collect();
     // Seconds to 3 rad for patches of 0.1, 0.3 and 1 mm of a ball of 15 mm, by an independent model.
     let second = 1.0 / 0.0391;
@@ -336,9 +336,9 @@ fn with_more_time_a_top_turns_over_that_slips_little() {
     // Its axis comes within 0.14 of the vertical in that time, and not with 0.3 % less spin.
     let over = |spin: f64, until: f64| {
         let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: spin };
-        let slip = spincyl::contact::slip::centre_velocity(&top, &state, [0.0; 2]).map(|v| -v);
+        let slip = spincyl::contact::slip::centre_velocity(&top, &state, Slip::default()).map(|v| -v);
         let times: Vec<f64> = (1..=4000).map(|k| until / 4000.0 * f64::from(k)).collect();
-        let m = roll_with(&top, Start::from(state).with_slip(slip), &times, &Ask::on(film), || true);
+        let m = roll_with(&top, Start::from(state).with_slip(slip.into()), &times, &Ask::on(film), || true);
         m.unwrap().unwrap().states.iter().any(|y| y.theta > PI - 0.14)
     };
     assert!(over(found, 2000.0) && !over(0.997 * found, 2000.0) && !over(found, 0.7 * 2000.0), "{found}");
@@ -440,10 +440,12 @@ fn a_top_that_spins_so_fast_that_it_leaves_the_table_comes_down_and_turns_over()
     let mut flights = 0;
     for (spin, e) in [(7.0, 0.0), (9.0, 0.0), (9.0, 0.4), (12.0, 0.3)] {
         let state = State { theta: 0.1, w1: 0.0, w2: 0.0, w3: spin };
-        let slip = spincyl::contact::slip::centre_velocity(&top, &state, [0.0; 2]).map(|v| -v);
+        let slip = spincyl::contact::slip::centre_velocity(&top, &state, Slip::default()).map(|v| -v);
         let times: Vec<f64> = (0..=200).map(f64::from).collect();
         let ask = Ask::on(on(0.3, 0.02)).with_restitution(e);
-        let m = roll_with(&top, Start::from(state).with_slip(slip), &times, &ask, || true).unwrap().unwrap();
+        let m = roll_with(&top, Start::from(state).with_slip(slip.into()), &times, &ask, || true)
+            .unwrap()
+            .unwrap();
         let path = m.path.as_ref().unwrap();
         let most = m.states.iter().fold(0.0, |most: f64, y| most.max(y.theta));
         assert!(m.event.is_none() && most > 3.0, "{spin} {e}: {:?}, {most}", m.event);
@@ -471,7 +473,7 @@ fn energy_heat_and_what_impacts_take_are_constant_on_patches_too_and_a_face_ends
         let [w1, w2, w3, u, v, lift] = core::array::from_fn(|_| speed());
         let state = State { theta: 0.2 + 1.2 * r(), w1, w2, w3 };
         let start = Start::from(state)
-            .with_slip([u, v])
+            .with_slip(Slip::new(u, v))
             .with_aloft(AboveTable::new(if r() < 0.3 { 0.0 } else { r() }, lift));
         let mu = 0.05 + 0.9 * r();
         let ask = Ask::on(on(mu, 10f64.powf(-1.0 - 4.0 * r()))).with_restitution(0.9 * r());
@@ -479,7 +481,8 @@ fn energy_heat_and_what_impacts_take_are_constant_on_patches_too_and_a_face_ends
         let m = roll_with(&body, start, &times, &ask, || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
+            let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) =
+                (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             crate::flight::energy(&body, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]

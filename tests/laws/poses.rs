@@ -20,7 +20,7 @@ fn d18_a_wheel_rolls_where_modelicas_does() {
     let second = (9.80665f64 / 0.3).sqrt();
     let y = state(FRAC_PI_2, 0.0, -1.0 / second, 5.0 / second);
     for method in [Method::Exact, Method::Tolerance(1e-11), Method::Step(1e-3)] {
-        let motion = moved(&wheel, &y, &[0.0, 4.0 * second], by(method).with_pose(true)).unwrap();
+        let motion = moved(&wheel, &y, &[0.0, 4.0 * second], by(method).with_pose()).unwrap();
         let poses = motion.poses.unwrap();
         let moved = poses[1].centre(&wheel, &motion.states[1]) - poses[0].centre(&wheel, &motion.states[0]);
         let (along, across) = (0.3 * moved.x.abs(), 0.3 * moved.y.abs());
@@ -32,7 +32,7 @@ fn d18_a_wheel_rolls_where_modelicas_does() {
 fn integrated_and_exact_poses_agree() {
     for r in motions().iter().filter(|r| r.kind == "state" && r.t == 20.0) {
         for (method, allowed) in [(Method::Tolerance(1e-12), 1e-8), (Method::Step(2e-4), 1e-7)] {
-            let scene = by(method).with_table(r.contact).with_pose(true).with_beyond(true);
+            let scene = by(method).with_table(r.contact).with_pose().with_beyond();
             let motion = moved(&r.body, &r.start, &[20.0], scene).unwrap();
             let pose = motion.poses.unwrap()[0];
             let found = [pose.phi.radians(), pose.psi.radians(), pose.contact_point.x, pose.contact_point.y];
@@ -49,7 +49,7 @@ fn integrated_and_exact_states_and_poses_of_rounded_bodies_agree() {
     for (body, y) in rounded_starts() {
         for contact in BOTH {
             let times = [0.7, 5.0, 20.0];
-            let scene = |method| by(method).with_table(contact).with_pose(true).with_beyond(true);
+            let scene = |method| by(method).with_table(contact).with_pose().with_beyond();
             let exact = moved(&body, &y, &times, scene(Method::Exact)).unwrap();
             assert_eq!(exact.method, Method::Exact);
             for (method, allowed) in [(Method::Tolerance(1e-13), 1e-8), (Method::Step(5e-4), 1e-8)] {
@@ -88,7 +88,7 @@ fn off(pose: &Pose, values: &[f64]) -> f64 {
 
 #[test]
 fn a_quick_pose_is_that_of_the_references_within_its_claim() {
-    let scene = Ask::default().with_pose(true).with_beyond(true);
+    let scene = Ask::default().with_pose().with_beyond();
     let mut quick = 0;
     for r in all_motions().filter(|r| r.kind == "state" && r.t.abs() <= 100.0) {
         let motion = moved(&r.body, &r.start, &[r.t], scene.with_table(r.contact)).unwrap();
@@ -119,7 +119,7 @@ fn a_quick_pose_is_that_of_the_integrals_within_both_claims() {
         let contact = BOTH[i % 7 / 6];
         let way = if i % 5 == 0 { -1.0 } else { 1.0 };
         times.iter_mut().enumerate().for_each(|(k, t)| *t = way * [20.0, 300.0][i % 2] * k as f64 / 8.0);
-        let scene = Ask::default().with_table(contact).with_pose(true).with_beyond(true);
+        let scene = Ask::default().with_table(contact).with_pose().with_beyond();
         let motion = moved(&body, &y, &times, scene).unwrap();
         let Ok(swing) = Swing::with_pose(&body, &y, contact) else { continue };
         let poses = motion.poses.unwrap();
@@ -233,7 +233,7 @@ fn what_is_not_wanted_is_not_there() {
     let y = steady::state(&body, 0.5).unwrap().kicked(0.1);
     let bare = moved(&body, &y, &[1.0, 2.0], Ask::default()).unwrap();
     assert!(bare.poses.is_none() && bare.forces.is_none() && bare.pose_error.is_nan());
-    let all = moved(&body, &y, &[1.0, 2.0], Ask::default().with_pose(true).with_force(true)).unwrap();
+    let all = moved(&body, &y, &[1.0, 2.0], Ask::default().with_pose().with_force()).unwrap();
     // without a pose the states are computed by another method, and agree
     for (a, b) in all.states.iter().zip(&bare.states) {
         assert!(distance(a, &numbers(b)) <= all.error + bare.error && bare.error < 1e-12);
@@ -251,7 +251,7 @@ proptest! {
         let body = if sharp { body } else { body.with_theta_end(PI).unwrap() };
         let Ok(swing) = Swing::with_pose(&body, &y, contact) else { return Ok(()) };
         let method = Method::Tolerance(if sharp { 1e-11 } else { 1e-12 });
-        let scene = by(method).with_table(contact).with_beyond(true).with_pose(true);
+        let scene = by(method).with_table(contact).with_beyond().with_pose();
         let Ok(motion) = moved(&body, &y, &[0.3, 1.7], scene) else { return Ok(()) };
         for ((t, found), pose) in motion.times.iter().zip(&motion.states).zip(motion.poses.as_ref().unwrap()) {
             let exact = swing.state(*t);
@@ -285,7 +285,7 @@ fn a_path_that_is_turned_by_almost_nothing_a_period_keeps_its_digits() {
     let body = Body::new(0.0, 203428.96412048728, 0.4237592903145259).unwrap();
     let y = state(2.7, -2.654091292825407, -0.1, 1.8673114905120078);
     let times = [0.22924120743507784, 2.5];
-    let scene = Ask::default().with_pose(true).with_beyond(true);
+    let scene = Ask::default().with_pose().with_beyond();
     let exact = moved(&body, &y, &times, scene).unwrap();
     let steps = moved(&body, &y, &times, scene.with_method(Method::Tolerance(1e-13))).unwrap();
     for (a, b) in exact.poses.unwrap().iter().zip(&steps.poses.unwrap()) {

@@ -41,10 +41,10 @@ fn scene(seed: u64) -> Scene {
     let border = Some(body.theta_end());
     let start = match kind {
         0 => at(None, [w1, w2, w3]),
-        1 => at(None, [w1, w2, w3]).with_slip(slip),
-        2 => at(border, [w1, 0.0, w3]).with_slip(slip),
+        1 => at(None, [w1, w2, w3]).with_slip(slip.into()),
+        2 => at(border, [w1, 0.0, w3]).with_slip(slip.into()),
         3 => at(None, [0.0; 3]),
-        4 => at(border, [w1, -w2.abs(), w3]).with_slip(slip),
+        4 => at(border, [w1, -w2.abs(), w3]).with_slip(slip.into()),
         _ => at(border, [w1, 0.0, w3]),
     };
     Scene { body, start, mu, e }
@@ -67,10 +67,10 @@ impl Scene {
     /// The largest change of the energy together with all that friction and impacts have taken, over the energy.
     fn energy_lost(&self, m: &Motion) -> f64 {
         let (path, Start { state, slip, .. }) = (m.path.as_ref().unwrap(), self.start);
-        let whole = self.energy(&state, slip, [0.0; 2], u8::from(state.theta > self.body.theta_end()));
+        let whole = self.energy(&state, slip.into(), [0.0; 2], u8::from(state.theta > self.body.theta_end()));
         let at = |i: usize| {
             let struck = path.impacts.iter().filter(|hit| hit.time <= m.times[i]).map(|hit| hit.lost);
-            let has = self.energy(&m.states[i], path.slip[i], path.aloft[i].into(), path.rims[i]);
+            let has = self.energy(&m.states[i], path.slip[i].into(), path.aloft[i].into(), path.rims[i]);
             (has + path.dissipated[i] + struck.sum::<f64>() - whole).abs() / whole.max(1.0)
         };
         (0..m.states.len()).map(at).fold(0.0, larger)

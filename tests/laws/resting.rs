@@ -5,7 +5,7 @@ use core::f64::consts::FRAC_PI_2;
 use spincyl::contact::{Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
-use spincyl::{Body, State, steady};
+use spincyl::{Body, Slip, State, steady};
 
 #[test]
 fn a_ball_that_drills_on_while_resistance_holds_its_rolling_stops_whatever_the_tolerance() {
@@ -138,7 +138,7 @@ fn a_slipping_ball_whose_rolling_resistance_stops_slides_on_as_one_block_whateve
         w2: -4.571949401105849e-06,
         w3: -0.021841463555552536,
     };
-    let start = Start::from(state).with_slip([-0.8788704590281213, 0.0]);
+    let start = Start::from(state).with_slip(Slip::new(-0.8788704590281213, 0.0));
     let losses = Losses::of(Law::RollingResistance, 0.08469917537452804)
         + Losses::of(Law::Drilling, 0.031018461102858726);
     let table = Table::Rubs(Friction::coulomb(0.0010786595683881079));

@@ -49,7 +49,8 @@ fn a_ball_without_tangential_restitution_bounces_as_under_the_default_law() {
         let mut speed = || 4.0 * r() - 2.0;
         let state = State { theta: 1.0 + 0.3 * speed(), w1: speed(), w2: speed(), w3: speed() };
         let start = dropped(state, [speed(), speed()], 1.3 + 0.5 * speed(), speed());
-        let ask = Ask::on(coulomb(0.05 + 0.9 * r())).with_restitution(0.9 * r()).with_pose(k % 2 == 0);
+        let mut ask = Ask::on(coulomb(0.05 + 0.9 * r())).with_restitution(0.9 * r());
+        ask.pose = k % 2 == 0;
         let of = |law| bounces(&ball, start, &ask.with_impact_law(law), &[2.0, 20.0]).unwrap();
         let known = of(ImpactLaw::Stronge);
         for law in [ImpactLaw::Newton, ImpactLaw::Poisson, ImpactLaw::Walton { tangential: 0.0 }] {
@@ -81,8 +82,8 @@ fn a_ball_whose_slips_turn_back_loses_what_its_impacts_take_and_rolls_in_the_end
         let tangential = if r() < 0.2 { 1.0 } else { r() };
         let mut ask = Ask::on(coulomb(0.05 + 0.9 * r()))
             .with_restitution(0.85 * r())
-            .with_impact_law(ImpactLaw::Walton { tangential })
-            .with_pose(k % 3 == 0);
+            .with_impact_law(ImpactLaw::Walton { tangential });
+        ask.pose = k % 3 == 0;
         if k % 5 == 0 {
             ask.losses = Losses::of(Law::AirLinear, 0.05);
         }

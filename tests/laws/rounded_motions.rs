@@ -130,8 +130,7 @@ fn rounded_bodies_land_where_they_can() {
     let methods = [(Method::Exact, 1e-11), (Method::Tolerance(1e-13), 1e-9), (Method::Step(1e-4), 1e-9)];
     let can = Body::rounded_tube(1.0, 0.0, 0.1).unwrap();
     let torus = Body::rounded(0.0, 0.5 * 0.36 + 0.625 * 0.16, 0.36 + 0.75 * 0.16, 0.4).unwrap();
-    let at =
-        |body: &Body, y: State, t: f64, method| moved(body, &y, &[t], by(method).with_pose(true)).unwrap();
+    let at = |body: &Body, y: State, t: f64, method| moved(body, &y, &[t], by(method).with_pose()).unwrap();
     for (method, allowed) in methods {
         // a can on its side
         let event = at(&can, state(1.2, 0.1, -0.2, 0.1), 10.0, method).event.unwrap();
@@ -165,8 +164,7 @@ fn a_ball_goes_through_both_poles_without_an_end() {
         // released at rest it swings through the lower pole; pushed over the top it goes through both
         for y in [state(1.2, 0.0, 0.0, 0.0), state(1.2, 0.0, -2.0, 0.0), state(2.9, 0.0, -1.5, 0.0)] {
             let times: Vec<f64> = (1..200).map(|k| 0.1 * f64::from(k)).collect();
-            let motion =
-                moved(&ball, &y, &times, Ask::default().with_table(contact).with_pose(true)).unwrap();
+            let motion = moved(&ball, &y, &times, Ask::default().with_table(contact).with_pose()).unwrap();
             assert!(motion.event.is_none() && motion.states.len() == times.len(), "{:?}", motion.event);
             let start = contact.energy(&ball, &y);
             for y in &motion.states {

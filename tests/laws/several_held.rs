@@ -8,7 +8,7 @@ use spincyl::contact::{Friction, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Motion, Moving, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, State, nalgebra};
+use spincyl::{Body, Slip, State, nalgebra};
 
 /// The motions that are at rest at the start, besides the slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,7 +94,7 @@ pub fn stone_at_rest(k: u64, rest: Rest) -> (Ellipsoid, StoneState, Ask) {
         _ => (),
     }
     let first = if rest == Rest::Drilling { Law::Drilling } else { Law::RollingResistance };
-    (stone, start, Ask::on(friction(&mut r)).with_losses(dry(&mut r, first, false)).with_pose(true))
+    (stone, start, Ask::on(friction(&mut r)).with_losses(dry(&mut r, first, false)).with_pose())
 }
 
 const TIMES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
@@ -113,7 +113,7 @@ fn sums_of_stone(stone: &Ellipsoid, motion: &Motion<StoneState>) -> Vec<f64> {
         let up = UnitQuaternion::rotation_between(&Vector3::from(y.vertical), &Vector3::z())
             .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI));
         let (w, r) = (Vector3::from(y.w), Vector3::from(stone.lowest_point(y.vertical)));
-        let [u, v] = path.slip[i];
+        let Slip { u_h: u, u_2: v, .. } = path.slip[i];
         let v = up.inverse() * Vector3::new(u, v, 0.0) - w.cross(&r);
         let tensor = nalgebra::Matrix3::from(stone.inertia());
         0.5 * (w.dot(&(tensor * w)) + v.norm_squared()) - r.dot(&Vector3::from(y.vertical))

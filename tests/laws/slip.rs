@@ -8,7 +8,7 @@ use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, SUMMARIES,
 use spincyl::loss::Losses;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Start, roll_with};
-use spincyl::{Body, Contact, Error, State, smooth};
+use spincyl::{Body, Contact, Error, Slip, State, smooth};
 use std::f64::consts::FRAC_PI_2;
 
 fn bodies() -> impl Strategy<Value = Body> {
@@ -48,17 +48,17 @@ proptest! {
     fn the_centre_and_the_angular_momenta_obey_newton(
         body in bodies(), (y, u) in states(), friction in frictions(),
     ) {
-        let (dy, du, f) = slip::derivative(&body, &y, u, &friction, &Losses::NONE);
+        let (dy, du, f) = slip::derivative(&body, &y, u.into(), &friction, &Losses::NONE);
         let [radius, depth, g, slope, height] = shape(&body, y.theta);
         let ((s, c), rho) = (y.theta.sin_cos(), body.fillet());
-        let scale = 1.0 + [dy.w1, dy.w2, dy.w3, du[0], du[1], f.normal]
+        let scale = 1.0 + [dy.w1, dy.w2, dy.w3, du.u_h, du.u_2, f.normal]
             .iter().fold(0f64, |most, x| most.max(x.abs())) * (1.0 + depth.abs() + y.w1.abs());
         let near = |a: f64, b: f64| (a - b).abs() <= 1e-13 * scale * scale;
         // v_h = u_h + h w2, v_2 = u_2 - L w1 + A w3, v_z = g w2, along axes that turn with phi'
         let turn = y.w1 / s;
         let (v_h, v_2) = (u[0] + height * y.w2, u[1] - depth * y.w1 + radius * y.w3);
-        let v_h_rate = du[0] + g * y.w2 * y.w2 + height * dy.w2;
-        let v_2_rate = du[1] - depth * dy.w1 - rho * s * y.w2 * y.w1 + radius * dy.w3 - rho * c * y.w2 * y.w3;
+        let v_h_rate = du.u_h + g * y.w2 * y.w2 + height * dy.w2;
+        let v_2_rate = du.u_2 - depth * dy.w1 - rho * s * y.w2 * y.w1 + radius * dy.w3 - rho * c * y.w2 * y.w3;
         prop_assert!(near(v_h_rate - turn * v_2, f.across), "{} {}", v_h_rate - turn * v_2, f.across);
         prop_assert!(near(v_2_rate + turn * v_h, f.along), "{} {}", v_2_rate + turn * v_h, f.along);
         prop_assert!(near(1.0 + g * dy.w2 - slope * y.w2 * y.w2, f.normal));
@@ -78,14 +78,14 @@ proptest! {
 
     #[test]
     fn friction_takes_from_the_energy_what_it_pulls(body in bodies(), (y, u) in states(), friction in frictions()) {
-        let (dy, du, f) = slip::derivative(&body, &y, u, &friction, &Losses::NONE);
+        let (dy, du, f) = slip::derivative(&body, &y, u.into(), &friction, &Losses::NONE);
         let at = |t: f64| {
             let moved = State {
                 theta: y.theta + t * dy.theta, w1: y.w1 + t * dy.w1, w2: y.w2 + t * dy.w2, w3: y.w3 + t * dy.w3,
             };
-            slip::energy(&body, &moved, [u[0] + t * du[0], u[1] + t * du[1]])
+            slip::energy(&body, &moved, Slip::new(u[0] + t * du.u_h, u[1] + t * du.u_2))
         };
-        let fastest = [dy.w1, dy.w2, dy.w3, du[0], du[1]].iter().fold(1f64, |most, x| most.max(x.abs()));
+        let fastest = [dy.w1, dy.w2, dy.w3, du.u_h, du.u_2].iter().fold(1f64, |most, x| most.max(x.abs()));
         let h = 1e-4 / fastest;
         let power = (8.0 * (at(h) - at(-h)) - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h);
         let pulled = f.across * u[0] + f.along * u[1];
@@ -94,7 +94,7 @@ proptest! {
 
     #[test]
     fn without_friction_the_table_is_smooth(body in bodies(), (y, u) in states()) {
-        let (found, ..) = slip::derivative(&body, &y, u, &Friction::coulomb(0.0), &Losses::NONE);
+        let (found, ..) = slip::derivative(&body, &y, u.into(), &Friction::coulomb(0.0), &Losses::NONE);
         let smooth = smooth::derivative(&body, &y);
         let (a, b): ([f64; 4], [f64; 4]) = (found.into(), smooth.into());
         let scale = b.iter().fold(1f64, |most, x| most.max(x.abs()));
@@ -110,8 +110,8 @@ proptest! {
         let i3 = hoop.i3();
         let start = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -back };
         let grip = (v + back) / (mu * (1.0 + 1.0 / i3));
-        let ask = Ask::on(Friction::coulomb(mu)).with_pose(true);
-        let path = roll_with(&hoop, Start::from(start).with_slip([0.0, v + back]), &[0.5 * grip, 2.0 * grip], &ask, || true)
+        let ask = Ask::on(Friction::coulomb(mu)).with_pose();
+        let path = roll_with(&hoop, Start::from(start).with_slip(Slip::new(0.0, v + back)), &[0.5 * grip, 2.0 * grip], &ask, || true)
             .unwrap().unwrap();
         prop_assert_eq!(path_of(&path).phases.len(), 2);
         let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 1e-13 * (1.0 + size);
@@ -137,8 +137,13 @@ fn a_ball_keeps_jelletts_constant_and_a_rough_table_rolls() {
         top.i1() * y.w1 * s + top.i3() * y.w3 * (c - 0.2)
     };
     for friction in [Friction::coulomb(0.3), Friction::Viscous { c: 0.2 }] {
-        let path =
-            roll_with(&top, Start::from(start).with_slip([0.5, -1.0]), &times, &Ask::on(friction), || true);
+        let path = roll_with(
+            &top,
+            Start::from(start).with_slip(Slip::new(0.5, -1.0)),
+            &times,
+            &Ask::on(friction),
+            || true,
+        );
         let path = path.unwrap().unwrap();
         let off = path.states.iter().map(|y| (jellett(y) / jellett(&start) - 1.0).abs());
         assert!(off.fold(0f64, larger) < 1e-13, "{friction:?}");
@@ -188,7 +193,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     let (body, y) = (Body::solid(1.0).unwrap(), State { theta: 1.0, w1: 0.1, w2: 0.0, w3: 0.2 });
     let name = |friction: Friction, slip: [f64; 2], times: &[f64]| match roll_with(
         &body,
-        Start::from(y).with_slip(slip),
+        Start::from(y).with_slip(slip.into()),
         times,
         &Ask::on(friction),
         || true,
@@ -212,7 +217,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     let limit = slip::painleve(&light, 1.0);
     let pushed = roll_with(
         &light,
-        Start::from(y).with_slip([2.0, 0.0]),
+        Start::from(y).with_slip(Slip::new(2.0, 0.0)),
         &[1.0],
         &Ask::on(Friction::coulomb(1.1 * limit)),
         || true,
@@ -228,7 +233,7 @@ fn a_tube_that_slips_in_every_nod_is_not_said_to_jam() {
     let slip = [0.0, (6.0 - tube.i1() / 6.0) * w1 - w3];
     // Each slip is shorter than the one before. Within 1e-8 they are lost among the errors of the steps after 7,000.
     let ask = Ask::on(Friction::coulomb(mu)).with_method(Method::Tolerance(1e-9));
-    let to = |t: f64| roll_with(&tube, Start::from(start).with_slip(slip), &[t], &ask, || true);
+    let to = |t: f64| roll_with(&tube, Start::from(start).with_slip(slip.into()), &[t], &ask, || true);
     assert!(path_of(&to(1e3).unwrap().unwrap()).phases.len() > 100);
     // A motion that is given up returns its phases up to there.
     let far = to(2e5).unwrap().unwrap();
@@ -246,8 +251,9 @@ fn what_lies_on_its_side_says_so_and_what_is_turned_fast_enough_rises() {
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
         let slip = [0.0, -tube.i1() / 6.0 * w1 + 6.0 * w1 - w3];
         let ask = Ask::on(Friction::coulomb(0.3));
-        let path =
-            roll_with(&tube, Start::from(start).with_slip(slip), &[50.0], &ask, || true).unwrap().unwrap();
+        let path = roll_with(&tube, Start::from(start).with_slip(slip.into()), &[50.0], &ask, || true)
+            .unwrap()
+            .unwrap();
         assert_eq!(path.ending(), ending, "{launch}");
     }
 }
@@ -318,9 +324,10 @@ fn side_by_side_a_slip_is_what_it_is_alone() {
         let [w1, w3, slip, mu] = [&all[0], &all[1], &all[2], &all[3]].map(|x| x[i]);
         let start = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
         let ask = Ask::on(Friction::coulomb(mu));
-        let path = roll_with(&tube, Start::from(start).with_slip([0.0, slip]), &[40.0], &ask, || true)
-            .unwrap()
-            .unwrap();
+        let path =
+            roll_with(&tube, Start::from(start).with_slip(Slip::new(0.0, slip)), &[40.0], &ask, || true)
+                .unwrap()
+                .unwrap();
         assert_eq!(path.ending() as u8, status[i], "{i}");
         assert_eq!(found[6 + Summary::Phases as usize][i], path_of(&path).phases.len() as f64, "{i}");
         let y = path.event.map_or_else(|| path.states[0], |e| e.state);

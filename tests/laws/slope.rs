@@ -7,11 +7,11 @@ use spincyl::custom::{self, Custom};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Contact, Ellipsoid, State, stone};
+use spincyl::{Body, Contact, Ellipsoid, Slip, State, stone};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 /// The place of the centre of mass at output `i`: along x and y, and its height above the table.
@@ -47,10 +47,10 @@ fn a_homogeneous_ball_rolls_down_with_five_sevenths_of_the_pull_whatever_it_spin
 fn the_slip_of_a_ball_is_that_of_a_block_on_a_slope() {
     // |u| sin(chi) tan(chi/2)^(-mu'/tan beta) stays, with mu' = (7/2) mu and the angle chi of u from downhill.
     let (mu, beta) = (0.2, 0.3f64);
-    let start = Start::from(STATE).with_slip([0.8, 1.1]).with_heading(0.7);
+    let start = Start::from(STATE).with_slip(Slip::new(0.8, 1.1)).with_heading(0.7);
     let m = rolled(&ball(), start, &[0.0, 0.5, 1.0, 1.5], &Ask::on(Friction::coulomb(mu)).with_slope(beta));
     let block = |i: usize| {
-        let [u, v] = m.path.as_ref().unwrap().slip[i];
+        let Slip { u_h: u, u_2: v, .. } = m.path.as_ref().unwrap().slip[i];
         let chi = m.poses.as_ref().unwrap()[i].phi.radians() + v.atan2(u);
         u.hypot(v) * chi.sin() * (0.5 * chi).tan().abs().powf(-3.5 * mu / beta.tan())
     };
@@ -63,7 +63,7 @@ fn the_slip_of_a_ball_is_that_of_a_block_on_a_slope() {
 fn a_ball_thrown_across_rolls_where_the_model_of_three_dimensions_says() {
     let y = State { w1: 0.0, w2: 0.0, w3: 0.0, ..STATE };
     let ask = Ask::on(Friction::coulomb(0.25)).with_slope(0.3);
-    let m = rolled(&ball(), Start::from(y).with_slip([0.0, 1.0]), &[0.0, 3.0], &ask);
+    let m = rolled(&ball(), Start::from(y).with_slip(Slip::new(0.0, 1.0)), &[0.0, 3.0], &ask);
     let path = m.path.as_ref().unwrap();
     assert_eq!(path.phases[1].kind, Kind::Rolling);
     assert!((path.phases[1].time - 1.367_156_766_6).abs() < 1e-10);
@@ -79,7 +79,7 @@ fn a_disk_and_a_tube_move_as_the_model_of_three_dimensions_says() {
     }
     assert!((m.poses.unwrap()[0].phi.radians() - -1.513_326_536_3).abs() < 1e-10);
     let (tube, y) = (Body::tube(6.0, 0.8).unwrap(), State { theta: 1.569, w1: 2.5, w2: 0.0, w3: 9.0 });
-    let start = Start::from(y).with_slip([0.0, 6.0 - 12.41 * 2.5 / 6.0]).with_heading(-1.0);
+    let start = Start::from(y).with_slip(Slip::new(0.0, 6.0 - 12.41 * 2.5 / 6.0)).with_heading(-1.0);
     let ask = Ask::on(Friction::coulomb(0.3)).with_slope(0.15).with_restitution(0.0);
     let m = rolled(&tube, start, &[4.5], &ask);
     let path = m.path.as_ref().unwrap();
@@ -129,7 +129,7 @@ fn jelletts_number_of_a_ball_stays_on_a_slope_under_any_force_at_its_contact() {
     ] {
         let m = rolled(
             &body,
-            Start::from(y).with_slip(slip).with_heading(0.3),
+            Start::from(y).with_slip(slip.into()).with_heading(0.3),
             &[1.0, 3.0],
             &ask.with_slope(0.4),
         );
@@ -169,7 +169,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
         }
     };
     if ask.table.rubs() && next() < 0.7 {
-        start = start.with_slip([within(next, -1.0, 1.0), within(next, -1.0, 1.0)]);
+        start = start.with_slip(Slip::new(within(next, -1.0, 1.0), within(next, -1.0, 1.0)));
     }
     if next() < 0.3 {
         let losses = Losses::of(Law::RollingResistance, within(next, 0.001, 0.05));
@@ -184,12 +184,12 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
 /// Kinetic energy, and the height of the centre in the field of gravity.
 fn energy(body: &Body, ask: &Ask, m: &Motion, i: usize) -> f64 {
     let ([x, _, z], y) = (centre(body, m, i), m.states[i]);
-    let u = m.path.as_ref().map_or([0.0; 2], |path| path.slip[i]);
+    let u = m.path.as_ref().map_or([0.0; 2], |path| path.slip[i].into());
     let lift = m.path.as_ref().and_then(|path| path.aloft.get(i)).map_or(0.0, |aloft| aloft.lift);
     let at = place(body, y.theta);
     let rise = at.lever[0] * y.w2;
     let moves = 0.5 * ((rise + lift).powi(2) - rise * rise);
-    slip::energy(body, &y, u) - at.height[0] + moves + ask.slope.cos() * z - ask.slope.sin() * x
+    slip::energy(body, &y, u.into()) - at.height[0] + moves + ask.slope.cos() * z - ask.slope.sin() * x
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn energy_heat_and_what_is_lost_stay_together_on_any_slope() {
             ask = ask.with_restitution(0.9 * next());
         }
         let times: Vec<f64> = (0..=20).map(|k| 0.25 * f64::from(k)).collect();
-        let Ok(m) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
+        let Ok(m) = roll_with(&body, start, &times, &ask.with_pose(), || true) else { continue };
         let m = m.unwrap();
         followed += 1;
         let path = m.path.as_ref().unwrap();
@@ -229,10 +229,10 @@ fn the_mirror_image_moves_as_the_mirror_image_and_uphill_is_downhill_turned_roun
     let mut next = wander(6);
     for _ in 0..60 {
         let (body, start, ask) = drawn(&mut next);
-        let Ok(Some(m)) = roll_with(&body, start, &[2.0], &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &[2.0], &ask.with_pose(), || true) else { continue };
         let State { theta, w1, w2, w3 } = start.state;
         let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
-            .with_slip([start.slip[0], -start.slip[1]])
+            .with_slip(Slip::new(start.slip.u_h, -start.slip.u_2))
             .with_heading(-start.heading);
         let turned = start.with_heading(start.heading + PI);
         let other = rolled(&body, mirrored, &[2.0], &ask);
@@ -301,7 +301,7 @@ fn a_ball_rests_on_a_slope_that_rolling_resistance_holds_and_rolls_down_a_steepe
 fn a_disk_let_go_slips_at_once_where_rolling_would_need_too_much_friction() {
     let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.2, w1: 0.0, w2: 0.0, w3: 0.0 });
     let start = Start::from(y).with_heading(0.7);
-    let rolls = rolled(&disk, start, &[0.0], &Ask::default().with_slope(0.5).with_force(true));
+    let rolls = rolled(&disk, start, &[0.0], &Ask::default().with_slope(0.5).with_force());
     let force = rolls.forces.unwrap()[0];
     let needed = force.friction() / force.normal;
     for (share, kind) in [(0.999, Kind::Slipping), (1.001, Kind::Rolling)] {
@@ -372,9 +372,10 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
         (|_: f64| 0.25, |_: &Body, y: &State, _: f64| [y.w1, y.w2, y.w3].map(|w| -0.05 * w));
     let resists = |_: &Body, y: &State, normal: f64| [y.w1, y.w2, y.w3].map(|w| -0.02 * normal * w);
     let body = Body::solid(0.3).unwrap();
-    let start =
-        Start::from(State { theta: 1.0, w1: 0.4, w2: 0.1, w3: 1.5 }).with_slip([0.6, -0.4]).with_heading(0.5);
-    let (times, ask) = ([0.5, 1.0, 2.0], Ask::on(Friction::coulomb(0.25)).with_slope(0.3).with_pose(true));
+    let start = Start::from(State { theta: 1.0, w1: 0.4, w2: 0.1, w3: 1.5 })
+        .with_slip(Slip::new(0.6, -0.4))
+        .with_heading(0.5);
+    let (times, ask) = ([0.5, 1.0, 2.0], Ask::on(Friction::coulomb(0.25)).with_slope(0.3).with_pose());
     let laws = Custom::default().with_friction(&constant).with_couple(&drag);
     let own = custom::roll_with(&body, start, &times, &ask, laws, || true).unwrap().unwrap();
     let known = roll_with(&body, start, &times, &ask.with_losses(Losses::of(Law::AirLinear, 0.05)), || true);
@@ -387,9 +388,9 @@ fn laws_of_the_user_that_are_those_of_the_library_move_a_body_and_a_stone_as_the
     let laws = Custom::default().with_couple(&resists);
     let m = custom::roll_with(
         &body,
-        start.with_slip([0.0; 2]),
+        start.with_slip(Slip::default()),
         &times,
-        &Ask::default().with_slope(0.3).with_pose(true),
+        &Ask::default().with_slope(0.3).with_pose(),
         laws,
         || true,
     );
@@ -417,7 +418,7 @@ fn a_ball_that_drills_on_a_patch_creeps_down_as_far_from_rolling_as_the_slope_as
     for i in 0..3 {
         let u = m.path.as_ref().unwrap().slip[i];
         let drills = drilling(&m.states[i]);
-        let share = patch_share(u[0].hypot(u[1]) / (radius * drills.abs()));
+        let share = patch_share(u.speed() / (radius * drills.abs()));
         let needed = 0.4 / 1.4 * beta.tan() / mu;
         assert!((share / needed - 1.0).abs() < 0.01, "{share} {needed}");
     }

@@ -5,18 +5,18 @@ use spincyl::contact::{Face, Friction, end_ratio};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Slip, State};
 use std::f64::consts::PI;
 
 const LEVEL: State = State { theta: 0.0, w1: 0.0, w2: 0.0, w3: 0.0 };
 
 /// A start on the face that heads downhill, from the velocity of the centre and the spin.
 fn slides(body: &Body, [x, y]: [f64; 2], w: f64) -> Start {
-    Start::from(State { w3: w, ..LEVEL }).with_slip([x, y - body.rim() * w])
+    Start::from(State { w3: w, ..LEVEL }).with_slip(Slip::new(x, y - body.rim() * w))
 }
 
 fn moved(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn rough(mu: f64, slope: f64) -> Ask {
@@ -30,7 +30,7 @@ fn end(m: &Motion) -> (Ending, f64) {
 /// The way of the centre since the start, and its velocity, along x and y, while the body is on its face with the heading 0.
 fn centre(body: &Body, m: &Motion, i: usize) -> [f64; 4] {
     let (y, at) = (m.states[i], m.poses.as_ref().unwrap()[i].contact_point);
-    let [u, v] = m.path.as_ref().unwrap().slip[i];
+    let Slip { u_h: u, u_2: v, .. } = m.path.as_ref().unwrap().slip[i];
     [at.x, at.y, u, v + body.rim() * y.w3]
 }
 
@@ -260,8 +260,7 @@ fn a_pillar_rocks_to_rest_on_a_slope_and_tips_over_on_one_that_is_too_steep() {
 /// where the motion is refused.
 fn leaves(body: &Body, friction: Friction, arm: f64, tan: f64) -> (f64, bool) {
     let losses = Losses::of(Law::RollingResistance, arm);
-    let ask =
-        Ask::on(friction).with_restitution(0.0).with_slope(tan.atan()).with_losses(losses).with_pose(true);
+    let ask = Ask::on(friction).with_restitution(0.0).with_slope(tan.atan()).with_losses(losses).with_pose();
     match roll_with(body, LEVEL, &[0.0, 1e-3], &ask, || true) {
         Ok(m) => {
             let m = m.unwrap();
@@ -313,7 +312,7 @@ fn a_slow_slip_of_a_body_that_topples_ends_before_the_body_has_risen_and_it_rest
     let friction = Friction::Coulomb { mu: 1.0, fixed: 1.2, patch: 0.0 };
     for speed in [1e-12, 1e-10, 1e-7] {
         for slope in [1e-16, 0.1] {
-            let start = Start::from(State { w3: -speed, ..LEVEL }).with_slip([1e-160, -0.1 * speed]);
+            let start = Start::from(State { w3: -speed, ..LEVEL }).with_slip(Slip::new(1e-160, -0.1 * speed));
             let ask = Ask::on(friction).with_restitution(0.5).with_slope(slope);
             let ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
             let m = moved(&body, start, &[0.0, 0.5, 10.0], &ask);
@@ -357,7 +356,7 @@ fn a_slow_spin_on_a_face_that_friction_and_the_ring_both_just_hold_comes_to_rest
 fn a_tall_disc_whose_slide_becomes_as_fast_as_its_spin_ends_in_a_time_in_proportion_to_the_spin() {
     // Dry friction knows no unit of speed.
     let body = Body::frustum(0.7, 1.0, 2.0, None).unwrap();
-    let spun = |w: f64| Start::from(State { w3: w, ..LEVEL }).with_slip([0.0, -0.7 * w]);
+    let spun = |w: f64| Start::from(State { w3: w, ..LEVEL }).with_slip(Slip::new(0.0, -0.7 * w));
     let ends = |w: f64| {
         let m = moved(&body, spun(w), &[2.0 * w], &rough(1.0, 0.3).with_face(Face::Disc));
         let event = m.event.unwrap();
@@ -373,8 +372,8 @@ fn a_tall_disc_whose_slide_becomes_as_fast_as_its_spin_ends_in_a_time_in_proport
     let times = [2e-4, 1e-4].map(|left| time * (1.0 - left));
     let m = moved(&body, spun(1.0), &times, &rough(1.0, 0.3).with_face(Face::Disc));
     let [far, near] = [0, 1].map(|i| {
-        let [[u, v], w] = [m.path.as_ref().unwrap().slip[i], [m.states[i].w3; 2]];
-        1.0 - u.hypot(v + 0.7 * w[0]) / (0.7 * w[0])
+        let (Slip { u_h, u_2, .. }, w) = (m.path.as_ref().unwrap().slip[i], m.states[i].w3);
+        1.0 - u_h.hypot(u_2 + 0.7 * w) / (0.7 * w)
     });
     assert!(near > 0.0 && near < 1e-3 && (far / near - 2.0).abs() < 0.02, "{far} {near}");
 }
@@ -382,7 +381,7 @@ fn a_tall_disc_whose_slide_becomes_as_fast_as_its_spin_ends_in_a_time_in_proport
 /// The energy of a sharp body on one rim of its face, on a slope, with the heat.
 fn energy_on_rim(body: &Body, slope: f64, m: &Motion, i: usize) -> f64 {
     let (y, path, pose) = (m.states[i], m.path.as_ref().unwrap(), m.poses.as_ref().unwrap()[i]);
-    let ([u_h, u_2], (s, c)) = (path.slip[i], y.theta.sin_cos());
+    let (Slip { u_h, u_2, .. }, (s, c)) = (path.slip[i], y.theta.sin_cos());
     let (z, a) = (body.ell(), 1.0);
     let (out, up) = (a * c - z * s, a * s + z * c);
     let v = [u_h + up * y.w2, u_2 - z * y.w1 + a * y.w3, out * y.w2];
@@ -404,7 +403,7 @@ fn a_body_that_topples_as_it_slides_and_spins_on_a_slope_keeps_its_energy_and_he
         let losses = if case % 3 == 0 { Losses::of(Law::AirLinear, 0.05) } else { Losses::NONE };
         let ask = rough(mu, beta).with_losses(losses);
         let start = slides(&body, v, w);
-        let Ok(m) = roll_with(&body, start, &[0.0, 1e-3, 0.02], &ask.with_pose(true), || true) else {
+        let Ok(m) = roll_with(&body, start, &[0.0, 1e-3, 0.02], &ask.with_pose(), || true) else {
             continue;
         };
         let m = m.unwrap();
@@ -434,7 +433,7 @@ fn the_side_from_which_a_body_on_its_face_is_told_changes_nothing_that_it_does()
         for heading in [0.9f64, 2.0, -1.4] {
             let (sin, cos) = heading.sin_cos();
             let slip = [v[0] * cos + v[1] * sin, v[1] * cos - v[0] * sin - w];
-            let start = Start::from(State { w3: w, ..LEVEL }).with_slip(slip).with_heading(heading);
+            let start = Start::from(State { w3: w, ..LEVEL }).with_slip(slip.into()).with_heading(heading);
             let m = moved(&body, start, &times, &ask);
             for i in 0..times.len() {
                 let [_, _, u, v] = centre(&body, &known, i);
@@ -468,13 +467,13 @@ fn a_tall_body_ends_where_its_slide_becomes_as_fast_as_its_spin_whatever_else_ac
                 ask.with_losses(Losses::of(Law::RollingResistance, 0.03) + Losses::of(Law::AirLinear, 0.02));
         }
         let start = slides(&body, [within(-0.3, 0.3), within(-0.3, 0.3)], w).with_heading(within(-PI, PI));
-        let found = roll_with(&body, start, &[20.0], &ask.with_pose(true), || true).unwrap().unwrap();
+        let found = roll_with(&body, start, &[20.0], &ask.with_pose(), || true).unwrap().unwrap();
         let (ending, time) = end(&found);
         if ending != Ending::Painleve || time == 0.0 {
             continue;
         }
         met += 1;
-        let [u, v] = found.path.as_ref().unwrap().last_slip;
+        let Slip { u_h: u, u_2: v, .. } = found.path.as_ref().unwrap().last_slip;
         let y = found.event.unwrap().state;
         let (slide, spin) = (u.hypot(v + body.rim() * y.w3), body.rim() * y.w3.abs());
         let off = (slide - spin).abs();

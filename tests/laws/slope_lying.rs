@@ -7,17 +7,17 @@ use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{Kind, OtherRim};
 use spincyl::motion::{Ask, Ending, Motion, Sample, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A body on its side, whose axis leans to `heading` from downhill, and whose centre has the velocity v along it and across.
 fn lying(body: &Body, heading: f64, [w1, w3]: [f64; 2], [along, across]: [f64; 2]) -> Start {
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
-    Start::from(state).with_slip([along, across + body.ell() * w1 - w3]).with_heading(heading)
+    Start::from(state).with_slip(Slip::new(along, across + body.ell() * w1 - w3)).with_heading(heading)
 }
 
 fn ask(friction: Friction, slope: f64) -> Ask {
-    Ask::on(friction).with_restitution(0.0).with_slope(slope).with_pose(true).with_force(true)
+    Ask::on(friction).with_restitution(0.0).with_slope(slope).with_pose().with_force()
 }
 
 fn asked(body: &Body, start: Start, ask: &Ask, times: &[f64]) -> Motion {
@@ -160,7 +160,9 @@ fn a_body_with_its_axis_downhill_lies_still_slides_or_tips_over_its_lower_rim() 
         assert!(rests.states.iter().all(|y| y.w1 == 0.0 && y.w2 == 0.0 && y.w3.abs() < 1e-15));
         let slides = let_go(0.4, 0.25);
         assert_eq!(kinds(&slides), [Kind::Lying]);
-        for (t, [along, across]) in slides.times.iter().zip(&slides.path.as_ref().unwrap().slip) {
+        for (t, Slip { u_h: along, u_2: across, .. }) in
+            slides.times.iter().zip(&slides.path.as_ref().unwrap().slip)
+        {
             let speed = (sin - 0.25 * cos) * t * heading.cos();
             assert!((along - speed).abs() < 1e-11 && across.abs() < 1e-11, "{along} {speed}");
         }
@@ -232,9 +234,9 @@ fn what_is_let_go_at_rest_sticks_slips_pivots_or_rises_as_coulomb_says_at_both_r
             assert!(path.rims[0] == lower && m.states[0].theta < FRAC_PI_2 && m.states[0].w2 > 0.0, "{case}");
             continue;
         }
-        let moves = rims.iter().filter(|([u, v], _)| u.hypot(*v) > STILL).count();
+        let moves = rims.iter().filter(|(Slip { u_h: u, u_2: v, .. }, _)| u.hypot(*v) > STILL).count();
         assert_eq!(moves, moving(kind), "{case}");
-        for ([u, v], [n, f_h, f_2]) in rims {
+        for (Slip { u_h: u, u_2: v, .. }, [n, f_h, f_2]) in rims {
             assert!(n >= 0.0, "{case}");
             let speed = u.hypot(v);
             if speed < STILL {
@@ -270,7 +272,7 @@ fn what_lies_on_two_unequal_circles_of_a_slope_keeps_its_energy_too() {
         let (slope, mu) = (0.02 + 0.3 * r(), 0.2 + 0.7 * r());
         let mut draw = |size: f64| size * (2.0 * r() - 1.0);
         let state = State { theta: body.theta_end(), w1: draw(0.5), w2: 0.0, w3: draw(0.5) };
-        let start = Start::from(state).with_slip([draw(0.5), draw(0.5)]).with_heading(draw(PI));
+        let start = Start::from(state).with_slip(Slip::new(draw(0.5), draw(0.5))).with_heading(draw(PI));
         let m = moved(&body, start, mu, slope, &times);
         let case = format!("{body:?} {start:?} mu {mu} slope {slope}: error {:e} {:?}", m.error, m.ending());
         // Where a body that rolls round its apex has just been let go, the search may find no answer.
@@ -294,9 +296,10 @@ fn the_mirror_image_of_a_start_on_a_slope_is_followed_by_the_mirror_image_of_its
     for _ in 0..drawn(120) {
         let (body, start, mu, slope) = any_lying(&mut r);
         let mirrored = |y: &State| State { w1: -y.w1, w3: -y.w3, ..*y };
-        let [along, across] = start.slip;
-        let image =
-            Start::from(mirrored(&start.state)).with_slip([along, -across]).with_heading(-start.heading);
+        let Slip { u_h: along, u_2: across, .. } = start.slip;
+        let image = Start::from(mirrored(&start.state))
+            .with_slip(Slip::new(along, -across))
+            .with_heading(-start.heading);
         let [m, n] = [start, image].map(|start| moved(&body, start, mu, slope, &times));
         let allowed = 10.0 * (m.error + n.error).max(1e-12);
         assert_eq!(kinds(&m), kinds(&n), "{body:?} {start:?} {mu} {slope}");
@@ -362,7 +365,7 @@ fn what_the_air_slows_as_it_rolls_down_is_held_along_its_axis_until_both_rims_le
         let start = Start::from(State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3 }).with_heading(heading);
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(0.0).with_losses(losses).with_slope(beta);
         let times: Vec<f64> = (0..=60).map(|k| 0.5 * f64::from(k)).collect();
-        let m = roll_with(&body, start, &times, &ask.with_pose(true), || true).unwrap().unwrap();
+        let m = roll_with(&body, start, &times, &ask.with_pose(), || true).unwrap().unwrap();
         let path = m.path.as_ref().unwrap();
         assert_eq!(path.phases[0].kind, Kind::RollingOnItsSide);
         assert_eq!(m.ending(), Ending::Done, "{:?} {:?}", m.event, path.phases);

@@ -9,7 +9,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Slip, State};
 
 fn rolled(
     stone: &Ellipsoid,
@@ -17,7 +17,7 @@ fn rolled(
     times: &[f64],
     ask: &Ask,
 ) -> Motion<StoneState> {
-    stone::roll(stone, start, times, &ask.with_pose(true).with_force(true), || true).unwrap().unwrap()
+    stone::roll(stone, start, times, &ask.with_pose().with_force(), || true).unwrap().unwrap()
 }
 
 /// The velocity of the slip in the laboratory of the pose, from the components of the outputs.
@@ -25,7 +25,7 @@ fn slip_in_space(m: &Motion<StoneState>, i: usize) -> Vector3<f64> {
     let slip = m.path.as_ref().and_then(|path| path.slip.get(i)).copied().unwrap_or_default();
     let up = Vector3::from(m.states[i].vertical);
     let upright = UnitQuaternion::rotation_between(&up, &Vector3::z()).unwrap();
-    m.poses.as_ref().unwrap()[i].orientation * (upright.inverse() * Vector3::new(slip[0], slip[1], 0.0))
+    m.poses.as_ref().unwrap()[i].orientation * (upright.inverse() * Vector3::new(slip.u_h, slip.u_2, 0.0))
 }
 
 /// The energy at output `i` with the gravity of the slope, from the pose, and all that was lost until then.
@@ -83,8 +83,8 @@ proptest! {
     ) {
         let ask = ask.with_losses(losses).with_slope(slope);
         let start = Start::from(state).with_heading(heading).with_place([0.3, -0.7]);
-        let start = if ask.table == Contact::Rolling.into() { start } else { start.with_slip(slip) };
-        let Ok(Some(m)) = stone::roll(&stone, start, &TIMES, &ask.with_pose(true), || true) else {
+        let start = if ask.table == Contact::Rolling.into() { start } else { start.with_slip(slip.into()) };
+        let Ok(Some(m)) = stone::roll(&stone, start, &TIMES, &ask.with_pose(), || true) else {
             return Ok(()); // no unique force at the start
         };
         let most = 1e-10_f64.max(10.0 * m.error);
@@ -114,9 +114,9 @@ proptest! {
         let ([n1, n2, n3], [w1, w2, w3]) = (state.vertical, state.w);
         let image = StoneState { vertical: [n1, -n2, n3], w: [-w1, w2, -w3] };
         let losses = Losses::NONE.with(Law::RollingResistance, rolling);
-        let ask = Ask::on(Friction::coulomb(mu)).with_losses(losses).with_slope(slope).with_pose(true);
-        let start = Start::from(state).with_slip(slip).with_heading(heading).with_place([0.2, 0.5]);
-        let back = Start::from(image).with_slip([slip[0], -slip[1]]).with_heading(-heading);
+        let ask = Ask::on(Friction::coulomb(mu)).with_losses(losses).with_slope(slope).with_pose();
+        let start = Start::from(state).with_slip(slip.into()).with_heading(heading).with_place([0.2, 0.5]);
+        let back = Start::from(image).with_slip(Slip::new(slip[0], -slip[1])).with_heading(-heading);
         let here = stone::roll(&stone, start, &TIMES, &ask, || true);
         let there = stone::roll(&other, back.with_place([0.2, -0.5]), &TIMES, &ask, || true);
         let (Ok(Some(here)), Ok(Some(there))) = (here, there) else { return Ok(()) };
@@ -152,12 +152,12 @@ fn a_stone_that_is_a_ball_moves_as_a_ball_on_the_same_slope() {
         (Ask::on(Contact::Smooth), [0.0; 2], Kind::Slipping),
     ];
     for (ask, slip, ends) in tables {
-        let ask = ask.with_slope(slope).with_pose(true);
+        let ask = ask.with_slope(slope).with_pose();
         let begins = |heading| (heading, [0.4, 0.9]);
         let (heading, place) = begins(0.8);
-        let start = Start::from(y).with_slip(slip).with_heading(heading).with_place(place);
+        let start = Start::from(y).with_slip(slip.into()).with_heading(heading).with_place(place);
         let a = roll_with(&ball, start, &times, &ask, || true).unwrap().unwrap();
-        let start = Start::from(same).with_slip(slip).with_heading(heading).with_place(place);
+        let start = Start::from(same).with_slip(slip.into()).with_heading(heading).with_place(place);
         let b = rolled(&stone, start, &times, &ask);
         for i in 0..times.len() {
             let (y, other) = (a.states[i], b.states[i]);
@@ -174,8 +174,8 @@ fn a_stone_that_is_a_ball_moves_as_a_ball_on_the_same_slope() {
             assert!((p - q).amax() < 1e-11, "{ends:?} {i}: {p} {q}");
             if let (Some(path), true) = (&a.path, ask.table != Contact::Smooth.into()) {
                 let (u, phi) = (path.slip[i], a.poses.as_ref().unwrap()[i].phi.radians());
-                let along = Vector3::new(phi.cos(), phi.sin(), 0.0) * u[0];
-                let over = along + Vector3::new(-phi.sin(), phi.cos(), 0.0) * u[1];
+                let along = Vector3::new(phi.cos(), phi.sin(), 0.0) * u.u_h;
+                let over = along + Vector3::new(-phi.sin(), phi.cos(), 0.0) * u.u_2;
                 assert!((over - slip_in_space(&b, i)).amax() < 1e-11, "{ends:?} {i}");
             }
         }
@@ -266,9 +266,9 @@ fn a_stone_that_rolling_resistance_holds_upright_swings_about_the_vertical_like_
 fn a_heading_turns_a_motion_on_a_level_table_and_nothing_else() {
     let stone = Ellipsoid::rattleback([1.0, 0.3, 0.25], None, 0.1, None).unwrap();
     let state = stone.spinning(-0.5, 0.3, 0.1);
-    let ask = Ask::on(Friction::coulomb(0.2)).with_force(true);
+    let ask = Ask::on(Friction::coulomb(0.2)).with_force();
     let turn = 0.9f64;
-    let start = Start::from(state).with_slip([0.3, 0.5]);
+    let start = Start::from(state).with_slip(Slip::new(0.3, 0.5));
     let a = rolled(&stone, start, &TIMES, &ask);
     let b = rolled(&stone, start.with_heading(turn).with_place([3.0, -1.0]), &TIMES, &ask);
     let about = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
@@ -306,7 +306,7 @@ fn a_pebble_rolls_and_slips_as_the_reference_of_25_digits_says() {
     ];
     let force = [-0.264_382_244_710_484_6, 0.232_541_980_655_767_96, 1.271_997_217_081_546];
     assert!(off(&m, state, force) < 1e-11, "{m:?}");
-    let start = Start::from(from([0.1, -0.05, 1.0], [0.1, 0.2, -0.3])).with_slip([0.3, -0.1]);
+    let start = Start::from(from([0.1, -0.05, 1.0], [0.1, 0.2, -0.3])).with_slip(Slip::new(0.3, -0.1));
     let m = rolled(&stone, start, &[1.2], &Ask::on(Friction::coulomb(0.3)).with_slope(0.2));
     let state = [
         -0.508_843_970_454_260_2,

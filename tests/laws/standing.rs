@@ -5,13 +5,13 @@ use spincyl::contact::{Face, Friction, Table};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, RestsOn, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::PI;
 
 /// A start on the face, from the velocity of the centre and the spin.
 fn slides(body: &Body, [x, y]: [f64; 2], w: f64) -> Start {
     let state = State { theta: 0.0, w1: 0.0, w2: 0.0, w3: w };
-    Start::from(state).with_slip([x, y - body.rim() * w])
+    Start::from(state).with_slip(Slip::new(x, y - body.rim() * w))
 }
 
 fn kicked(w2: f64) -> Start {
@@ -20,7 +20,7 @@ fn kicked(w2: f64) -> Start {
 
 fn moved(body: &Body, start: Start, ask: &Ask, last: f64) -> Motion {
     let times: Vec<f64> = (0..=20).map(|k| last * f64::from(k) / 20.0).collect();
-    roll_with(body, start, &times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, &times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn rough(mu: f64) -> Ask {
@@ -108,7 +108,7 @@ fn a_hoop_slides_and_spins_at_one_speed_in_the_end_and_a_disk_on_its_face_at_0_6
             let ask = rough(0.3).with_face(face);
             let (_, time) = end(&moved(&body, slides(&body, [v, 0.0], w), &ask, 1e3));
             let m = moved(&body, slides(&body, [v, 0.0], w), &ask, time - 1e-9);
-            let ([u, t], w) = (m.path.unwrap().slip[20], m.states[20].w3);
+            let (Slip { u_h: u, u_2: t, .. }, w) = (m.path.unwrap().slip[20], m.states[20].w3);
             let ratio = u.hypot(t + w) / w;
             assert!((ratio - known).abs() < 1e-5, "{ratio} {known}");
         }
@@ -182,7 +182,7 @@ fn a_body_that_slips_in_one_direction_all_the_time_stops_after_v_over_mu_whateve
         let state = State { theta, w1: 0.0, w2: 0.0, w3: 0.0 };
         // The lowest point slips along e_h throughout, so that the centre loses mu in each unit of time.
         let v = 3.0 + r();
-        let m = moved(&body, Start::from(state).with_slip([v, 0.0]), &rough(mu), 200.0);
+        let m = moved(&body, Start::from(state).with_slip(Slip::new(v, 0.0)), &rough(mu), 200.0);
         let (ending, time) = end(&m);
         let path = m.path.as_ref().unwrap();
         if ending != Ending::Stops || path.phases.iter().any(|phase| phase.kind == Kind::Rolling) {
@@ -216,7 +216,7 @@ fn a_flat_drop_brakes_slide_and_spin_by_its_impulse_and_ends_after_all_of_its_bo
             let spin = if w > 0.0 { w - mu * a * all / tube.i3() } else { 0.0 };
             assert!((y.w3 - spin).abs() < 1e-8, "{} {spin}", y.w3);
             let slide = if v > 0.0 { v - mu * all } else { 0.0 };
-            assert!((path.slip[20][0] - slide).abs() < 1e-8, "{:?} {slide}", path.slip[20]);
+            assert!((path.slip[20].u_h - slide).abs() < 1e-8, "{:?} {slide}", path.slip[20]);
         }
         // Whatever the bounces, it stops as if it had slid all the time.
         let slid = end(&moved(&tube, slides(&tube, [1.5, 0.0], 1.0), &rough(mu), 50.0)).1;
@@ -251,7 +251,7 @@ fn a_film_below_a_flat_body_brakes_it_exponentially_and_a_smooth_table_not_at_al
     );
     let y = m.states[20];
     assert!((y.w3 - 2.0 * (-c * t / 0.5f64).exp()).abs() < 1e-12);
-    let slide = m.path.unwrap().slip[20][0];
+    let slide = m.path.unwrap().slip[20].u_h;
     assert!((slide - (-c * t).exp()).abs() < 1e-12, "{slide}");
     let m = moved(&disk, slides(&disk, [0.0; 2], 2.0), &Ask::on(Table::Smooth), 1e5);
     assert_eq!((end(&m).0, m.states[20].w3), (Ending::Done, 2.0));
@@ -279,7 +279,7 @@ fn a_disk_stands_on_either_face() {
     let disk = Body::solid(0.0).unwrap();
     let state = State { theta: PI, w1: 0.0, w2: 0.0, w3: 1.0 };
     // Seen from above it turns the other way.
-    let start = Start::from(state).with_slip([1.0, -1.0]);
+    let start = Start::from(state).with_slip(Slip::new(1.0, -1.0));
     let (m, other) = (
         moved(&disk, start, &rough(0.3), 50.0),
         moved(&disk, slides(&disk, [1.0, 0.0], -1.0), &rough(0.3), 50.0),

@@ -7,8 +7,8 @@ use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Start, roll_with};
-use spincyl::sideways::slope_drift;
-use spincyl::steep::{Posture, SlopeShares, shares, slip_slope, tip_slope};
+use spincyl::sideways::{SlopeDrift, slope_drift};
+use spincyl::steep::{Incline, Posture, SlopeShares, shares, slip_slope, tip_slope};
 use spincyl::{Body, State, stability, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -87,7 +87,7 @@ proptest! {
         if z > 1e-2 {
             let slope = 0.9 * tips;
             let SlopeShares { slipping: slips, tipping: tips, .. } =
-                shares(&body, 0.0, mu, &Losses::NONE, Posture::Standing, [slope, 0.3]).unwrap();
+                shares(&body, 0.0, mu, &Losses::NONE, Posture::Standing, Incline::new(slope, 0.3)).unwrap();
             let near = |x: f64, y: f64| (x / y - 1.0).abs() < 1e-12;
             prop_assert!(near(tips, slope.tan() * z / a) && near(slips, slope.tan() / mu), "{slips} {tips}");
         }
@@ -132,7 +132,9 @@ fn the_shares_of_a_body_at_rest_are_those_of_the_slopes_at_which_it_lets_go() {
     let (can, phi, slope) = (Body::solid(1.5).unwrap(), 0.4f64, 0.1f64);
     let losses = Losses::of(Law::RollingResistance, 0.06);
     let t = slope.tan();
-    let of = |posture, body: &Body, theta| shares(body, theta, 0.3, &losses, posture, [slope, phi]).unwrap();
+    let of = |posture, body: &Body, theta| {
+        shares(body, theta, 0.3, &losses, posture, Incline::new(slope, phi)).unwrap()
+    };
     let SlopeShares { slipping: slip, rolling: roll, tipping: tip, .. } = of(Posture::Lying, &can, SIDE);
     assert!((slip - t / slips(&can, 0.3, Posture::Lying, phi)).abs() < 1e-14);
     assert!((roll - t * phi.sin() / 0.06).abs() < 1e-14, "{roll}");
@@ -164,19 +166,20 @@ fn a_spinning_body_drifts_across_a_slope_as_fast_as_was_measured() {
         (balls, 1.3, 2.747_199_135_6, 5.648_315_767_1, 1.297_778_952_5),
     ] {
         let y = steady::state(&body, theta).unwrap();
-        let [found, resonance] = slope_drift(&body, &y);
+        let SlopeDrift { across: found, resonance, .. } = slope_drift(&body, &y);
         assert!((y.precession() - precession).abs() < 1e-9);
         assert!((found - across).abs() < 2e-10, "{found} {across}");
         assert!((resonance - kappa / (precession * precession)).abs() < 1e-9);
         // In the mirror it drifts to the other side.
         let mirrored = State { w1: -y.w1, w3: -y.w3, ..y };
-        assert_eq!(slope_drift(&body, &mirrored), [-found, resonance]);
+        let there = slope_drift(&body, &mirrored);
+        assert_eq!((there.across, there.resonance), (-found, resonance));
     }
     let disk = Body::solid(0.0).unwrap();
-    let [near_flat, _] = slope_drift(&disk, &steady::state(&disk, 0.001).unwrap());
+    let near_flat = slope_drift(&disk, &steady::state(&disk, 0.001).unwrap()).across;
     let omega = steady::state(&disk, 0.001).unwrap().precession();
     assert!((near_flat * omega * 2.0 * (1.0 + disk.i3()) - 1.0).abs() < 1e-4);
-    assert!(slope_drift(&disk, &State { theta: 1.0, w1: 0.3, w2: 0.0, w3: 0.2 })[0].is_nan());
+    assert!(slope_drift(&disk, &State { theta: 1.0, w1: 0.3, w2: 0.0, w3: 0.2 }).across.is_nan());
 }
 
 #[test]
@@ -186,7 +189,7 @@ fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first
         // The centre moves on a circle.
         let omega = faster * steady::state(&body, theta).unwrap().precession();
         let y = steady::circular(&body, theta, omega).unwrap();
-        let [across, resonance] = slope_drift(&body, &y);
+        let SlopeDrift { across, resonance, .. } = slope_drift(&body, &y);
         assert!(stability::rolling(&body, &y) > 0.0 && (resonance - 1.0).abs() > 0.3);
         // The mean velocity over a turn, averaged with a weight that vanishes at both ends: nothing of the nutation is left.
         let (turns, per) = (40, 32);
@@ -194,7 +197,7 @@ fn the_circle_of_a_body_that_rolls_steadily_drifts_on_a_small_slope_as_the_first
             (0..=turns * per).map(|i| f64::from(i) * 2.0 * PI / omega / f64::from(per)).collect();
         let mut errors = Vec::new();
         for beta in [4e-4, 2e-4] {
-            let ask = Ask::default().with_slope(beta).with_pose(true);
+            let ask = Ask::default().with_slope(beta).with_pose();
             let m = roll_with(&body, y, &times, &ask, || true).unwrap().unwrap();
             let centre: Vec<_> = m.samples().map(|now| now.centre(&body).unwrap()).collect();
             let (mut weights, mut sums) = (0.0, [0.0; 2]);
@@ -234,7 +237,7 @@ fn a_body_on_its_face_tips_over_where_its_share_says_with_rolling_resistance_as_
         for (share, holds) in [(1.0 - 1e-9, true), (1.0 + 1e-9, false)] {
             let slope = (share * limit).atan();
             let SlopeShares { tipping: tips, .. } =
-                shares(&body, 0.0, 0.9, &losses, Posture::Standing, [slope, 0.0]).unwrap();
+                shares(&body, 0.0, 0.9, &losses, Posture::Standing, Incline::new(slope, 0.0)).unwrap();
             assert!((tips / share - 1.0).abs() < 1e-14, "{arm} {tips}");
             assert_eq!(stays(&body, 0.0, 0.9, losses, slope, 0.0), holds, "{arm} {share}");
         }

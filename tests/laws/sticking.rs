@@ -215,7 +215,7 @@ fn without_estimated_errors_a_motion_has_the_same_bits() {
             .with_ask(Ask::on(TableKind::Coulomb).with_restitution(restitution))
             .with_tol(1e-8);
         let all = scenes(60, 50);
-        let [with, without] = [true, false].map(|errors| Swept::of(&all, &job.with_errors(errors)));
+        let [with, without] = [job, job.without_errors()].map(|job| Swept::of(&all, &job));
         assert!(with.bits() == without.bits());
         for i in 0..all.len() {
             let integrated = without.method[i] == Answer::Flow as u8;

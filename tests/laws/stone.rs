@@ -7,7 +7,7 @@ use spincyl::contact::Friction;
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Contact, Error, State};
+use spincyl::{Body, Contact, Error, Slip, State};
 
 /// A tensor with these principal moments, turned by these angles about axes 3 and 1.
 pub(crate) fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 3]; 3] {
@@ -99,7 +99,7 @@ proptest! {
 
     #[test]
     fn a_stone_that_rolls_keeps_its_energy(stone in any_stone(), start in any_start()) {
-        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond(true));
+        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond());
         let energy = |y: &StoneState| stone.energy(y, Contact::Rolling);
         let fastest = motion.states.iter().flat_map(|y| y.w).fold(1.0, |most: f64, w| most.max(w.abs()));
         for y in &motion.states {
@@ -114,8 +114,8 @@ proptest! {
         mu in 0.05..0.5f64, wet in any::<bool>(),
     ) {
         let friction = if wet { Friction::Viscous { c: mu } } else { Friction::coulomb(mu) };
-        let ask = Ask::on(friction).with_pose(true).with_force(true);
-        let start = Start::from(start).with_slip(slip);
+        let ask = Ask::on(friction).with_pose().with_force();
+        let start = Start::from(start).with_slip(slip.into());
         let motion = match stone::roll(&stone, start, &TIMES, &ask, || true) {
             Err(Error::Painleve { .. }) => return Ok(()),
             motion => motion.unwrap().unwrap(),
@@ -134,7 +134,7 @@ proptest! {
             // An angle by its cosine would have half the digits next to upright.
             let half = nalgebra::Quaternion::from_parts(1.0 + upright.z, upright.cross(&Vector3::z()));
             let tilt = nalgebra::UnitQuaternion::new_normalize(half);
-            let slip = pose.orientation * (tilt.inverse() * Vector3::new(path.slip[i][0], path.slip[i][1], 0.0));
+            let slip = pose.orientation * (tilt.inverse() * Vector3::new(path.slip[i].u_h, path.slip[i].u_2, 0.0));
             prop_assert!(slip.z.abs() < 1e-12 * (1.0 + slip.norm()));
             let v = slip - w.cross(&arm);
             let tensor = Matrix3::from(stone.inertia());
@@ -148,7 +148,7 @@ proptest! {
                 let y = &motion.states[0];
                 let w = poses[0].orientation * Vector3::from(y.w);
                 let arm = Vector3::new(poses[0].contact_point.x, poses[0].contact_point.y, 0.0) - Vector3::from(poses[0].centre);
-                let v = Vector3::new(start.slip[0], start.slip[1], 0.0) - w.cross(&arm);
+                let v = Vector3::new(start.slip.u_h, start.slip.u_2, 0.0) - w.cross(&arm);
                 let own = Vector3::from(y.w);
                 0.5 * (own.dot(&(tensor * own)) + v.norm_squared()) + poses[0].centre[2]
             };
@@ -157,7 +157,7 @@ proptest! {
         }
         // Friction opposes the slip, and is mu N there.
         for (i, force) in motion.forces.as_ref().unwrap().iter().enumerate() {
-            let (drag, speed) = (force.x.hypot(force.y), path.slip[i][0].hypot(path.slip[i][1]));
+            let (drag, speed) = (force.x.hypot(force.y), path.slip[i].speed());
             if path.kinds[i] == Kind::Slipping && speed > 1e-9 {
                 // A stone that has lifted off at its start has a negative normal force there.
                 let most = mu * force.z.abs() * if wet { speed } else { 1.0 };
@@ -176,7 +176,7 @@ proptest! {
         let ball = Body::ball(low, i1, i3).unwrap();
         let stone = Ellipsoid::new([1.0; 3], [[i1, 0.0, 0.0], [0.0, i1, 0.0], [0.0, 0.0, i3]], [0.0, 0.0, low]).unwrap();
         let contact = if smooth { Contact::Smooth } else { Contact::Rolling };
-        let ask = Ask::on(contact).with_pose(true).with_force(true).with_beyond(true);
+        let ask = Ask::on(contact).with_pose().with_force().with_beyond();
         let y = State { theta, w1: w[0], w2: w[1], w3: w[2] };
         // The axes of a body of revolution follow the tilt, and so do those of the stone at the start.
         let start = StoneState { vertical: [theta.sin(), 0.0, theta.cos()], w };
@@ -222,7 +222,7 @@ proptest! {
             vertical: [a, -b, c],
             w: [-d, e, -f],
         };
-        let ask = Ask::default().with_beyond(true);
+        let ask = Ask::default().with_beyond();
         let (a, b) = (rolled(&stone(twist), start, &TIMES, &ask), rolled(&stone(-twist), mirrored(start), &TIMES, &ask));
         for (a, b) in a.states.iter().zip(&b.states) {
             prop_assert!(apart(&mirrored(*a), b) < 1e-12 * (1.0 + dot(a.w, a.w)));
@@ -231,7 +231,7 @@ proptest! {
 
     #[test]
     fn a_stone_whose_spin_is_turned_round_comes_back(stone in any_stone(), start in any_start()) {
-        let ask = Ask::default().with_beyond(true);
+        let ask = Ask::default().with_beyond();
         let there = rolled(&stone, start, &[0.0, 4.0], &ask);
         let StoneState { vertical, w } = there.states[1];
         let back = rolled(&stone, StoneState { vertical, w: w.map(|w| -w) }, &[0.0, 4.0], &ask);
@@ -249,8 +249,8 @@ proptest! {
     fn without_friction_the_centre_goes_straight_on(
         stone in any_stone(), start in any_start(), slip in [-1.0..1.0f64, -1.0..1.0f64],
     ) {
-        let ask = Ask::on(Friction::coulomb(0.0)).with_pose(true);
-        let motion = rolled(&stone, Start::from(start).with_slip(slip), &TIMES, &ask);
+        let ask = Ask::on(Friction::coulomb(0.0)).with_pose();
+        let motion = rolled(&stone, Start::from(start).with_slip(slip.into()), &TIMES, &ask);
         let poses = motion.poses.as_ref().unwrap();
         prop_assume!(poses.len() > 2);
         let way = |i: usize| [0, 1].map(|k| (poses[i].centre[k] - poses[0].centre[k]) / TIMES[i]);
@@ -258,7 +258,7 @@ proptest! {
             prop_assert!((way(i)[0] - way(1)[0]).abs() + (way(i)[1] - way(1)[1]).abs() < 1e-10 + 10.0 * motion.pose_error.min(1e-3));
         }
         // On a smooth table the stone turns in the same way, and its centre rests.
-        let smooth = rolled(&stone, start, &TIMES, &Ask::on(Contact::Smooth).with_pose(true));
+        let smooth = rolled(&stone, start, &TIMES, &Ask::on(Contact::Smooth).with_pose());
         for (a, b) in motion.states.iter().zip(&smooth.states) {
             let off = apart(a, b);
             prop_assert!(off < 5.0 * (motion.error + smooth.error), "{off:e} {:e} {:e}", motion.error, smooth.error);
@@ -271,7 +271,7 @@ proptest! {
     fn a_stone_that_nothing_stops_rolls_as_any_stone_does(
         stone in any_stone(), start in any_start(), tol in -12.0..-8.0f64,
     ) {
-        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond(true).with_pose(true).with_force(true));
+        let motion = rolled(&stone, start, &TIMES, &Ask::default().with_beyond().with_pose().with_force());
         let found = stone::rolling(&stone, start, &TIMES, 10f64.powf(tol), || true).unwrap();
         let (rows, error) = found.unwrap();
         let (poses, forces) = (motion.poses.unwrap(), motion.forces.unwrap());
@@ -390,7 +390,7 @@ fn what_is_no_stone_or_no_start_is_refused_by_name() {
     refused(StoneState { vertical: [0.0, 0.0, 2.0], ..upright }.into(), ask, "vertical");
     refused(StoneState { vertical: [f64::NAN; 3], ..upright }.into(), ask, "vertical");
     refused(StoneState { w: [0.0, f64::INFINITY, 0.0], ..upright }.into(), ask, "w2");
-    refused(Start::from(upright).with_slip([0.1, 0.0]), ask, "slip");
+    refused(Start::from(upright).with_slip(Slip::new(0.1, 0.0)), ask, "slip");
     refused(upright.into(), ask.with_method(Method::Step(0.1)), "step");
     refused(upright.into(), ask.with_restitution(1.5), "restitution");
     let tilted = Ellipsoid::new([1.0, 0.5, 0.4], turned([0.1, 0.2, 0.25], [0.3, 0.2]), [0.0; 3]).unwrap();
@@ -407,7 +407,7 @@ fn a_stone_falls_on_its_edge_and_lifts_off_where_it_is_thrown_about() {
     // If it spins fast enough about a horizontal axis the normal force vanishes.
     let egg = Ellipsoid::egg(0.6, 1.0, 0.0).unwrap();
     let start = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 3.0, 0.0] };
-    let motion = rolled(&egg, start, &[0.0, 20.0], &Ask::default().with_force(true));
+    let motion = rolled(&egg, start, &[0.0, 20.0], &Ask::default().with_force());
     assert_eq!(motion.ending(), Ending::LiftOff);
 }
 
@@ -417,12 +417,12 @@ fn a_stone_at_rest_on_its_end_or_turned_over_stays_or_falls() {
     let pebble = Ellipsoid::uniform([1.0, 0.8, 0.3]).unwrap();
     for vertical in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
         let still = StoneState { vertical, w: [0.0; 3] };
-        let motion = rolled(&pebble, still, &[0.0, 10.0], &Ask::default().with_pose(true).with_force(true));
+        let motion = rolled(&pebble, still, &[0.0, 10.0], &Ask::default().with_pose().with_force());
         assert_eq!(motion.states[1], still);
         assert!((motion.forces.unwrap()[1].z - 1.0).abs() < 1e-15);
     }
     // On its long end it is in unstable balance, and falls at the least push.
     let pushed = StoneState { vertical: [1.0, 0.0, 0.0], w: [0.0, 1e-9, 0.0] };
-    let motion = rolled(&pebble, pushed, &[0.0, 30.0], &Ask::default().with_beyond(true));
+    let motion = rolled(&pebble, pushed, &[0.0, 30.0], &Ask::default().with_beyond());
     assert!(motion.states[1].vertical[0] < 0.999);
 }

@@ -11,12 +11,12 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::{AfterImpact, Hit, Kind};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, Slip, State};
 
 type Stones = Motion<StoneState>;
 
 fn hops(stone: &Ellipsoid, start: &Start<StoneState>, ask: &Ask, times: &[f64]) -> Stones {
-    stone::roll(stone, *start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    stone::roll(stone, *start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 /// A pebble, an egg, a rattleback or any other stone that is light or heavy at its ends.
@@ -53,7 +53,11 @@ fn any_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let fast = [0.0, 0.3, 1.0, 3.0][(4.0 * r()) as usize];
     let w = core::array::from_fn(|_| if r() < 0.15 { 0.0 } else { fast * (2.0 * r() - 1.0) });
     let state = StoneState { vertical: any_vertical(r), w };
-    let start = Start::from(state).with_slip(if r() < 0.3 { [0.0; 2] } else { [r() - 0.5, r() - 0.5] });
+    let start = Start::from(state).with_slip(if r() < 0.3 {
+        Slip::default()
+    } else {
+        Slip::new(r() - 0.5, r() - 0.5)
+    });
     let start = start.with_heading(if r() < 0.5 { 0.0 } else { 6.0 * r() - 3.0 });
     let start = match (4.0 * r()) as u8 {
         0 => start.with_aloft(AboveTable::new(1.5 * r(), 2.0 * r() - 1.0)),
@@ -73,7 +77,7 @@ fn odd_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let vertical = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.6, 0.0, 0.8]];
     let start = Start::from(StoneState { vertical: vertical[(5.0 * r()) as usize], w });
     let start =
-        start.with_slip(slip).with_aloft(if r() < 0.7 { Some(AboveTable::from(aloft)) } else { None });
+        start.with_slip(slip.into()).with_aloft(if r() < 0.7 { Some(AboveTable::from(aloft)) } else { None });
     (any_pebble(r), start)
 }
 
@@ -117,7 +121,7 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_stone_is_below_the_tabl
         let (stone, mut start) = if k % 3 == 0 { odd_drop(&mut r) } else { any_drop(&mut r) };
         let table = any_table(&mut r);
         if table == Table::Smooth && start.aloft.is_none() {
-            start.slip = [0.0; 2];
+            start.slip = Slip::default();
         }
         let e = if r() < 0.3 { [0.0, 1.0][(2.0 * r()) as usize] } else { r() };
         // On a patch that drills no bounce grips, so that with e = 1 they never end.
@@ -132,14 +136,15 @@ fn energy_heat_and_what_impacts_take_are_constant_and_no_stone_is_below_the_tabl
             ask.losses = Losses::of(law, 10f64.powf(-3.0 + 2.5 * r()));
         }
         let times: Vec<f64> = (0..60).map(|k| 0.05 * f64::from(k)).collect();
-        let m = match stone::roll(&stone, start, &times, &ask.with_pose(true), || true) {
+        let m = match stone::roll(&stone, start, &times, &ask.with_pose(), || true) {
             // More than one contact force, or none, at the start.
             Err(Error::Painleve { .. }) => continue,
             found => found.unwrap().unwrap(),
         };
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
-            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
+            let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) =
+                (path.slip[i], path.aloft[i]);
             let before = path.impacts.iter().filter(|hit| hit.time < m.times[i]);
             energy(&stone, &m.states[i], [u, v, lift], height)
                 + path.dissipated[i]
@@ -211,11 +216,12 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
             ask = ask.with_slope(0.3 * r());
         }
         let times: Vec<f64> = (0..16).map(|k| 0.2 * f64::from(k)).collect();
-        let ask = ask.with_pose(true);
-        let there =
-            Start::from(State { theta, w1, w2, w3 }).with_slip(slip).with_aloft(AboveTable::from(aloft));
+        let ask = ask.with_pose();
+        let there = Start::from(State { theta, w1, w2, w3 })
+            .with_slip(slip.into())
+            .with_aloft(AboveTable::from(aloft));
         let here = Start::from(StoneState { vertical: [s, 0.0, c], w: [w1, w2, w3] });
-        let here = here.with_slip(slip).with_aloft(AboveTable::from(aloft));
+        let here = here.with_slip(slip.into()).with_aloft(AboveTable::from(aloft));
         let (a, b) = (hops(&stone, &here, &ask, &times), roll_with(&body, there, &times, &ask, || true));
         let b = b.unwrap().unwrap();
         let (p, q) = (a.path.as_ref().unwrap(), b.path.as_ref().unwrap());
@@ -229,7 +235,7 @@ fn a_ball_hops_as_a_stone_as_it_does_as_a_body() {
                 y.spin() - spin,
                 p.aloft[i].height - q.aloft[i].height,
                 p.aloft[i].lift - q.aloft[i].lift,
-                p.slip[i][0].hypot(p.slip[i][1]) - q.slip[i][0].hypot(q.slip[i][1]),
+                p.slip[i].speed() - q.slip[i].speed(),
                 p.dissipated[i] - q.dissipated[i],
             ];
             let off = off.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -323,9 +329,11 @@ fn the_mirror_image_of_a_stone_hops_as_the_mirror_image_of_its_motion() {
         let vertical @ [a, b, c] = any_vertical(&mut r);
         let w @ [p, q, s] = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let [u, v] = [r() - 0.5, r() - 0.5];
-        let here =
-            Start::from(StoneState { vertical, w }).with_slip([u, v]).with_aloft(AboveTable::new(r(), 0.0));
-        let there = Start::from(StoneState { vertical: [a, -b, c], w: [-p, q, -s] }).with_slip([u, -v]);
+        let here = Start::from(StoneState { vertical, w })
+            .with_slip(Slip::new(u, v))
+            .with_aloft(AboveTable::new(r(), 0.0));
+        let there =
+            Start::from(StoneState { vertical: [a, -b, c], w: [-p, q, -s] }).with_slip(Slip::new(u, -v));
         let there = there.with_aloft(here.aloft);
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e);
         let [x, y] = [(stone(twist), here), (stone(-twist), there)]
@@ -347,8 +355,9 @@ fn without_friction_and_with_full_restitution_the_reversed_motion_goes_back() {
         let stone = any_pebble(&mut r);
         let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let state = StoneState { vertical: any_vertical(&mut r), w };
-        let start =
-            Start::from(state).with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(0.3 + r(), 0.0));
+        let start = Start::from(state)
+            .with_slip(Slip::new(r() - 0.5, r() - 0.5))
+            .with_aloft(AboveTable::new(0.3 + r(), 0.0));
         let ask = Ask::on(Table::Smooth).with_restitution(1.0);
         let m = hops(&stone, &start, &ask, &[3.0]);
         let (end, path) = (m.states[0], m.path.as_ref().unwrap());
@@ -359,7 +368,7 @@ fn without_friction_and_with_full_restitution_the_reversed_motion_goes_back() {
         let turned = StoneState { vertical: end.vertical, w: end.w.map(|w| -w) };
         let AboveTable { height, lift, .. } = path.aloft[0];
         let there = Start::from(turned)
-            .with_slip(path.slip[0].map(|u| -u))
+            .with_slip(Slip::new(-path.slip[0].u_h, -path.slip[0].u_2))
             .with_aloft(AboveTable::new(height, -lift));
         let n = hops(&stone, &there, &ask, &[3.0]);
         let home = StoneState { w: n.states[0].w.map(|w| -w), ..n.states[0] };
@@ -378,7 +387,8 @@ fn friction_without_limit_tends_to_a_table_on_which_a_stone_rolls() {
         let stone = any_pebble(&mut r);
         let w = core::array::from_fn(|_| 2.0 * r() - 1.0);
         let start = Start::from(StoneState { vertical: any_vertical(&mut r), w });
-        let start = start.with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(0.2 + r(), 0.0));
+        let start =
+            start.with_slip(Slip::new(r() - 0.5, r() - 0.5)).with_aloft(AboveTable::new(0.2 + r(), 0.0));
         let landed = |table: Table| {
             let m = hops(&stone, &start, &Ask::on(table).with_restitution(0.4), &[3.0]);
             m.path.unwrap().impacts.first().copied()
@@ -400,7 +410,7 @@ fn friction_without_limit_tends_to_a_table_on_which_a_stone_rolls() {
 fn a_stone_that_spins_fast_leaves_the_table_from_its_slip_as_the_cube_of_the_time_and_comes_down() {
     let stone = Ellipsoid::egg(0.7, 1.0, 0.1).unwrap();
     // An egg that spins on its side with much energy rises so fast that it jumps (Shimomura et al. 2006).
-    let start = Start::from(stone.spinning(7.0, 1.3, 0.0)).with_slip([0.4, 0.0]);
+    let start = Start::from(stone.spinning(7.0, 1.3, 0.0)).with_slip(Slip::new(0.4, 0.0));
     let ask = Ask::on(Friction::coulomb(0.4)).with_restitution(0.3);
     let m = hops(&stone, &start, &ask, &[20.0]);
     let phases = &m.path.as_ref().unwrap().phases;

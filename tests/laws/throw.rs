@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use spincyl::contact::landing::{self, Landed, Outcome, land, launch, mirrored, normals, rises};
 use spincyl::throw::{launch_number, launch_spin, pressed, recoil, thrown};
-use spincyl::{Body, Error, State};
+use spincyl::{Body, Error, Slip, State};
 use std::f64::consts::FRAC_PI_2;
 
 /// Bodies that lie on two rims: tubes from coins to pipes, some rounded, and some with moments of their own.
@@ -55,7 +55,7 @@ fn about(body: &Body, y: &State, v: Vector3<f64>, point: Vector3<f64>) -> Vector
 
 /// State and velocity of the centre after a landing, along the axes before it.
 fn back(body: &Body, end: &Landed) -> (State, Vector3<f64>) {
-    let v = centre_velocity(body, &end.state, end.slip);
+    let v = centre_velocity(body, &end.state, end.slip.into());
     match end.outcome {
         Outcome::Changes => (mirrored(body, &end.state, end.slip).0, Vector3::new(-v.x, -v.y, v.z)),
         _ => (end.state, v),
@@ -75,8 +75,8 @@ proptest! {
         body in lying_body(), impulse in 1e-3..30.0f64, angle in 0.01..1.57f64, finger in 0.0..1.5f64, table in 0.0..1.0f64,
     ) {
         let (y, slip) = pressed(&body, impulse, angle, finger, table).unwrap();
-        let v = centre_velocity(&body, &y, slip).y;
-        let size = slip[1].abs() + (body.ell() * y.w1).abs() + y.w3.abs();
+        let v = centre_velocity(&body, &y, slip.into()).y;
+        let size = slip.u_2.abs() + (body.ell() * y.w1).abs() + y.w3.abs();
         prop_assert!((recoil(&body, y.w1) - v).abs() <= 1e-14 * size, "{v}");
         prop_assume!(y.w1 != 0.0);
         let spin = launch_spin(&body, y.w1, launch_number(&body, &y));
@@ -96,14 +96,14 @@ proptest! {
     ) {
         let body = Body::tube(ell, bore).unwrap();
         let (y, slip) = thrown(&body, v, w0).unwrap();
-        prop_assert_eq!((y.theta, y.w1, y.w2, y.w3, slip[0]), (FRAC_PI_2, 0.0, 0.0, -w0, 0.0));
+        prop_assert_eq!((y.theta, y.w1, y.w2, y.w3, slip.u_h), (FRAC_PI_2, 0.0, 0.0, -w0, 0.0));
         // the centre moves with v, and friction conserves the momentum about the bottom, v + I3 w3
-        let centre = slip[1] - ell * y.w1 + y.w3;
+        let centre = slip.u_2 - ell * y.w1 + y.w3;
         let last = (centre + body.i3() * y.w3) / (1.0 + body.i3());
         prop_assert!((last - (v - body.i3() * w0) / (1.0 + body.i3())).abs() <= 1e-14);
         // the heat is the energy lost until the body rolls with that velocity
         let rolling = on_its_side(0.0, 0.0, last);
-        let heat = energy(&body, &y, slip) - energy(&body, &rolling, [0.0, 0.0]);
+        let heat = energy(&body, &y, slip.into()) - energy(&body, &rolling, [0.0, 0.0]);
         let exact = body.i3() * (v + w0) * (v + w0) / (2.0 * (1.0 + body.i3()));
         prop_assert!((heat - exact).abs() <= 1e-13 * (1.0 + exact), "{heat} {exact}");
     }
@@ -114,13 +114,13 @@ proptest! {
         table in prop_oneof![Just(0.0), 0.0..1.0f64],
     ) {
         let (y, slip) = pressed(&body, j, angle, finger, table).unwrap();
-        let v = centre_velocity(&body, &y, slip);
+        let v = centre_velocity(&body, &y, slip.into());
         let (s, c) = angle.sin_cos();
         let (out, along) = (Vector3::new(0.0, s, c), Vector3::new(0.0, c, -s));
         let push = j * (finger * along - out);
         let size = 1e-13 * (1.0 + j) * (1.0 + finger) * (1.0 + 1.0 / body.i3() + body.ell().powi(2) / body.i1());
         // no end leaves the table, and no force acts along the axis
-        prop_assert!(v.x == 0.0 && v.z == 0.0 && y.w2 == 0.0 && slip[0] == 0.0);
+        prop_assert!(v.x == 0.0 && v.z == 0.0 && y.w2 == 0.0 && slip.u_h == 0.0);
         // the table has no moment about the lowest point of the pressed end
         let point = rims(&body)[1];
         let arm = Vector3::new(-body.ell(), 0.0, 0.0) + out - point;
@@ -135,7 +135,7 @@ proptest! {
         prop_assert!(after.abs() <= size || (drag.abs() - table * borne).abs() <= size, "{after} {drag}");
         // the energy is the work of the finger and of the table
         let work = push.dot(&(v + angular_velocity(&y).cross(&(arm + point)))) / 2.0 + drag * after / 2.0;
-        prop_assert!((energy(&body, &y, slip) - work).abs() <= size * (1.0 + j) * (1.0 + body.ell()).powi(2));
+        prop_assert!((energy(&body, &y, slip.into()) - work).abs() <= size * (1.0 + j) * (1.0 + body.ell()).powi(2));
         prop_assert!((v.y + body.i1() / body.ell() * y.w1).abs() <= size * (1.0 + body.i1() / body.ell()));
     }
 
@@ -146,13 +146,13 @@ proptest! {
         mu in prop_oneof![Just(0.0), 0.0..0.5f64],
     ) {
         let y = on_its_side(w1, w2, w3);
-        let end = land(&body, &y, slip, mu);
+        let end = land(&body, &y, slip.into(), mu);
         // near mu = ell there may be two outcomes, and the search fails once in 1e5 cases
         prop_assume!(!matches!(end, Err(Error::Landing { .. })));
         let end = end.unwrap();
         let (last, after) = back(&body, &end);
         let size = 1e-11 * (1.0 + body.ell()).powi(3) * (1.0 + 1.0 / body.i3() + 1.0 / body.i1());
-        let gained = energy(&body, &end.state, end.slip) - energy(&body, &y, slip);
+        let gained = energy(&body, &end.state, end.slip.into()) - energy(&body, &y, slip);
         prop_assert!(gained <= size && (gained + end.lost).abs() <= size, "{gained} {}", end.lost);
         // the impulses at both rims follow from the changes
         let v = after - centre_velocity(&body, &y, slip);
@@ -190,7 +190,7 @@ proptest! {
         slip in [-2.0..2.0f64, -2.0..2.0f64],
     ) {
         let y = on_its_side(w1, -w, w3);
-        let end = land(&body, &y, slip, 0.0).unwrap();
+        let end = land(&body, &y, slip.into(), 0.0).unwrap();
         let (ell2, i1) = (body.ell().powi(2), body.i1());
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-13 * (1.0 + ell2) * (1.0 + a.abs());
         let (last, after) = back(&body, &end);
@@ -211,16 +211,16 @@ proptest! {
         slip in [-2.0..2.0f64, -2.0..2.0f64], mu in 0.0..1.0f64,
     ) {
         let y = on_its_side(w1, 0.0, w3);
-        let [low, up] = normals(&body, &y, slip, mu);
+        let [low, up] = normals(&body, &y, slip.into(), mu);
         prop_assume!(mu < body.ell() && up.abs() > 1e-9 && low.abs() > 1e-9);
-        prop_assert_eq!(rises(&body, &y, slip, mu), up < 0.0);
-        let (there, other) = mirrored(&body, &y, slip);
+        prop_assert_eq!(rises(&body, &y, slip.into(), mu), up < 0.0);
+        let (there, other) = mirrored(&body, &y, slip.into());
         prop_assert_eq!(rises(&body, &there, other, mu), low < 0.0);
         let [high, deep] = normals(&body, &there, other, mu);
         prop_assert!((high - up).abs() + (deep - low).abs() <= 1e-12 * (1.0 + low.abs() / (body.ell() - mu)));
         prop_assert_eq!(mirrored(&body, &there, other).0, y);
         if slip[0] == 0.0 || mu == 0.0 {
-            prop_assert_eq!(launch(&body, &y, slip, mu), launch_number(&body, &y));
+            prop_assert_eq!(launch(&body, &y, slip.into(), mu), launch_number(&body, &y));
         }
     }
 
@@ -229,7 +229,7 @@ proptest! {
         let y = on_its_side(w1, 0.0, w3);
         let tilt = spincyl::rolling::derivative(&body, &y).w2;
         prop_assume!(tilt.abs() > 1e-9);
-        prop_assert_eq!(rises(&body, &y, [0.0, 0.0], 1e6), tilt > 0.0);
+        prop_assert_eq!(rises(&body, &y, Slip::default(), 1e6), tilt > 0.0);
     }
 }
 
@@ -248,14 +248,15 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
         match kind {
             "lying" => {
                 let (y, slip, mu) = (on_its_side(x[0], x[1], x[2]), [x[3], x[4]], x[5]);
-                let found = normals(&body, &y, slip, mu);
+                let found = normals(&body, &y, slip.into(), mu);
                 assert!(close(found[0], x[6]) && close(found[1], x[7]), "{line}: {found:?}");
-                assert_eq!(rises(&body, &y, slip, mu), x[8] == 1.0, "{line}");
+                assert_eq!(rises(&body, &y, slip.into(), mu), x[8] == 1.0, "{line}");
                 counts[usize::from(x[8] == 1.0)] += 1;
             }
             "lands" => {
                 let y = on_its_side(x[0], x[1], x[2]);
-                let end = land(&body, &y, [x[3], x[4]], x[5]).unwrap_or_else(|e| panic!("{line}: {e}"));
+                let end =
+                    land(&body, &y, Slip::new(x[3], x[4]), x[5]).unwrap_or_else(|e| panic!("{line}: {e}"));
                 // a body that lies may rise at once on its other rim; the model only gives which rims stay
                 let (mut last, mut slip) = (end.state, end.slip);
                 if end.outcome == Outcome::Changes && x[6] == 0.0 {
@@ -263,7 +264,7 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
                 }
                 assert!(end.outcome == Outcome::Changes || x[6] == 0.0, "{line}: {end:?}");
                 let off = distance(&last, &[FRAC_PI_2, x[7], x[8], x[9]]);
-                let off = off.max((slip[0] - x[10]).abs()).max((slip[1] - x[11]).abs());
+                let off = off.max((slip.u_h - x[10]).abs()).max((slip.u_2 - x[11]).abs());
                 assert!(off <= 1e-13 * (1.0 + x[7].abs() + x[9].abs()), "{line}: {off:e} {end:?}");
                 assert!(
                     (end.lost - x[12]).abs() <= 1e-13 * (1.0 + x[0] * x[0] * body.ell().powi(2)),
@@ -273,7 +274,7 @@ fn landings_and_presses_are_those_of_the_three_dimensional_model() {
             }
             _ => {
                 let (y, slip) = pressed(&body, x[0], x[1], x[2], x[3]).unwrap();
-                assert!(close(y.w1, x[4]) && close(y.w3, x[5]) && close(slip[1], x[6]), "{line}: {y:?}");
+                assert!(close(y.w1, x[4]) && close(y.w3, x[5]) && close(slip.u_2, x[6]), "{line}: {y:?}");
                 counts[4] += 1;
             }
         }
@@ -288,7 +289,7 @@ fn nearly_every_landing_has_one_outcome() {
         let body = Body::tube(0.02 + if k % 2 == 0 { r() } else { 6.0 * r() }, r()).unwrap();
         let y = on_its_side(6.0 * r() - 3.0, -2.0 * r(), 8.0 * r() - 4.0);
         let slip = if k % 3 == 0 { [0.0, 0.0] } else { [2.0 * r() - 1.0, 2.0 * r() - 1.0] };
-        match land(&body, &y, slip, 0.6 * r()) {
+        match land(&body, &y, slip.into(), 0.6 * r()) {
             Err(Error::Landing { .. }) => none += 1,
             end => assert!(end.is_ok(), "{end:?}"),
         }
@@ -341,7 +342,7 @@ fn what_cannot_be_thrown_pressed_or_landed_is_refused_by_name() {
         (tube, State { theta: 1.5, ..falling }, [0.0, 0.0], 0.3, "theta"),
         (hoop, falling, [0.0, 0.0], 0.3, "ell"),
     ] {
-        assert_eq!(named(land(&body, &y, slip, mu).unwrap_err()), name);
+        assert_eq!(named(land(&body, &y, slip.into(), mu).unwrap_err()), name);
     }
 }
 
@@ -363,10 +364,10 @@ fn the_papers_tube_launched_by_a_finger_rises_and_without_its_friction_does_not(
         }
     }
     let still = on_its_side(0.5, 0.0, 0.5);
-    assert_eq!(landing::land(&tube, &still, [0.0, 1.0], 0.3).unwrap().outcome, Outcome::Lies);
+    assert_eq!(landing::land(&tube, &still, Slip::new(0.0, 1.0), 0.3).unwrap().outcome, Outcome::Lies);
     let risen = on_its_side(4.0, 0.0, 5.0);
-    assert_eq!(landing::land(&tube, &risen, [0.0, 1.0], 0.3).unwrap().outcome, Outcome::Rises);
+    assert_eq!(landing::land(&tube, &risen, Slip::new(0.0, 1.0), 0.3).unwrap().outcome, Outcome::Rises);
     let other = on_its_side(4.0, 0.0, -5.0);
-    let end = landing::land(&tube, &other, [0.0, 1.0], 0.3).unwrap();
+    let end = landing::land(&tube, &other, Slip::new(0.0, 1.0), 0.3).unwrap();
     assert_eq!((end.outcome, end.state.w1, end.state.w3, end.lost), (Outcome::Changes, 4.0, 5.0, 0.0));
 }

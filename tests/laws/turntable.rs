@@ -5,11 +5,11 @@ use crate::common::wander;
 use spincyl::contact::{Friction, Table, slip};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn rolled(body: &Body, start: Start, times: &[f64], ask: &Ask) -> Motion {
-    roll_with(body, start, times, &ask.with_pose(true), || true).unwrap().unwrap()
+    roll_with(body, start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
 fn ball() -> Body {
@@ -41,7 +41,7 @@ fn seen(body: &Body, om: f64, m: &Motion, i: usize) -> Seen {
     let ((sin, cos), at) = (pose.phi.radians().sin_cos(), place(body, y.theta));
     let AboveTable { height: high, lift, .. } =
         path.and_then(|path| path.aloft.get(i).copied()).unwrap_or_default();
-    let [v_h, v_2] = slip::centre_velocity(body, &y, path.map_or([0.0; 2], |path| path.slip[i]));
+    let [v_h, v_2] = slip::centre_velocity(body, &y, path.map_or(Slip::default(), |path| path.slip[i]));
     let point = [pose.contact_point.x, pose.contact_point.y];
     let velocity = [v_h * cos - v_2 * sin - om * point[1], v_h * sin + v_2 * cos + om * point[0]];
     let centre = [point[0] - at.lever[0] * cos, point[1] - at.lever[0] * sin, at.height[0] + high];
@@ -105,7 +105,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
         }
     };
     if ask.table.rubs() && next() < 0.7 {
-        start = start.with_slip([within(next, -1.0, 1.0), within(next, -1.0, 1.0)]);
+        start = start.with_slip(Slip::new(within(next, -1.0, 1.0), within(next, -1.0, 1.0)));
     }
     let on_patch = patched(&ask);
     ask = ask.with_losses(match (next() * 5.0) as usize {
@@ -143,7 +143,7 @@ fn a_disk_on_a_turntable_moves_as_the_model_of_three_dimensions_says() {
     let (disk, y) = (Body::solid(0.1).unwrap(), State { theta: 1.3, w1: 0.4, w2: 0.1, w3: -1.2 });
     let start = Start::from(y).with_place([1.5, 0.0]);
     // Far beyond the side of its rim, which a wide body passes.
-    let m = rolled(&disk, start, &[5.0], &Ask::default().with_turning(0.5).with_beyond(true));
+    let m = rolled(&disk, start, &[5.0], &Ask::default().with_turning(0.5).with_beyond());
     let (state, pose) = (m.states[0], m.poses.as_ref().unwrap()[0]);
     let off = [
         state.theta - 1.696_025_077_2,
@@ -161,7 +161,7 @@ fn on_a_turntable_energy_less_its_rate_times_the_angular_momentum_stays_with_wha
         let (body, start, ask) = drawn(&mut next);
         let still = ask.losses.with(Law::AirLinear, 0.0).with(Law::AirQuadratic, 0.0);
         let (ask, times) = (ask.with_losses(still), [0.0, 0.5, 1.0, 2.0, 4.0]);
-        let m = match roll_with(&body, start, &times, &ask.with_pose(true), || true) {
+        let m = match roll_with(&body, start, &times, &ask.with_pose(), || true) {
             Ok(m) => m.unwrap(),
             Err(e) => {
                 assert!(!e.to_string().starts_with("turning"), "{e} {body:?} {start:?} {ask:?}");
@@ -195,7 +195,7 @@ fn on_a_tilted_turntable_the_same_sum_grows_by_the_couples_of_gravity_and_of_the
         let mut times: Vec<f64> = (0..count).flat_map(|k| [place(k, -1.0), place(k, 1.0)]).collect();
         times.insert(0, 0.0);
         times.push(end);
-        let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &times, &ask.with_pose(), || true) else { continue };
         if m.states.len() < times.len() || m.error > 1e-9 {
             continue;
         }
@@ -221,10 +221,10 @@ fn on_a_table_that_turns_the_other_way_the_mirror_image_moves() {
     for _ in 0..100 {
         let (body, start, ask) = drawn(&mut next);
         let ask = ask.with_slope(within(&mut next, -0.3, 0.3));
-        let Ok(Some(m)) = roll_with(&body, start, &[1.5], &ask.with_pose(true), || true) else { continue };
+        let Ok(Some(m)) = roll_with(&body, start, &[1.5], &ask.with_pose(), || true) else { continue };
         let State { theta, w1, w2, w3 } = start.state;
         let mirrored = Start::from(State { theta, w1: -w1, w2, w3: -w3 })
-            .with_slip([start.slip[0], -start.slip[1]])
+            .with_slip(Slip::new(start.slip.u_h, -start.slip.u_2))
             .with_heading(-start.heading)
             .with_place([start.place[0], -start.place[1]])
             .with_aloft(start.aloft);
@@ -245,7 +245,7 @@ fn a_table_that_hardly_turns_moves_a_body_as_a_table_at_rest() {
     let (mut next, mut followed) = (wander(14), 0);
     for _ in 0..100 {
         let (body, start, ask) = drawn(&mut next);
-        let run = |om: f64| roll_with(&body, start, &[1.5], &ask.with_turning(om).with_pose(true), || true);
+        let run = |om: f64| roll_with(&body, start, &[1.5], &ask.with_turning(om).with_pose(), || true);
         let (Ok(Some(m)), Ok(Some(rests))) = (run(1e-300), run(0.0)) else { continue };
         // On a table at rest a body may go on where two rims or a face end the motion on this one.
         let end = m.event.map_or(f64::INFINITY, |event| event.time);
@@ -313,7 +313,7 @@ fn a_ball_that_rolling_resistance_holds_is_carried_by_the_table_and_else_rolls_o
     let ask = patch.with_losses(losses).with_turning(om);
     let m = rolled(
         &ball(),
-        Start::from(spun(0.0)).with_place([0.1, 0.0]).with_slip([0.0, -0.05]),
+        Start::from(spun(0.0)).with_place([0.1, 0.0]).with_slip(Slip::new(0.0, -0.05)),
         &[300.0],
         &ask,
     );
@@ -338,7 +338,8 @@ fn a_ball_that_falls_on_a_turntable_is_thrown_along_it_by_friction() {
     for mu in [0.1, 0.2, 0.5] {
         let slip = [-om * r * 0.4f64.sin(), -om * r * 0.4f64.cos()];
         let ask = Ask::on(Friction::coulomb(mu)).with_restitution(e).with_turning(om);
-        let m = rolled(&ball(), start.with_slip(slip).with_aloft(AboveTable::new(0.0, -v)), &[0.5], &ask);
+        let m =
+            rolled(&ball(), start.with_slip(slip.into()).with_aloft(AboveTable::new(0.0, -v)), &[0.5], &ask);
         let thrown = seen(&ball(), om, &m, 0).velocity;
         let expected = (mu * (1.0 + e) * v).min(om * r * 2.0 / 7.0);
         assert!((thrown[1] - expected).abs() < 1e-13 && thrown[0].abs() < 1e-13, "{thrown:?} {expected}");
@@ -357,9 +358,8 @@ fn a_flight_above_a_turntable_is_that_above_a_table_at_rest() {
         let (sin, cos) = start.heading.sin_cos();
         let [x, y] = start.place;
         let table = [om * (x * sin - y * cos), om * (x * cos + y * sin)];
-        let over = start.with_slip([start.slip[0] - table[0], start.slip[1] - table[1]]);
-        let Ok(Some(m)) = roll_with(&body, over, &[0.5], &ask.with_turning(om).with_pose(true), || true)
-        else {
+        let over = start.with_slip(Slip::new(start.slip.u_h - table[0], start.slip.u_2 - table[1]));
+        let Ok(Some(m)) = roll_with(&body, over, &[0.5], &ask.with_turning(om).with_pose(), || true) else {
             continue;
         };
         let rests = rolled(&body, start, &[0.5], &ask);

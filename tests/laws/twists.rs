@@ -8,8 +8,8 @@ use spincyl::loss::{Law, Losses};
 use spincyl::measured::{Measured, Tube};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Motion, Start, roll_with};
-use spincyl::pose::{axes, euler_angles};
-use spincyl::{Body, State};
+use spincyl::pose::{EulerAngles, axes, euler_angles};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A turn that is drawn evenly, in a fifth of the cases almost or exactly upright or upside down.
@@ -41,7 +41,7 @@ proptest! {
 
     #[test]
     fn euler_angles_give_back_their_orientation(q in any_turn()) {
-        let [phi, theta, psi] = euler_angles(&q);
+        let EulerAngles { phi, theta, psi, .. } = euler_angles(&q);
         prop_assert!((0.0..=PI).contains(&theta) && phi.abs() <= PI && psi.abs() <= PI);
         let again = axes(phi, theta) * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), psi);
         let off = (again.to_rotation_matrix().matrix() - q.to_rotation_matrix().matrix()).amax();
@@ -79,27 +79,28 @@ proptest! {
         let start = Start::from_twist(&body, &q, w, v, Some(height)).unwrap();
         let AboveTable { height: up, lift, .. } = start.aloft.unwrap();
         prop_assert!((up - 0.5).abs() < few && (lift - u.z).abs() < few);
-        prop_assert!((start.slip[0] - u.dot(&lean)).abs() < few, "{:?} {}", start.slip, u);
-        prop_assert!((start.slip[1] - u.dot(&z.cross(&lean))).abs() < few);
+        prop_assert!((start.slip.u_h - u.dot(&lean)).abs() < few, "{:?} {}", start.slip, u);
+        prop_assert!((start.slip.u_2 - u.dot(&z.cross(&lean))).abs() < few);
         // The same on the table, where the lowest point neither rises nor falls.
         let level = Start::from_twist(&body, &q, w, v - z * u.z, None).unwrap();
-        prop_assert!((level.slip[0] - start.slip[0]).abs() < few && level.aloft.is_none());
+        prop_assert!((level.slip.u_h - start.slip.u_h).abs() < few && level.aloft.is_none());
         let rises = Start::from_twist(&body, &q, w, v - z * (u.z - 1e-3), None).unwrap_err();
         prop_assert!(rises.to_string().starts_with("velocity = 0.00"), "{}", rises);
         // A body that rolls does not slip at all.
         let rolls = Start::from_twist(&body, &q, w, -w.cross(&r), None).unwrap();
-        prop_assert!(rolls.slip.iter().all(|u| u.abs() < few));
+        prop_assert!(rolls.slip.speed() < few);
     }
 
     #[test]
     fn a_start_from_the_sample_of_its_start_is_that_start(body in any_rim(), y in any_state(), slip in prop::array::uniform2(-2.0..2.0f64)) {
-        let ask = Ask::on(Friction::coulomb(0.2)).with_pose(true);
-        let start = Start::from(y).with_slip(slip);
+        let ask = Ask::on(Friction::coulomb(0.2)).with_pose();
+        let start = Start::from(y).with_slip(slip.into());
         let Ok(Some(motion)) = roll_with(&body, start, &[0.0], &ask, || true) else { return Ok(()) };
         let Some(now) = motion.samples().next() else { return Ok(()) };
         let twist = (now.orientation().unwrap(), now.angular_velocity().unwrap(), now.velocity(&body).unwrap());
         let again = Start::from_twist(&body, &twist.0, twist.1, twist.2, None).unwrap();
-        let off = [0, 1].map(|i| (again.slip[i] - slip[i]).abs()).into_iter().fold(0.0, larger);
+        let [u, v] = again.slip.into();
+        let off = larger((u - slip[0]).abs(), (v - slip[1]).abs());
         prop_assert!(off < 1e-12 * (1.0 + body.ell()), "{:?}", again);
     }
 }
@@ -157,7 +158,7 @@ fn sampled() -> Vec<(Body, Motion)> {
     let dry = Friction::coulomb(0.25);
     let mut all = Vec::new();
     let mut add = |body: &Body, start: Start, ask: Ask| {
-        let ask = ask.with_pose(true).with_force(true);
+        let ask = ask.with_pose().with_force();
         if let Ok(Some(motion)) = roll_with(body, start, &times, &ask, || true) {
             all.push((*body, motion));
         }
@@ -167,15 +168,15 @@ fn sampled() -> Vec<(Body, Motion)> {
             add(&body, y.into(), Ask::on(table));
             add(&body, y.into(), Ask::on(table).with_losses(losses));
         }
-        add(&body, Start::from(y).with_slip([0.7, -0.4]), Ask::on(dry));
+        add(&body, Start::from(y).with_slip(Slip::new(0.7, -0.4)), Ask::on(dry));
     }
     let tube = Body::tube(1.5, 0.6).unwrap();
     let mut r = wander(71);
     for _ in 0..30 {
         let y = state(0.4 + r(), 2.0 * r() - 1.0, r() - 0.5, 3.0 * r() - 1.5);
-        let start = Start::from(y).with_slip([r(), r()]).with_aloft(AboveTable::new(0.5 * r(), r()));
+        let start = Start::from(y).with_slip(Slip::new(r(), r())).with_aloft(AboveTable::new(0.5 * r(), r()));
         add(&tube, start, Ask::on(dry).with_restitution(0.6));
-        add(&tube, start.with_slip([0.0; 2]), Ask::on(Table::Smooth).with_restitution(0.6));
+        add(&tube, start.with_slip(Slip::default()), Ask::on(Table::Smooth).with_restitution(0.6));
     }
     add(&tube, Start::from(state(FRAC_PI_2 - 0.2, 0.3, 0.0, 3.0)), Ask::on(dry).with_restitution(0.0));
     all
@@ -246,7 +247,7 @@ fn samples_have_what_was_asked_for() {
     assert!(
         now.orientation().is_none() && now.velocity(&body).is_none() && bare.orientations().next().is_none()
     );
-    let full = of(Ask::on(Friction::coulomb(0.3)).with_pose(true).with_force(true));
+    let full = of(Ask::on(Friction::coulomb(0.3)).with_pose().with_force());
     assert_eq!(full.samples().len(), 2);
     for (i, now) in full.samples().enumerate() {
         let path = full.path.as_ref().unwrap();

@@ -8,7 +8,7 @@ use spincyl::ensemble::{Answer, Job};
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 
 fn moved(body: &Body, start: &Start, ask: &Ask, times: &[f64]) -> Motion {
     roll_with(body, *start, times, ask, || true).unwrap().unwrap()
@@ -24,7 +24,7 @@ fn any_start(aloft: bool, r: &mut impl FnMut() -> f64) -> Start {
     let [w1, w2, w3, u, v] = core::array::from_fn(|_| any_speed(fast, r));
     let state = State { theta: 0.05 + 3.04 * r(), w1, w2, w3 };
     if !aloft {
-        return Start::from(state).with_slip([u, v]);
+        return Start::from(state).with_slip(Slip::new(u, v));
     }
     dropped(state, [u, v], if r() < 0.2 { 0.0 } else { 2.0 * r() }, any_speed(1.0, r))
 }
@@ -50,7 +50,7 @@ fn a_uniform_ball_moves_as_one_whose_moments_differ_in_the_last_digits() {
         };
         let flies = case % 3 > 0 || !table.rubs();
         let start = any_start(flies, &mut r);
-        let ask = Ask::on(table).with_restitution(flies.then_some(e)).with_force(true);
+        let ask = Ask::on(table).with_restitution(flies.then_some(e)).with_force();
         let [a, b] = [known, other].map(|body| moved(&body, &start, &ask, &times));
         let told = format!("{case} {table:?} {e} {start:?}");
         assert_eq!(a.evaluations, 0, "{told}");
@@ -62,11 +62,11 @@ fn a_uniform_ball_moves_as_one_whose_moments_differ_in_the_last_digits() {
         for (i, (y, z)) in a.states.iter().zip(&b.states).enumerate() {
             // The moments differ by 2e-13, which turns the axis by as much in a radian.
             let from = start.state;
-            let speeds = [y.w1, y.w2, y.w3, from.w1, from.w2, from.w3, start.slip[0], start.slip[1]];
+            let speeds = [y.w1, y.w2, y.w3, from.w1, from.w2, from.w3, start.slip.u_h, start.slip.u_2];
             let fastest = speeds.into_iter().fold(1.0, |most: f64, w| most.max(w.abs()));
             let allowed = a.error + b.error + 1e-11 * fastest * fastest / y.theta.sin();
             let off = [y.theta - z.theta, y.w1 - z.w1, y.w2 - z.w2, y.w3 - z.w3];
-            let slip = [path.slip[i][0] - others.slip[i][0], path.slip[i][1] - others.slip[i][1]];
+            let slip = [path.slip[i].u_h - others.slip[i].u_h, path.slip[i].u_2 - others.slip[i].u_2];
             let heat = path.dissipated[i] - others.dissipated[i];
             for x in off.into_iter().chain(slip).chain([heat / fastest.max(4.0)]) {
                 assert!(x.abs() < allowed, "{x:e} {allowed:e} at {} of {told}", times[i]);
@@ -102,7 +102,7 @@ fn a_ball_under_rolling_resistance_moves_as_one_whose_moments_differ_in_the_last
         let times = [0.1, 0.4, 0.8, 1.0].map(|share| share * until);
         let ask = Ask::on(Friction::Coulomb { mu, fixed: mu, patch })
             .with_losses(Losses::of(Law::RollingResistance, arm))
-            .with_force(true)
+            .with_force()
             .with_method(Method::Tolerance(1e-9));
         let [a, b] = [known, other].map(|body| moved(&body, &start, &ask, &times));
         let told = format!("{case} {mu} {arm} {patch} {start:?}");
@@ -115,7 +115,7 @@ fn a_ball_under_rolling_resistance_moves_as_one_whose_moments_differ_in_the_last
         let doubt = a.error + b.error + 1e-9;
         for (i, (y, z)) in a.states.iter().zip(&b.states).enumerate() {
             let off = [y.theta - z.theta, y.w1 - z.w1, y.w2 - z.w2, y.w3 - z.w3];
-            let slip = [path.slip[i][0] - others.slip[i][0], path.slip[i][1] - others.slip[i][1]];
+            let slip = [path.slip[i].u_h - others.slip[i].u_h, path.slip[i].u_2 - others.slip[i].u_2];
             let heats = [&path.dissipated, &path.work_lost].map(|all| all[i]);
             let theirs = [&others.dissipated, &others.work_lost].map(|all| all[i]);
             let heat = [0, 1].map(|k| (heats[k] - theirs[k]) / fast.max(4.0));

@@ -6,7 +6,7 @@ use spincyl::contact::Table;
 use spincyl::contact::slip::Friction;
 use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, State};
+use spincyl::{Body, Slip, State};
 use std::f64::consts::PI;
 
 fn moved(body: &Body, start: &Start, ask: &Ask, times: &[f64]) -> Motion {
@@ -41,9 +41,9 @@ fn a_body_that_is_dropped_flat_lands_on_its_face_at_the_time_of_a_free_fall() {
         // Upside down, the rim from which the state is told is on top.
         let low = height + if over && body.ell() > 0.0 { 2.0 * body.ell() } else { 0.0 };
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2: 0.0, w3 };
-        let start = Start::from(y).with_slip(slip).with_aloft(AboveTable::new(low, lift));
+        let start = Start::from(y).with_slip(slip.into()).with_aloft(AboveTable::new(low, lift));
         let table = [Friction::coulomb(0.3).into(), Table::Smooth][k % 2];
-        let mut ask = Ask::on(table).with_restitution([0.0, 0.5, 1.0][k % 3]).with_pose(true);
+        let mut ask = Ask::on(table).with_restitution([0.0, 0.5, 1.0][k % 3]).with_pose();
         if k % 5 == 0 {
             ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
         }
@@ -87,9 +87,10 @@ fn a_body_that_tumbles_from_upright_flies_as_one_that_hardly_leans() {
         let w3 = if r() < 0.4 { 0.0 } else { 6.0 * r() - 3.0 };
         let w2 = (if r() < 0.5 { 1.0 } else { -1.0 }) * (0.1 + 3.0 * r());
         let y = State { theta: if over { PI } else { 0.0 }, w1: 0.0, w2, w3 };
-        let start =
-            Start::from(y).with_slip([r() - 0.5, r() - 0.5]).with_aloft(AboveTable::new(9.0, 3.0 * r()));
-        let mut ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_pose(true);
+        let start = Start::from(y)
+            .with_slip(Slip::new(r() - 0.5, r() - 0.5))
+            .with_aloft(AboveTable::new(9.0, 3.0 * r()));
+        let mut ask = Ask::on(Friction::coulomb(0.3)).with_restitution(0.5).with_pose();
         let air = r() < 0.3;
         if air {
             ask = ask.with_losses(Losses::of(Law::AirLinear, 0.02));
@@ -137,13 +138,13 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         let y = State { theta, w1: if planar { 0.0 } else { small * (r() - 0.5) }, w2: 2.0 * r() - 0.3, w3 };
         let slip = if r() < 0.5 { [0.0; 2] } else { [r() - 0.5, if planar { 0.0 } else { small * r() }] };
         let rubs = Friction::coulomb(0.05 + r());
-        let (mut ask, mut start) = (Ask::on(rubs), Start::from(y).with_slip(slip));
+        let (mut ask, mut start) = (Ask::on(rubs), Start::from(y).with_slip(slip.into()));
         if k % 2 == 0 {
             ask = ask.with_restitution([0.0, 0.5][k % 4 / 2]);
             start = start.with_aloft(AboveTable::new(0.3 * r(), 0.0));
         }
         let times: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
-        let m = match roll_with(&body, start, &times, &ask.with_pose(true), || true) {
+        let m = match roll_with(&body, start, &times, &ask.with_pose(), || true) {
             Ok(m) => m.unwrap(),
             Err(error) => panic!("{error}: {body:?} {start:?} {ask:?}"),
         };
@@ -156,7 +157,7 @@ fn round_ends_pass_their_poles_however_near_without_an_end_and_without_a_loss_of
         let path = m.path.as_ref().unwrap();
         let whole = |i: usize| {
             let up = path.aloft.get(i).copied().unwrap_or_default();
-            let ([u, v], AboveTable { height, lift, .. }) = (path.slip[i], up);
+            let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) = (path.slip[i], up);
             let struck: f64 =
                 path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
             energy(&body, &m.states[i], [u, v, lift], height) + path.dissipated[i] + struck
@@ -187,7 +188,7 @@ fn dry_friction_along_the_contour_takes_energy_also_from_a_ball_that_passes_besi
         };
         let far = run(1e-3, &ask);
         for near in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
-            for ask in [ask, ask.with_pose(true)] {
+            for ask in [ask, ask.with_pose()] {
                 let m = run(near, &ask);
                 let lost = &m.path.as_deref().unwrap().work_lost;
                 assert!(lost.is_sorted(), "{near} {tol}: {lost:?}");

@@ -15,7 +15,7 @@ use spincyl::ensemble::{Job, MotionOutput, MotionStarts, Summary, roll};
 use spincyl::loss::{Law, Losses, Resistance};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{AboveTable, Ask, Ending, Method, Motion, Start, roll_with};
-use spincyl::{Body, Error, State, steady};
+use spincyl::{Body, Error, Slip, State, steady};
 use std::f64::consts::FRAC_PI_2;
 
 const STILL: State = State { theta: FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
@@ -41,8 +41,8 @@ fn a_struck_ball_slips_as_without_resistance_and_then_stops_as_a_ball_that_rolls
     for (v, mu, delta) in [(3.0, 0.2, 0.01), (0.4, 0.05, 0.002), (20.0, 0.6, 0.1), (1.0, 0.2, 0.27)] {
         let (rolls, brakes) = (2.0 * v / (7.0 * mu), 5.0 / 7.0 * delta);
         let stops = rolls + v / delta;
-        let start = Start::from(STILL).with_slip([0.0, v]);
-        let ask = only_rolling(Friction::coulomb(mu), arm(delta)).with_pose(true);
+        let start = Start::from(STILL).with_slip(Slip::new(0.0, v));
+        let ask = only_rolling(Friction::coulomb(mu), arm(delta)).with_pose();
         let times = [0.0, 0.4 * rolls, 0.9 * rolls, rolls + 0.3 * v / delta, 1.1 * stops];
         let m = moved(&ball(), start, &ask, &times);
         let path = path_of(&m);
@@ -64,7 +64,7 @@ fn a_struck_ball_slips_as_without_resistance_and_then_stops_as_a_ball_that_rolls
                 (begun - brakes * since, 12.0 * v * v / (49.0 * mu) + (begun - 0.5 * brakes * since) * since)
             };
             let at = m.poses.as_ref().unwrap()[i].contact_point;
-            let found = path.slip[i][1] + m.states[i].w3;
+            let found = path.slip[i].u_2 + m.states[i].w3;
             assert!((found - speed).abs() < 2e-12 * v, "{t}: {found} {speed}");
             assert!((at.x.hypot(at.y) - way).abs() < 2e-12 * (1.0 + way), "{t}: {at:?} {way}");
         }
@@ -108,7 +108,7 @@ fn drawn_starts(count: usize) -> Vec<Drawn> {
             losses = losses.with(Law::Drilling, 0.01 * r());
         }
         let mu = 10f64.powf(-1.5 + 1.3 * r());
-        let start = Start::from(y.kicked(0.1 * r())).with_slip(slip);
+        let start = Start::from(y.kicked(0.1 * r())).with_slip(slip.into());
         all.push(Drawn { body, start, mu, losses });
     }
     all
@@ -148,7 +148,7 @@ fn each_phase_is_that_of_a_table_on_which_it_never_ends() {
                 Kind::Rolling => (Ask::on(Table::Rolling { mu: f64::INFINITY }).with_losses(losses), 1),
                 _ => continue,
             };
-            let begins = if k == 1 { begins.with_slip([0.0; 2]) } else { begins };
+            let begins = if k == 1 { begins.with_slip(Slip::default()) } else { begins };
             let alone = moved(&body, begins, &other, &parts);
             for i in 1..parts.len().min(alone.states.len()) {
                 let allowed = 1e-9 + 100.0 * (m.error + at.error + alone.error);
@@ -186,7 +186,7 @@ fn many_motions_are_the_single_ones() {
         column(&|x| x.start.state.w2),
         column(&|x| x.start.state.w3),
     ];
-    let slips = [0, 1].map(|k| column(&|x: &Drawn| x.start.slip[k]));
+    let slips = [0, 1].map(|k| column(&|x: &Drawn| <[f64; 2]>::from(x.start.slip)[k]));
     let mu = column(&|x| x.mu);
     let columns = core::array::from_fn(|k| column(&|x: &Drawn| x.losses.coefficient(Law::ALL[k])));
     let bodies = body_columns(bodies.each_ref().map(Vec::as_slice));
@@ -229,7 +229,7 @@ fn a_body_that_never_slips_does_not_know_when_its_resistance_acts() {
     let y = steady::state(&coin, 0.7).unwrap().kicked(0.05);
     let losses = arm(2e-3).with(Law::AirLinear, 1e-3);
     for table in [Table::Rolling { mu: f64::INFINITY }, Friction::coulomb(50.0).into()] {
-        let ask = Ask::on(table).with_losses(losses).with_pose(true).with_force(true);
+        let ask = Ask::on(table).with_losses(losses).with_pose().with_force();
         let [always, only] = [Resistance::Always, Resistance::WhileRolling]
             .map(|when| moved(&coin, y, &ask.with_resistance(when), &[0.0, 1.0, 5.0, 20.0]));
         assert_eq!(always, only);
@@ -240,7 +240,7 @@ fn a_body_that_never_slips_does_not_know_when_its_resistance_acts() {
 #[test]
 fn a_body_that_lands_hops_and_rolls_keeps_its_energy_account() {
     let start = Start::from(State { theta: 1.0, w1: 0.5, w2: 0.2, w3: -0.4 })
-        .with_slip([0.3, 1.0])
+        .with_slip(Slip::new(0.3, 1.0))
         .with_aloft(AboveTable::new(0.3, 0.0));
     let (losses, times) = (arm(0.02), [0.0, 1.0, 3.0, 6.0, 12.0]);
     let ask = only_rolling(Friction::coulomb(0.3), losses).with_restitution(0.5);
@@ -260,7 +260,7 @@ fn a_resistance_beyond_what_friction_can_hold_is_refused() {
     let rolls = State { w3: 1.0, ..STILL };
     let error = roll_with(&ball(), rolls, &[1.0], &ask, || true).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { name: "delta", value: 0.1, .. }), "{error}");
-    let struck = moved(&ball(), Start::from(STILL).with_slip([0.0, 1.0]), &ask, &[0.0, 50.0]);
+    let struck = moved(&ball(), Start::from(STILL).with_slip(Slip::new(0.0, 1.0)), &ask, &[0.0, 50.0]);
     let event = struck.event.unwrap();
     assert_eq!(event.ending, Ending::Painleve);
     assert!((event.time - 2.0 / (7.0 * 0.05)).abs() < 1e-10, "{}", event.time);

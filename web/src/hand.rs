@@ -1,7 +1,7 @@
 //! The calls for states in which a body leaves the hand.
 
 use crate::{Answer, Desk};
-use spincyl::{State, throw};
+use spincyl::{Slip, State, throw};
 
 impl Desk {
     /// The start of a flicked tube, from the impulse of the finger, its angle, and the friction of finger and table.
@@ -20,7 +20,7 @@ impl Desk {
         Ok(())
     }
 
-    fn tell_start(&mut self, y: &State, slip: [f64; 2]) {
-        self.out.extend([y.theta, y.w1, y.w2, y.w3, slip[0], slip[1]]);
+    fn tell_start(&mut self, y: &State, slip: Slip) {
+        self.out.extend([y.theta, y.w1, y.w2, y.w3, slip.u_h, slip.u_2]);
     }
 }

@@ -9,7 +9,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::path::Kind;
 use spincyl::motion::{self, Event};
 use spincyl::pose::Pose;
-use spincyl::{Body, Contact, State};
+use spincyl::{Body, Contact, Slip, State};
 
 /// The largest number of rows, which is more than a page shows.
 pub(crate) const MOST: usize = 20_000;
@@ -23,7 +23,7 @@ pub(crate) struct Row {
     pub y: State,
     pub pose: Pose,
     pub force: Force,
-    pub slip: [f64; 2],
+    pub slip: Slip,
     pub kind: Kind,
     pub energy: f64,
     pub lost: f64,
@@ -51,7 +51,7 @@ pub(crate) enum Kept {
 #[cfg_attr(not(feature = "friction"), allow(dead_code))]
 pub(crate) struct Wish {
     pub body: Body,
-    pub start: (State, [f64; 2]),
+    pub start: (State, Slip),
     pub table: Table,
     pub t: f64,
     pub n: usize,
@@ -114,7 +114,14 @@ impl Desk {
             TableKind::Viscous => Friction::Viscous { c: mu }.into(),
             _ => Table::Smooth,
         };
-        let wish = Wish { body, start: (State { theta, w1, w2, w3 }, [u_h, u_2]), table, t, n, restitution };
+        let wish = Wish {
+            body,
+            start: (State { theta, w1, w2, w3 }, Slip::new(u_h, u_2)),
+            table,
+            t,
+            n,
+            restitution,
+        };
         if kind.rubs() || !self.losses.is_none() || restitution.is_some() || self.slope[0] != 0.0 {
             #[cfg(feature = "friction")]
             return self.walk(&wish);
@@ -152,7 +159,7 @@ impl Desk {
         for Row { t, y, pose, force, slip, kind, energy, lost, rim, .. } in self.rows(n, from, to)? {
             self.out.extend([t, y.theta, y.w1, y.w2, y.w3, pose.phi.radians(), pose.psi.radians()]);
             self.out.extend([pose.contact_point.x, pose.contact_point.y]);
-            self.out.extend([force.normal, force.friction_coefficient(), slip[0], slip[1], energy]);
+            self.out.extend([force.normal, force.friction_coefficient(), slip.u_h, slip.u_2, energy]);
             self.out.extend([f64::from(kind as u8), lost, pose.height, f64::from(rim)]);
         }
         Ok(())
@@ -181,7 +188,7 @@ impl Desk {
                 let row = |t: f64| {
                     let (y, pose) = (swing.state(t), swing.pose(t)?);
                     let (force, energy) = (force(*contact, body, &y), contact.energy(body, &y));
-                    let (slip, kind) = ([0.0; 2], Kind::Rolling);
+                    let (slip, kind) = (Slip::default(), Kind::Rolling);
                     Some(Row { t, y, pose, force, slip, kind, energy, lost: 0.0, lift: 0.0, rim: 0 })
                 };
                 Ok(times(from, to, n).take_while(|t| t <= until).map_while(row).collect())

@@ -71,7 +71,7 @@ impl Desk {
 impl Walked {
     /// Whether the body has circles that are not equal.
     fn is_uneven(&self) -> bool {
-        self.body.borders().iter().any(|[theta, _]| *theta != FRAC_PI_2)
+        self.body.borders().iter().any(|border| border.theta != FRAC_PI_2)
     }
 
     /// Rows at equally spaced times, up to the end of the motion.

@@ -9,7 +9,7 @@
 //! with g of the wide one. There the friction is Z |g|/J per weight; with less friction the body slides away from the apex
 //! before that end rises.
 
-use super::{Body, Border, Circle, landing_angle};
+use super::{Body, Border, Circle, CircleBorder, landing_angle};
 
 /// The rolling of a body on two neighbouring circles round its apex, the point where its axis meets the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ impl Body {
     /// The rolling of the body round its apex on the circles `k` and `k + 1`; None if the body passes from one to the other
     /// without an impact, or if there is no circle `k + 1`.
     pub fn apex(&self, k: usize) -> Option<Apex> {
-        let [theta, span] = *self.borders().get(k)?;
+        let CircleBorder { theta, span } = *self.borders().get(k)?;
         let circles = self.circles();
         let angle = landing_angle(theta);
         let border = Border::between([circles[k], circles[k + 1]].map(Circle::rim), angle);
@@ -62,7 +62,7 @@ impl Body {
     }
 
     fn rests_on(&self, k: usize) -> bool {
-        let (circles, angle) = (self.circles(), landing_angle(self.borders()[k][0]));
+        let (circles, angle) = (self.circles(), landing_angle(self.borders()[k].theta));
         let [low, high] = [k, k + 1].map(|k| circles[k].rim().lever(angle));
         low > 0.0 && high < 0.0
     }

@@ -13,13 +13,29 @@ use super::{Body, Circle, Rim};
 use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
+/// Where one circle of a body follows another, while the body leans on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct CircleBorder {
+    /// The inclination at which both circles touch the table, in radians.
+    pub theta: f64,
+    /// The distance of both points of contact there, in R; 0 at a smooth joint.
+    pub span: f64,
+}
+
 impl Body {
-    /// The inclinations at which the body passes from one circle to the next, in radians, and the distance of both points of
-    /// contact there, in R, which is 0 if the body passes without an impact.
-    pub fn borders(&self) -> Vec<[f64; 2]> {
+    /// The borders at which the body passes from one circle to the next, in the order of their inclinations.
+    ///
+    /// ```
+    /// let can = spincyl::Body::solid(2.0)?; // it lies on both rims at pi/2
+    /// let border = can.borders()[0];
+    /// assert_eq!((border.theta, border.span), (std::f64::consts::FRAC_PI_2, 4.0));
+    /// # Ok::<(), spincyl::Error>(())
+    /// ```
+    pub fn borders(&self) -> Vec<CircleBorder> {
         match &self.row {
-            Some(row) => row.borders().collect(),
-            None if self.has_two_rims() => vec![[FRAC_PI_2, 2.0 * self.ell]],
+            Some(row) => row.borders().map(|[theta, span]| CircleBorder { theta, span }).collect(),
+            None if self.has_two_rims() => vec![CircleBorder { theta: FRAC_PI_2, span: 2.0 * self.ell }],
             None => Vec::new(),
         }
     }

@@ -38,6 +38,7 @@ use crate::error::{Error, within};
 use crate::methods::search;
 use crate::numbers::{Real, SinCos, Sum, sincos};
 pub use apex::Apex;
+pub use circles::CircleBorder;
 pub(crate) use circles::View;
 use core::f64::consts::{FRAC_PI_2, PI};
 pub use profile::Circle;

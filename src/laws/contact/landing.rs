@@ -28,12 +28,12 @@
 //!
 //! ```
 //! use spincyl::contact::landing::{Outcome, land};
-//! use spincyl::{Body, State};
+//! use spincyl::{Body, Slip, State};
 //!
 //! // A can that falls on its side, on a table without friction, stays there.
 //! let can = Body::solid(2.0)?;
 //! let falls = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: -0.1, w3: 0.0 };
-//! let landed = land(&can, &falls, [0.0; 2], 0.0)?;
+//! let landed = land(&can, &falls, Slip::default(), 0.0)?;
 //! assert_eq!(landed.outcome, Outcome::Lies);
 //! assert!(landed.state.w2.abs() < 1e-15 && landed.lost > 0.0);
 //! # Ok::<(), spincyl::Error>(())
@@ -45,7 +45,7 @@ use crate::error::{Error, within};
 use crate::laws::body::{Body, Border, CircleDown};
 use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::Losses;
-use crate::laws::state::{State, drilling_of};
+use crate::laws::state::{Slip, State, drilling_of};
 use crate::numbers::larger_or_nan;
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -69,8 +69,8 @@ pub struct Landed {
     pub outcome: Outcome,
     /// The state, which refers to the rim on which the body continues; if the body lies on both, to the previous rim.
     pub state: State,
-    /// The slip of the rim to which `state` refers, along e_h and along e2, in sqrt(g R).
-    pub slip: [f64; 2],
+    /// The slip of the rim to which `state` refers, in sqrt(g R).
+    pub slip: Slip,
     /// Energy lost to the impact, in M g R.
     pub lost: f64,
 }
@@ -99,8 +99,8 @@ pub(crate) fn equal_rims(body: &Body) -> Result<(), Error> {
 ///
 /// Fh is the component of the friction along e_h, at the lower rim, if this rim alone carries the body. At a rim at
 /// rest Fh is the friction that rolling needs, at most `mu`, which then is the static coefficient.
-pub fn launch(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> f64 {
-    launch_on(body, 0, y, slip, mu)
+pub fn launch(body: &Body, y: &State, slip: Slip, mu: f64) -> f64 {
+    launch_on(body, 0, y, slip.pair(), mu)
 }
 
 /// The launch number (K - Z Fh)/g of a body that lies on two circles, of which this one alone carries it; above 1 the
@@ -120,7 +120,7 @@ fn launch_on(body: &Body, circle: usize, y: &State, slip: [f64; 2], mu: f64) -> 
 /// Whether a body at theta = pi/2 and w2 = 0 rises on its lower rim; otherwise the body stays on its side.
 ///
 /// The criterion holds for every mu below (I1 + ell^2)/ell, where the contact force is unique.
-pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
+pub fn rises(body: &Body, y: &State, slip: Slip, mu: f64) -> bool {
     launch(body, y, slip, mu) > 1.0
 }
 
@@ -128,9 +128,9 @@ pub fn rises(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> bool {
 /// that end rises.
 ///
 /// With friction, the forces are NaN where a rim does not slip, since its friction is not known from the state alone.
-pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
+pub fn normals(body: &Body, y: &State, slip: Slip, mu: f64) -> [f64; 2] {
     let lying = Lying::on(body, &Friction::coulomb(mu), &Losses::NONE);
-    lying.slipping([y.w1, y.w3, slip[0], slip[1]]).force.map(|[normal, ..]| normal)
+    lying.slipping([y.w1, y.w3, slip.u_h, slip.u_2]).force.map(|[normal, ..]| normal)
 }
 
 /// The plastic landing of the other rim at theta = pi/2, with w2 <= 0, on a table with the friction `mu`.
@@ -141,10 +141,10 @@ pub fn normals(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> [f64; 2] {
 /// # Errors
 /// `OutOfRange` for a body without two equal rims, an inclination other than theta_end, a w2 outside [-1e100, 0],
 /// another speed beyond 1e100, and a `mu` outside [0, 1e100]; `Landing` for two consistent outcomes, or none.
-pub fn land(body: &Body, y: &State, slip: [f64; 2], mu: f64) -> Result<Landed, Error> {
+pub fn land(body: &Body, y: &State, slip: Slip, mu: f64) -> Result<Landed, Error> {
     two_rims(body)?;
     within("mu", mu, (0.0, 1e100), "0 <= mu <= 1e100")?;
-    land_at(body, y, (slip, 0.0), &Friction::coulomb(mu), &())
+    land_at(body, y, (slip.pair(), 0.0), &Friction::coulomb(mu), &())
 }
 
 /// The plastic landing with any law of friction, also for a body whose lower rim comes down at the same time, at the
@@ -173,7 +173,7 @@ pub(crate) fn land_at(
     let end = |outcome, Pushed { y, slips: [slip, there], lift, .. }: Pushed| {
         let lost = before - energy(&landing.border, body, &y, slip, lift);
         let (state, slip) = if outcome == Outcome::Changes { seen_from_next(&y, there) } else { (y, slip) };
-        Landed { outcome, state, slip, lost }
+        Landed { outcome, state, slip: slip.into(), lost }
     };
     let mu = |[u, v]: [f64; 2]| coefficient(own, friction.strength(), || u.hypot(v));
     Ok(match landing.compressed()? {
@@ -305,9 +305,11 @@ fn seen_from_next(y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
 /// The state and the slip of a body on its side, referred to its other rim, which then is the lower one.
 ///
 /// phi becomes phi + pi, psi becomes -psi, and the contact point moves by 2 ell against e_h.
-pub fn mirrored(body: &Body, y: &State, slip: [f64; 2]) -> (State, [f64; 2]) {
+pub fn mirrored(body: &Body, y: &State, slip: Slip) -> (State, Slip) {
     let border = body.border();
-    seen_from_next(y, [slip[0], slip[1] - border.span() * drilling_of(border.angle, y.w1, y.w3)])
+    let there = [slip.u_h, slip.u_2 - border.span() * drilling_of(border.angle, y.w1, y.w3)];
+    let (state, slip) = seen_from_next(y, there);
+    (state, slip.into())
 }
 
 /// Kinetic energy at theta_end, from the state, and the slip and the vertical velocity of the circle that carries.

@@ -23,13 +23,13 @@
 //!
 //! ```
 //! use spincyl::contact::slip::{Friction, derivative};
-//! use spincyl::{Body, State, loss::Losses};
+//! use spincyl::{Body, Slip, State, loss::Losses};
 //!
 //! // A hoop on edge whose contact point slips: friction mu N slows down the slip at twice the rate mu.
 //! let hoop = Body::tube(0.0, 1.0)?;
 //! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-//! let (_, slows, force) = derivative(&hoop, &state, [0.0, 5.0], &Friction::coulomb(0.25), &Losses::NONE);
-//! assert!((force.along + 0.25).abs() < 1e-14 && (slows[1] + 0.5).abs() < 1e-14);
+//! let (_, slows, force) = derivative(&hoop, &state, Slip::new(0.0, 5.0), &Friction::coulomb(0.25), &Losses::NONE);
+//! assert!((force.along + 0.25).abs() < 1e-14 && (slows.u_2 + 0.5).abs() < 1e-14);
 //! # Ok::<(), spincyl::Error>(())
 //! ```
 
@@ -39,7 +39,7 @@ use crate::error::{Error, within};
 use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couple, Couples, Holds, Law, Losses, OwnCouple, rolling_couple_needed};
 use crate::laws::newton::{self, Force};
-use crate::laws::state::{State, drilling_of, rolling_of};
+use crate::laws::state::{Slip, State, drilling_of, rolling_of};
 use crate::numbers::{Real, here};
 
 /// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
@@ -559,10 +559,10 @@ pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
-/// Horizontal velocity of the centre of a body that slips with u = (along e_h, along e2), in the same directions.
-/// With u = 0 the contact point is at rest.
-pub fn centre_velocity(body: &Body, y: &State, slip: [f64; 2]) -> [f64; 2] {
-    Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip)
+/// Horizontal velocity of the centre of a body that slips, along e_h and along e2. Without a slip the contact point is at
+/// rest.
+pub fn centre_velocity(body: &Body, y: &State, slip: Slip) -> [f64; 2] {
+    Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip.pair())
 }
 
 /// Vertical velocity of the centre of a body whose lowest point stays on the table.
@@ -570,9 +570,9 @@ pub fn centre_rise(body: &Body, y: &State) -> f64 {
     body.shape().rim.lever(y.theta.sin_cos()) * y.w2
 }
 
-/// Kinetic and potential energy of a body that slips with u = (along e_h, along e2), in M g R.
-pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
-    Slipping::of(&body.shape(), 1.0, true).energy(y, slip)
+/// Kinetic and potential energy of a body that slips, in M g R.
+pub fn energy(body: &Body, y: &State, slip: Slip) -> f64 {
+    Slipping::of(&body.shape(), 1.0, true).energy(y, slip.pair())
 }
 
 /// Time derivative of (theta, w1, w2, w3) and of the slip, and the contact force, of a body that slips.
@@ -581,12 +581,12 @@ pub fn energy(body: &Body, y: &State, slip: [f64; 2]) -> f64 {
 pub fn derivative(
     body: &Body,
     y: &State,
-    slip: [f64; 2],
+    slip: Slip,
     friction: &Friction,
     losses: &Losses,
-) -> (State, [f64; 2], Force) {
+) -> (State, Slip, Force) {
     let slipping = Slipping::with_losses_on(body, friction, losses);
-    let (at, ..) = slipping.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip);
+    let (at, ..) = slipping.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip.pair());
     let ([w1, w2, w3], [normal, along, across]) = (at.w, at.force);
-    (State { theta: -y.w2, w1, w2, w3 }, at.u, Force { normal, along, across })
+    (State { theta: -y.w2, w1, w2, w3 }, at.u.into(), Force { normal, along, across })
 }

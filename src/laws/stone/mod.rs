@@ -19,6 +19,7 @@ pub(crate) mod law;
 mod state;
 
 use super::contact::Contact;
+use super::state::Slip;
 use crate::error::{Error, within};
 use crate::numbers::vector::{Symmetric, cross, dot};
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -245,10 +246,11 @@ impl Ellipsoid {
 
     /// The slip of the contact point if the centre of mass has the horizontal velocity `centre`. Both are along the axes x
     /// and y of the laboratory in which the stone is turned from upright by the smallest angle.
-    pub fn slip(&self, y: &StoneState, centre: [f64; 2]) -> [f64; 2] {
+    pub fn slip(&self, y: &StoneState, centre: [f64; 2]) -> Slip {
         let lab = law::laboratory(y.orientation());
         let turned = cross(y.w, self.lowest_point(y.vertical));
-        core::array::from_fn(|i| centre[i] + dot(lab[i], turned))
+        let [x, y] = core::array::from_fn(|i| centre[i] + dot(lab[i], turned));
+        Slip::new(x, y)
     }
 
     /// Kinetic and potential energy in M g a of a stone that rolls without slip, or on a smooth table of a stone whose

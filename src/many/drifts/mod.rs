@@ -15,6 +15,7 @@ pub use columns::{Centre, DriftOutput, DriftStarts, NO_DRIFT as INVALID};
 use super::columns::{RowBlock, blocks};
 use super::threads::share;
 use crate::error::{Error, room, spare};
+use crate::laws::state::State;
 use crate::motions::drift::{Drift, DriftState};
 use crate::numbers::{LANES, level};
 
@@ -104,32 +105,58 @@ pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Question {
-    /// The time, in sqrt(R/g), at which the drift reaches an inclination: one number.
+    /// The time at which the drift reaches an inclination: [`DriftAnswer::time`].
     Time,
-    /// The state at a time: theta, w1, w3, Omega, and the coefficient of friction that is needed.
+    /// The state at a time: all but [`DriftAnswer::time`].
     At,
-    /// The time, in sqrt(R/g), until which rolling is stable: one number.
+    /// The time until which rolling is stable: [`DriftAnswer::time`].
     Stable,
 }
 
-/// Number of values that [`ask`] writes for each element.
-pub const WIDTH: usize = 5;
+/// What [`ask`] finds of a drift. Numbers that the question does not ask for, and those that do not exist, are NaN.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct DriftAnswer {
+    /// A time, in sqrt(R/g).
+    pub time: f64,
+    /// The inclination, in radians.
+    pub theta: f64,
+    /// The angular velocity along e1, in sqrt(g/R).
+    pub w1: f64,
+    /// The angular velocity along the symmetry axis, in sqrt(g/R).
+    pub w3: f64,
+    /// The precession Omega, in sqrt(g/R).
+    pub precession: f64,
+    /// The coefficient of friction that the drift needs.
+    pub friction_coefficient: f64,
+}
+
+impl DriftAnswer {
+    /// No number: what an array of answers is filled with at first.
+    pub const NONE: Self = Self {
+        time: f64::NAN,
+        theta: f64::NAN,
+        w1: f64::NAN,
+        w3: f64::NAN,
+        precession: f64::NAN,
+        friction_coefficient: f64::NAN,
+    };
+}
 
 /// Computes one quantity of many drifts: for each index k the quantity of drift `of[k]`, at the inclination or time
-/// `x[k]`. Writes [`WIDTH`] numbers for each k, with NaN where there is no value. Elements with the same drift should follow
+/// `x[k]`, in radians or sqrt(R/g), into `out[k]`. Elements with the same drift should follow
 /// one another, so that the drift is computed only once.
 ///
 /// # Errors
 /// `Memory` if the memory does not suffice.
 ///
 /// # Panics
-/// The function panics if `of` and `x` differ in length, if `out` does not have [`WIDTH`] numbers for each, or if
-/// columns differ in length.
+/// The function panics if `of`, `x` and `out` differ in length, or if columns differ in length.
 pub fn ask(
     starts: &DriftStarts<'_>,
     question: Question,
     (of, x): (&[usize], &[f64]),
-    out: &mut [f64],
+    out: &mut [DriftAnswer],
     threads: usize,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -141,40 +168,35 @@ fn ask_compiled_once(
     starts: &DriftStarts<'_>,
     question: Question,
     (of, x): (&[usize], &[f64]),
-    out: &mut [f64],
+    out: &mut [DriftAnswer],
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     assert!(starts.fit(starts.len()), "columns of different lengths");
-    assert!(of.len() == x.len() && out.len() == WIDTH * x.len(), "an array does not fit");
+    assert!(of.len() == x.len() && out.len() == x.len(), "an array does not fit");
     spare()?;
     let mut blocks = room(x.len().div_ceil(64))?;
-    for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64 * WIDTH)) {
+    for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64)) {
         blocks.push((of, x, out));
     }
     Ok(share(blocks, threads, go_on, |(of, x, out), still| {
         let mut known: Option<(usize, Option<Drift>)> = None;
-        for ((i, x), out) in of.iter().zip(x).zip(out.chunks_mut(WIDTH)) {
+        for ((i, x), out) in of.iter().zip(x).zip(out) {
             if known.as_ref().is_none_or(|(k, _)| k != i) {
                 if !still() {
                     return;
                 }
                 known = Some((*i, single(starts, *i).ok()));
             }
-            out.fill(f64::NAN);
+            *out = DriftAnswer::NONE;
             let Some((_, Some(drift))) = &known else { continue };
             match question {
-                Question::Time => out[0] = drift.time(*x),
-                Question::Stable => out[0] = drift.stable_until(),
+                Question::Time => out.time = drift.time(*x),
+                Question::Stable => out.time = drift.stable_until(),
                 Question::At => {
                     if let Some(DriftState { state, precession, friction_coefficient }) = drift.at(*x) {
-                        out.copy_from_slice(&[
-                            state.theta,
-                            state.w1,
-                            state.w3,
-                            precession,
-                            friction_coefficient,
-                        ]);
+                        let State { theta, w1, w3, .. } = state;
+                        *out = DriftAnswer { theta, w1, w3, precession, friction_coefficient, ..*out };
                     }
                 }
             }

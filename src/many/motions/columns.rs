@@ -225,7 +225,7 @@ impl<'a> MotionStarts<'a> {
         let aloft = self.aloft.map(|[height, lift]| AboveTable::new(at(height, i), at(lift, i)));
         let start = Start::from(self.state(i)).with_aloft(aloft).with_heading(self.slope(i)[1]);
         match self.slips {
-            Some(slips) => start.with_slip(slips.map(|x| at(x, i))),
+            Some(slips) => start.with_slip(slips.map(|x| at(x, i)).into()),
             None if table.rubs() => start.at_rest_on_face(body),
             None => start,
         }

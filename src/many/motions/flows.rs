@@ -42,11 +42,11 @@ fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), 
     out.refuse(i, times.len());
     out.tell(i, Answer::Flow, found.motion.ending() as u8, found.motion.error);
     for (j, (y, slip)) in found.motion.states.iter().zip(&found.path.slip).enumerate() {
-        out.put_state(i * times.len() + j, y, *slip);
+        out.put_state(i * times.len() + j, y, slip.pair());
     }
     let path = &found.path;
     if let Some((y, slip, rim)) = found.last() {
-        out.put_last(i, &y, slip);
+        out.put_last(i, &y, slip.pair());
         out.put_rims(i * times.len(), &path.rims, (i, rim));
         out.put(Summary::AxisUp, i, axis_up(body, &y, rim));
     }

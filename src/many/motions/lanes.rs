@@ -412,7 +412,7 @@ mod tests {
         let exact = Job::new(&times).with_ask(Ask::on(table));
         let stepped = exact.with_ask(exact.ask.with_method(Method::Step(0.01)));
         let mut all = Vec::new();
-        let beyond = exact.with_ask(exact.ask.with_beyond(true));
+        let beyond = exact.with_ask(exact.ask.with_beyond());
         let limited = exact.with_ask(exact.ask.with_table(Table::of(table, 0.3)));
         for job in [stepped, exact, beyond, limited] {
             let mut last: [Vec<f64>; 4] = core::array::from_fn(|_| vec![7.0; COUNT]);

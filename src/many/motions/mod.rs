@@ -94,10 +94,10 @@ impl<'a> Job<'a> {
         Self { tol, ..self }
     }
 
-    /// Returns this job, with or without estimates of the errors.
+    /// Returns this job without estimates of the errors.
     #[must_use]
-    pub fn with_errors(self, errors: bool) -> Self {
-        Self { errors, ..self }
+    pub fn without_errors(self) -> Self {
+        Self { errors: false, ..self }
     }
 
     fn span(&self) -> f64 {
@@ -125,7 +125,7 @@ impl<'a> Job<'a> {
 
     /// This job for phases of rolling: with a law of friction no motion continues past an event.
     fn of_rolling(&self) -> Self {
-        self.with_ask(self.ask.with_beyond(self.ask.beyond && !self.ask.table.rubs()))
+        self.with_ask(Ask { beyond: self.ask.beyond && !self.ask.table.rubs(), ..self.ask })
     }
 
     /// Returns an error for options that are invalid for every motion.

@@ -40,7 +40,7 @@ fn starts(kick: f64) -> Starts {
 fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]> {
     let starts = MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     let times = [20.0];
-    let job = Job { tol, ..Job::new(&times).with_ask(Ask::default().with_beyond(beyond)) };
+    let job = Job { tol, ..Job::new(&times).with_ask(Ask { beyond, ..Ask::default() }) };
     let work = MotionBlock { starts: &starts, job: &job, first: 0, since: None };
     let (mut error, mut method, mut status) = (vec![0.0; COUNT], vec![0; COUNT], vec![0; COUNT]);
     let mut out = MotionOutput::new(&mut error, &mut method, &mut status);

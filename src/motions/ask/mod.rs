@@ -14,7 +14,7 @@ use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::contact::{Face, ImpactLaw, Table};
 use crate::laws::loss::{Law, Losses, Resistance};
 use crate::laws::pose::{axes, euler_angles};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::methods::SHORT_CODE;
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -42,13 +42,16 @@ pub enum Method {
     Tolerance(f64),
 }
 
-/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name.
+/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name. For an option that
+/// is on or off the method turns it on; one that is known only at run time is a field.
 ///
 /// ```
 /// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
 ///
-/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose(true);
+/// let ask = Ask::on(Friction::coulomb(0.3)).with_losses(Losses::of(Law::Drilling, 1e-3)).with_pose();
 /// assert!(ask.pose && !ask.force);
+/// let mut watched = ask;
+/// watched.force = std::env::args().any(|word| word == "--force");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
@@ -126,13 +129,13 @@ impl Ask {
     /// use spincyl::contact::Friction;
     /// use spincyl::loss::{Law, Losses, Resistance};
     /// use spincyl::motion::{Ask, Start, roll_with};
-    /// use spincyl::{Body, State};
+    /// use spincyl::{Body, Slip, State};
     ///
     /// // A ball that is struck through its centre, with mu = 0.2, rolls after 2 v/(7 mu), whatever resists its rolling.
     /// let (ball, still) = (Body::ball(0.0, 0.4, 0.4)?, State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 });
     /// let losses = Losses::of(Law::RollingResistance, 0.01);
     /// let ask = Ask::on(Friction::coulomb(0.2)).with_losses(losses).with_resistance(Resistance::WhileRolling);
-    /// let motion = roll_with(&ball, Start::from(still).with_slip([0.0, 3.0]), &[10.0], &ask, || true)?.unwrap();
+    /// let motion = roll_with(&ball, Start::from(still).with_slip(Slip::new(0.0, 3.0)), &[10.0], &ask, || true)?.unwrap();
     /// assert!((motion.path.unwrap().phases[1].time - 2.0 * 3.0 / (7.0 * 0.2)).abs() < 1e-12);
     /// # Ok::<(), spincyl::Error>(())
     /// ```
@@ -147,10 +150,10 @@ impl Ask {
         Self { method, ..self }
     }
 
-    /// Returns these options, with or without a continuation past events.
+    /// Returns these options, with a continuation past events.
     #[must_use]
-    pub fn with_beyond(self, beyond: bool) -> Self {
-        Self { beyond, ..self }
+    pub fn with_beyond(self) -> Self {
+        Self { beyond: true, ..self }
     }
 
     /// Returns these options with this coefficient of restitution, or with `None`.
@@ -183,10 +186,10 @@ impl Ask {
         Self { slope, ..self }
     }
 
-    /// Returns these options, with or without an end at rolling.
+    /// Returns these options, with an end at rolling.
     #[must_use]
-    pub fn with_stop_at_rolling(self, stop_at_rolling: bool) -> Self {
-        Self { stop_at_rolling, ..self }
+    pub fn with_stop_at_rolling(self) -> Self {
+        Self { stop_at_rolling: true, ..self }
     }
 
     /// Returns these options with this largest number of evaluations, or with `None`.
@@ -195,16 +198,16 @@ impl Ask {
         Self { max_evaluations: most.into(), ..self }
     }
 
-    /// Returns these options, with poses or without them.
+    /// Returns these options, with poses.
     #[must_use]
-    pub fn with_pose(self, pose: bool) -> Self {
-        Self { pose, ..self }
+    pub fn with_pose(self) -> Self {
+        Self { pose: true, ..self }
     }
 
-    /// Returns these options, with contact forces or without them.
+    /// Returns these options, with contact forces.
     #[must_use]
-    pub fn with_force(self, force: bool) -> Self {
-        Self { force, ..self }
+    pub fn with_force(self) -> Self {
+        Self { force: true, ..self }
     }
 
     /// Whether some rolling resistance acts only while the contact point does not slip.
@@ -273,11 +276,9 @@ impl From<AboveTable> for [f64; 2] {
 pub struct Start<S = State> {
     /// The initial state.
     pub state: S,
-    /// The initial slip of the contact point along the horizontal vector e_h = cos(theta) e1 - sin(theta) e3 and along e2,
-    /// in sqrt(g R); for a stone along x and y
-    /// ([`stone::roll`](super::stone::roll)).
+    /// The initial slip of the contact point, in sqrt(g R); for a stone see [`stone::roll`](super::stone::roll), too.
     #[cfg_attr(feature = "serde", serde(default))]
-    pub slip: [f64; 2],
+    pub slip: Slip,
     /// The initial time, in sqrt(R/g).
     #[cfg_attr(feature = "serde", serde(default))]
     pub time: f64,
@@ -295,14 +296,14 @@ pub struct Start<S = State> {
 impl<S> From<S> for Start<S> {
     /// The state at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
-        Self { state, slip: [0.0; 2], time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
+        Self { state, slip: Slip::default(), time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
     }
 }
 
 impl<S> Start<S> {
     /// Returns this start with this slip.
     #[must_use]
-    pub fn with_slip(self, slip: [f64; 2]) -> Self {
+    pub fn with_slip(self, slip: Slip) -> Self {
         Self { slip, ..self }
     }
 
@@ -351,7 +352,8 @@ impl Start {
             return self;
         }
         let told = self.seen_on(body);
-        let slip = centre_velocity(&told.0, &told.1.state, [0.0; 2]).map(|v| 0.0 - v);
+        let slip = centre_velocity(&told.0, &told.1.state, Slip::default()).map(|v| 0.0 - v);
+        let slip = Slip::from(slip);
         self.with_slip(if told.0.view().over { slip.map(|u| 0.0 - u) } else { slip })
     }
 
@@ -381,12 +383,12 @@ impl Start {
     ///
     /// ```
     /// use spincyl::nalgebra::{UnitQuaternion, Vector3};
-    /// use spincyl::{Body, motion::Start};
+    /// use spincyl::{Body, Slip, motion::Start};
     ///
     /// let (ball, w) = (Body::ball(0.0, 0.4, 0.4)?, Vector3::new(0.0, 2.0, 0.3));
     /// let turned = UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
     /// let rolls = Start::from_twist(&ball, &turned, w, w.cross(&Vector3::z()), None)?;
-    /// assert_eq!(rolls.slip, [0.0, 0.0]);
+    /// assert_eq!(rolls.slip, Slip::default());
     /// assert!(Start::from_twist(&ball, &turned, w, Vector3::z(), None).is_err());
     /// # Ok::<(), spincyl::Error>(())
     /// ```
@@ -402,17 +404,17 @@ impl Start {
     ) -> Result<Self, Error> {
         let state = State::from_twist(orientation, angular_velocity);
         let body = &body.told_at(state.theta);
-        let v = axes(-euler_angles(orientation)[0], 0.0) * velocity;
+        let v = axes(-euler_angles(orientation).phi, 0.0) * velocity;
         let (rim, angle) = (body.shape().rim, state.theta.sin_cos());
         let fastest = velocity.amax() + angular_velocity.amax() * (1.0 + rim.ell.abs());
         let most = if height.is_some() { f64::MAX } else { NO_RISE * fastest };
         let expected =
             "an upward velocity with which the lowest point stays on the table; for a flight give a height";
         let rise = within("velocity", v.z - centre_rise(body, &state), (-most, most), expected)?;
-        let [along, across] = centre_velocity(body, &state, [0.0; 2]);
+        let [along, across] = centre_velocity(body, &state, Slip::default());
         let slip = [v.x - along, v.y - across].map(|u| if u.abs() <= NO_SLIP * fastest { 0.0 } else { u });
         let aloft = height.map(|height| AboveTable::new(height - rim.height(angle), rise));
-        Ok(Self::from(state).with_slip(slip).with_aloft(aloft))
+        Ok(Self::from(state).with_slip(slip.into()).with_aloft(aloft))
     }
 }
 

@@ -13,7 +13,7 @@
 
 use crate::laws::body::Body;
 use crate::laws::contact::Contact;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::body::face::FLAT;
 use crate::motions::body::roll::lossy::REST;
 #[cfg(feature = "many")]
@@ -45,7 +45,7 @@ coded! {
 struct LastState {
     ending: Ending,
     state: State,
-    slip: [f64; 2],
+    slip: Slip,
     rim: u8,
     /// The kind of the last phase, if the motion has phases.
     kind: Option<Kind>,
@@ -56,7 +56,7 @@ impl LastState {
         let (ending, kind) =
             (motion.ending(), path.and_then(|path| path.phases.last()).map(|phase| phase.kind));
         let (state, slip, rim) = match motion.event {
-            Some(event) => (event.state, path.map_or([0.0; 2], |path| path.last_slip), event.rim),
+            Some(event) => (event.state, path.map_or(Slip::default(), |path| path.last_slip), event.rim),
             None => {
                 let slip = path.and_then(|path| path.slip.last().copied()).unwrap_or_default();
                 let rim = path.and_then(|path| path.rims.last().copied()).unwrap_or_default();
@@ -72,7 +72,7 @@ impl LastState {
             let up = axis_up(body, &self.state, self.rim) > 0.0;
             return if up { RestsOn::Face } else { RestsOn::OtherFace };
         }
-        let moves = [w1, w2, w3].into_iter().chain(self.slip).any(|x| x.abs() > REST);
+        let moves = [w1, w2, w3].into_iter().chain(self.slip.pair()).any(|x| x.abs() > REST);
         if moves || self.kind == Some(Kind::Flying) && self.ending == Ending::Done {
             return RestsOn::None;
         }
@@ -128,7 +128,7 @@ impl Motion {
 /// What a body rests on that has rolled on its first rim without a change of phase.
 #[cfg(feature = "many")]
 pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
-    LastState { ending, state, slip: [0.0; 2], rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
+    LastState { ending, state, slip: Slip::default(), rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
 }
 
 #[cfg(feature = "many")]

@@ -7,7 +7,7 @@ use crate::laws::body::View;
 use crate::laws::contact::Force;
 pub use crate::laws::contact::impact::Hit;
 use crate::laws::pose::Angle;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::methods::flow::Exhausted;
 use crate::motions::Moving;
 use crate::numbers::codes::coded;
@@ -323,8 +323,8 @@ pub struct Phase<S = State> {
     pub kind: Kind,
     /// The state at the beginning of the phase.
     pub state: S,
-    /// The slip at the beginning of the phase, along e_h and along e2.
-    pub slip: [f64; 2],
+    /// The slip at the beginning of the phase.
+    pub slip: Slip,
     /// The height of the lowest point of the rim and its vertical velocity, which are 0 on the table.
     pub aloft: AboveTable,
     /// The rim to which the state refers, as in [`Path::rims`].
@@ -426,33 +426,35 @@ pub struct Strike<S = State> {
 )]
 #[non_exhaustive]
 pub struct OtherRim {
-    /// The slip of the other rim, along e_h and along e2, in sqrt(g R).
-    pub slip: [f64; 2],
+    /// The slip of the other rim, in sqrt(g R).
+    pub slip: Slip,
     /// The force of the table on the other rim, in M g.
     pub force: Force,
 }
 
 impl OtherRim {
     /// No other rim.
-    pub(crate) const NONE: Self =
-        Self::of([f64::NAN; 2], Force { normal: f64::NAN, along: f64::NAN, across: f64::NAN });
+    pub(crate) const NONE: Self = Self::of(
+        Slip::new(f64::NAN, f64::NAN),
+        Force { normal: f64::NAN, along: f64::NAN, across: f64::NAN },
+    );
 
     /// A rim with this slip and this force.
-    pub(crate) const fn of(slip: [f64; 2], force: Force) -> Self {
+    pub(crate) const fn of(slip: Slip, force: Force) -> Self {
         Self { slip, force }
     }
 }
 
 impl From<[f64; 5]> for OtherRim {
-    /// The slip along the lean and across it, and the normal, the along and the across component of the force.
+    /// The slip along e_h and e2, and the normal, the along and the across component of the force.
     fn from([u, v, normal, along, across]: [f64; 5]) -> Self {
-        Self::of([u, v], Force { normal, along, across })
+        Self::of(Slip::new(u, v), Force { normal, along, across })
     }
 }
 
 impl From<OtherRim> for [f64; 5] {
-    fn from(OtherRim { slip: [u, v], force }: OtherRim) -> Self {
-        [u, v, force.normal, force.along, force.across]
+    fn from(OtherRim { slip: Slip { u_h, u_2 }, force }: OtherRim) -> Self {
+        [u_h, u_2, force.normal, force.along, force.across]
     }
 }
 
@@ -462,8 +464,8 @@ impl From<OtherRim> for [f64; 5] {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Path<S = State> {
-    /// The slip at each time, along e_h and along e2.
-    pub slip: Vec<[f64; 2]>,
+    /// The slip at each time.
+    pub slip: Vec<Slip>,
     /// The heat of friction up to each time, in M g R, without the friction of impacts.
     pub dissipated: Vec<f64>,
     /// The energy lost to the losses up to each time, in M g R; empty without losses.
@@ -493,7 +495,7 @@ pub struct Path<S = State> {
     /// lower end.
     pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
-    pub last_slip: [f64; 2],
+    pub last_slip: Slip,
     /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for slow
     /// motions); infinite if this holds up to the end.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
@@ -552,7 +554,7 @@ impl<S> Path<S> {
             rims: room(going)?,
             loses,
             goes_on,
-            last_slip: [0.0; 2],
+            last_slip: Slip::default(),
             known_until: f64::INFINITY,
             view: View::default(),
             rolls_on: false,

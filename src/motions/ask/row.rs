@@ -3,6 +3,7 @@
 
 use crate::error::{Error, room};
 use crate::laws::body::View;
+use crate::laws::state::Slip;
 use crate::motions::walk::two_runs::Followed;
 use crate::motions::{AboveTable, Ask, Kind, Motion, Moving, OtherRim, Path};
 use crate::numbers::larger_or_nan;
@@ -10,7 +11,7 @@ use crate::numbers::larger_or_nan;
 /// The outputs at one time.
 pub(crate) struct OutputRow<S: Moving> {
     pub state: S,
-    pub slip: [f64; 2],
+    pub slip: Slip,
     /// The heat of friction, and the energy lost to the losses, since the start.
     pub spent: [f64; 2],
     pub kind: Kind,
@@ -29,7 +30,7 @@ impl<S: Moving> OutputRow<S> {
     pub fn on_table(state: S, slip: [f64; 2], spent: [f64; 2], kind: Kind) -> Self {
         Self {
             state,
-            slip,
+            slip: slip.into(),
             spent,
             kind,
             pose: None,

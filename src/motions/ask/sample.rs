@@ -8,7 +8,7 @@
 use crate::laws::body::Body;
 use crate::laws::contact::slip::{centre_rise, centre_velocity};
 use crate::laws::pose::{Pose, axes};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::{AboveTable, Kind, Motion, Moving, OtherRim};
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -34,8 +34,8 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point, along e_h and along e2, with a law of friction; for a stone along x and y.
-    pub slip: Option<[f64; 2]>,
+    /// The slip of the contact point, with a law of friction.
+    pub slip: Option<Slip>,
     /// The kind of the phase, with a law of friction, losses or a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point above the table and its vertical velocity; both are 0 on the table.
@@ -59,7 +59,7 @@ impl<S: Moving> Motion<S> {
     ///
     /// let body = Body::solid(2.5)?;
     /// let start = steady::state(&body, 1.3)?.kicked(0.05);
-    /// let ask = Ask::default().with_pose(true).with_force(true);
+    /// let ask = Ask::default().with_pose().with_force();
     /// let motion = roll_with(&body, start, &[0.0, 1.0, 2.0], &ask, || true)?.expect("not interrupted");
     /// for now in motion.samples() {
     ///     let (centre, force) = (now.centre(&body).unwrap(), now.force.unwrap());

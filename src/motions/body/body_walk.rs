@@ -186,7 +186,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
 /// The first numbers of a motion from this start.
 pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
-    let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip);
+    let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip.pair());
     let ((s, c), mut at) = (theta.sin_cos(), [0.0; N]);
     at[..TIME].copy_from_slice(&[s, c, w1, w2, w3, along, across]);
     if poses(N) {
@@ -232,7 +232,7 @@ impl<G: Own> BodyPhases<G> {
             face: Cell::default(),
             planar: state.w1 == 0.0
                 && state.w3 == 0.0
-                && slip[1] == 0.0
+                && slip.u_2 == 0.0
                 && !own.has_couple()
                 && (ask.slope == 0.0 || start.heading == PI * (start.heading / PI).round())
                 && ask.turning == 0.0,

@@ -16,12 +16,12 @@
 //! ```
 //! use spincyl::contact::Friction;
 //! use spincyl::motion::{Ask, Start, path::Kind, roll_with};
-//! use spincyl::{Body, State};
+//! use spincyl::{Body, Slip, State};
 //!
 //! // A hoop that slides without turning begins to roll.
 //! let hoop = Body::tube(0.0, 1.0)?;
 //! let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: 0.0 };
-//! let (start, ask) = (Start::from(state).with_slip([0.0, 1.0]), Ask::on(Friction::coulomb(0.25)));
+//! let (start, ask) = (Start::from(state).with_slip(Slip::new(0.0, 1.0)), Ask::on(Friction::coulomb(0.25)));
 //! let motion = roll_with(&hoop, start, &[0.0, 10.0], &ask, || true)?.expect("not interrupted");
 //! let kinds: Vec<Kind> = motion.path.expect("there is friction").phases.iter().map(|phase| phase.kind).collect();
 //! assert_eq!(kinds, [Kind::Slipping, Kind::Rolling]);
@@ -52,7 +52,7 @@ use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::{Friction, centre_velocity};
 use crate::laws::loss::Law;
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::methods::SHORT_CODE;
 pub use crate::motions::ask::FINE;
 use crate::motions::ask::{check_flow, check_patch, check_resistance, check_times_after};
@@ -167,9 +167,9 @@ pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, S
     let (mut ask, mut start) = (*ask, *start);
     if ask.table == Table::Smooth && (ask.restitution.is_some() || on_face(body, &start.state)) {
         ask.table = Friction::coulomb(0.0).into();
-        if start.aloft.is_none() && start.slip == [0.0; 2] {
-            let [v_h, v_2] = centre_velocity(body, &start.state, [0.0; 2]);
-            start.slip = [0.0 - v_h, 0.0 - v_2];
+        if start.aloft.is_none() && start.slip == Slip::default() {
+            let [v_h, v_2] = centre_velocity(body, &start.state, Slip::default());
+            start.slip = Slip::new(0.0 - v_h, 0.0 - v_2);
         }
     }
     (ask, start)
@@ -195,7 +195,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
         let expected = "0 for a body that can lie on two circles, with drilling friction and a restitution";
         return Err(Error::OutOfRange { name: "slope", value: ask.slope, expected });
     }
-    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip) {
+    for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip.pair()) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
     }
     if let Some(AboveTable { height, lift }) = start.aloft {
@@ -230,8 +230,8 @@ pub(crate) fn on_face(body: &Body, y: &State) -> bool {
 }
 
 /// Returns an error for a slip without a law of friction.
-pub(super) fn refuse_slip([along, across]: [f64; 2]) -> Result<(), Error> {
-    let value = if along == 0.0 { across } else { along };
+pub(super) fn refuse_slip(Slip { u_h, u_2 }: Slip) -> Result<(), Error> {
+    let value = if u_h == 0.0 { u_2 } else { u_h };
     if value == 0.0 {
         return Ok(());
     }

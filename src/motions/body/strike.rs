@@ -484,7 +484,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             self.turns_over();
         }
         let State { w1, w2, w3, .. } = landed.state;
-        let after = Aloft { w: [w1, w2, w3], slip: landed.slip, lift: 0.0, ..self.aloft() };
+        let after = Aloft { w: [w1, w2, w3], slip: landed.slip.pair(), lift: 0.0, ..self.aloft() };
         self.sets(&Aloft { height: 0.0, ..after });
     }
 }

@@ -16,7 +16,7 @@ use crate::laws::custom::{
     fault_of_friction,
 };
 use crate::laws::loss::{Couple, Couples, Kinematics, OwnCouple};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::body::fly::Flies;
 use crate::motions::body::fly::air::{AirFlight, DRIVEN_NUMBERS, Launch};
 use crate::motions::body::own::Own;
@@ -100,7 +100,7 @@ impl<'a> OwnLaws<'a> {
         let now = Moment {
             time: self.since + y[TIME],
             state,
-            slip: [u_h, u_2].map(|u| side * over * u),
+            slip: Slip { u_h, u_2 }.map(|u| side * over * u),
             phi,
             psi: over * psi,
             contact_point: Point2::new(y[X], y[Y]),

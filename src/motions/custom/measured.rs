@@ -21,7 +21,7 @@ impl Measured {
         go_on: impl FnMut() -> bool,
     ) -> Result<Option<MeasuredMotion>, Error> {
         let times: Vec<f64> = seconds.iter().map(|t| self.scale().time(*t)).collect();
-        let ask = ask.with_pose(true).with_force(true);
+        let ask = ask.with_pose().with_force();
         let found = roll_with(self.body(), start, &times, &ask, laws, go_on)?;
         Ok(found.map(|natural| MeasuredMotion { natural, of: *self, seconds: seconds.to_vec(), turn: 0.0 }))
     }

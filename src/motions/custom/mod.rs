@@ -49,13 +49,13 @@ const CUSTOM_NUMBERS: usize = 14;
 /// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
 ///
 /// ```
-/// use spincyl::{Body, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
+/// use spincyl::{Body, Slip, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
 ///
 /// // Stribeck's friction falls from 0.4 at rest to 0.2 at high speed.
 /// let stribeck = |speed: f64| 0.2 + 0.2 * (-(speed / 0.1).powi(2)).exp();
 /// let hoop = Body::tube(0.0, 1.0)?;
 /// let state = State { theta: std::f64::consts::FRAC_PI_2, w1: 0.0, w2: 0.0, w3: -3.0 };
-/// let start = Start::from(state).with_slip([0.0, 5.0]);
+/// let start = Start::from(state).with_slip(Slip::new(0.0, 5.0));
 /// let (ask, laws) = (Ask::on(Friction::coulomb(0.4)), Custom::default().with_friction(&stribeck));
 /// let motion = custom::roll_with(&hoop, start, &[0.0, 20.0], &ask, laws, || true)?.expect("not interrupted");
 /// assert!((motion.states[1].w3 - -0.5).abs() < 1e-8); // the hoop rolls back as under any friction

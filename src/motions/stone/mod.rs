@@ -41,7 +41,7 @@ pub(crate) fn check_stone(
     for (name, w) in ["w1", "w2", "w3"].into_iter().zip(state.w) {
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
-    for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip) {
+    for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip.pair()) {
         within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
         if !ask.table.rubs() && start.aloft.is_none() {
             within("slip", u, (0.0, 0.0), "0, or a law of friction as the contact")?;

@@ -95,8 +95,8 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         at[4..7].copy_from_slice(&y.w);
         // The slip is told in the laboratory in which the stone is not turned about the vertical.
         let (sin, cos) = start.heading.sin_cos();
-        at[SLID_X] = cos * slip[0] - sin * slip[1];
-        at[SLID_Y] = cos * slip[1] + sin * slip[0];
+        at[SLID_X] = cos * slip.u_h - sin * slip.u_2;
+        at[SLID_Y] = cos * slip.u_2 + sin * slip.u_h;
         at[STONE_X..=STONE_Y].copy_from_slice(&start.place);
         let [x, y, _] = flow.pose(&at, [0.0; 2]).centre;
         let least = stone.moments()[0];
@@ -326,7 +326,7 @@ impl<'n, const N: usize> Phases<N> for StonePhases<'n> {
         let (time, at) = (walk.t0 + walk.at[TIME], &walk.at);
         let Takeoff { height, lift, .. } = walk.hops.takeoff;
         let aloft = if kind == Kind::Flying { AboveTable { height, lift } } else { AboveTable::default() };
-        Phase { time, kind, state: state(at), slip: output_slip(at), aloft, rim: 0 }
+        Phase { time, kind, state: state(at), slip: output_slip(at).into(), aloft, rim: 0 }
     }
 
     fn perturbs_by(walk: &mut StoneWalk<'_, 'n, N>, share: f64) {

@@ -5,7 +5,7 @@
 //! [`Moving::SAFETY`].
 
 use crate::error::{Error, copied, grow, room};
-use crate::laws::state::State;
+use crate::laws::state::{Slip, State};
 use crate::motions::{AboveTable, Ending, Kind, Limit, Motion, Moving, Path, Phase};
 use crate::numbers::larger_or_nan;
 
@@ -145,7 +145,7 @@ fn follows_bounces<S>(phases: &[Phase<S>], phase: &Phase<S>) -> bool {
 
 impl Followed {
     /// State, slip and rim at the last time, or at the end of the motion.
-    pub(crate) fn last(&self) -> Option<(State, [f64; 2], u8)> {
+    pub(crate) fn last(&self) -> Option<(State, Slip, u8)> {
         match self.motion.event {
             Some(event) => Some((event.state, self.path.last_slip, event.rim)),
             None if self.path.rolls_on => {
@@ -188,12 +188,12 @@ impl<S: Moving> Followed<S> {
         // After impacts of both rims one run may see the body from one rim, and the other run from the other rim.
         let hops = !self.path.impacts.is_empty();
         let told = self.path.view.circles.is_some();
-        let distance = |a: &S, b: &S, u: &[f64; 2], v: &[f64; 2]| {
-            let slips = u.iter().zip(v).map(|(u, v)| (u - v).abs());
-            let direct = slips.fold(a.distance(b), larger_or_nan);
+        let distance = |a: &S, b: &S, u: &Slip, v: &Slip| {
+            let slips = [u.u_h - v.u_h, u.u_2 - v.u_2].map(f64::abs);
+            let direct = slips.into_iter().fold(a.distance(b), larger_or_nan);
             let there = if told { Some(*b) } else { b.seen_from_other_rim() };
             there.filter(|_| hops).map_or(direct, |b| {
-                let along = if told { u[0] - v[0] } else { u[0] + v[0] };
+                let along = if told { u.u_h - v.u_h } else { u.u_h + v.u_h };
                 let over = larger_or_nan(a.distance(&b), along.abs());
                 if over < direct { over } else { direct }
             })
@@ -233,7 +233,7 @@ impl<S: Moving> Followed<S> {
             && !given_up
         {
             apart((a.time - b.time).abs());
-            apart(distance(&a.state, &b.state, &[0.0; 2], &[0.0; 2]));
+            apart(distance(&a.state, &b.state, &Slip::default(), &Slip::default()));
         }
         if let (Some(poses), Some(others)) = (&motion.poses, &rough.motion.poses) {
             for (i, (a, b)) in poses.iter().zip(others).enumerate() {
@@ -263,10 +263,9 @@ impl<S: Moving> Followed<S> {
         {
             (ends, off) = (true, larger_or_nan(off, late));
         }
-        let fastest =
-            self.path.phases.iter().fold(1.0, |most: f64, p| {
-                most.max(p.state.fastest()).max(p.slip[0].abs()).max(p.slip[1].abs())
-            });
+        let fastest = self.path.phases.iter().fold(1.0, |most: f64, p| {
+            most.max(p.state.fastest()).max(p.slip.u_h.abs()).max(p.slip.u_2.abs())
+        });
         let rounding = 8.0 * f64::EPSILON * fastest;
         let motion = &mut self.motion;
         // Two runs with the same steps do not show the error of these steps, so that the estimated error is at least
@@ -331,7 +330,7 @@ mod tests {
                 time,
                 kind: kind(i),
                 state,
-                slip: [0.0; 2],
+                slip: Slip::default(),
                 aloft: AboveTable::default(),
                 rim: 0,
             })

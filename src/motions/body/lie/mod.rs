@@ -30,7 +30,7 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::contact::standstill::{Standstill, standstill, towards};
 use crate::laws::contact::{Force, Table};
 use crate::laws::loss::{GRACE, Ways};
-use crate::laws::state::{State, spin_of};
+use crate::laws::state::{Slip, State, spin_of};
 use crate::methods::flow::{Flow, Steps};
 use crate::methods::search::crossing;
 use crate::motions::ask::row::OutputRow;
@@ -684,7 +684,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
     pub(crate) fn told(&self, kind: Kind) -> Phase {
-        let (y, slip, over) = (self.of.state, self.at.slip(), self.made.path.view.over);
+        let (y, slip, over) = (self.of.state, Slip::from(self.at.slip()), self.made.path.view.over);
         let lies = self.of.lying.is_some();
         let path = &self.made.path;
         let (state, slip) = match () {
@@ -773,7 +773,7 @@ fn row_of<G: Own, const N: usize>(
     OutputRow {
         pose: poses(N).then(|| write::pose(&seen)),
         force: ask.force.then(|| (force(forces[0]), doubt)),
-        other_rim: Some(OtherRim::of(slips[1], force(forces[1]))),
+        other_rim: Some(OtherRim::of(slips[1].into(), force(forces[1]))),
         ..OutputRow::on_table(state, slips[0], [y[HEAT], lost(y)], flow.kind())
     }
 }
