@@ -160,7 +160,9 @@ def test_a_sweep_of_driven_bodies_has_the_motions_of_roll_one_by_one():
     starts = sc.State(y.theta, y.w1, y.w2, y.w3, height=0.2)
     many = sc.sweep.roll(coin, starts, 3.0, **options)
     for i in range(theta.size):
-        one = sc.roll(coin, sc.State(*(x[i] for x in (y.theta, y.w1, y.w2, y.w3)), height=0.2), 3.0, **options)
+        one = sc.roll(
+            coin, sc.State(*(x[i] for x in (y.theta, y.w1, y.w2, y.w3)), height=0.2), 3.0, **options
+        )
         for name in ("theta", "w1", "w2", "w3"):
             assert float(many[name][i].squeeze()) == pytest.approx(getattr(one.states, name)[-1], abs=1e-12)
 

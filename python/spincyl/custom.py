@@ -231,8 +231,9 @@ class Drive(_Own):
     The drive is given as ``losses=``, alone or in a sum with laws of `sc.loss`: `Motion.work_lost` is what
     these have taken less the work of the drive, so that the energy, the heat of friction and `work_lost`
     have a constant sum. The motion ends where a face or a second rim lands and, without a restitution,
-    where the body leaves the table. A value that jumps, such as a motor that is switched on, costs short steps. A pulse that is
-    shorter than a hundredth of sqrt(R/g) while the body is at rest may be missed: begin a new motion there.
+    where the body leaves the table. A value that jumps, such as a motor that is switched on, costs short
+    steps. A pulse that is shorter than a hundredth of sqrt(R/g) while the body is at rest may be missed:
+    begin a new motion there.
 
     Examples
     --------

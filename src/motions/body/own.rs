@@ -12,8 +12,6 @@ use crate::laws::custom::SpeedLaw;
 use crate::laws::loss::{Couples, Losses, OwnCouple};
 use crate::laws::state::State;
 use crate::methods::flow::FlowPlace;
-use crate::motions::body::fly::Flies;
-use crate::motions::body::fly::air::{AirFlight, Launch};
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::walk::numbers::PHI;
 use crate::numbers::Dual;
@@ -60,13 +58,6 @@ pub(crate) trait Own:
         }
         let ([x, along], (sin, cos)) = (self.driven().0, y[PHI].sin_cos());
         [x * cos + along * sin, along * cos - x * sin]
-    }
-    /// The flight of a body under these laws and those of the air.
-    fn flight<'a>(self, from: Launch<'_>, losses: Couples<f64>) -> Box<dyn Flies + 'a>
-    where
-        Self: 'a,
-    {
-        Box::new(AirFlight::<Self>::new(from, losses, self))
     }
     /// Notes whether the body is seen from its upper end from now on, while a law is told of it from its lower end.
     fn sees(&self, _over: bool) {}

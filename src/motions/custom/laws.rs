@@ -15,10 +15,8 @@ use crate::laws::custom::{
     CoupleLaw, Custom, DriveLaw, FrictionLaw, Moment, Push, SpeedLaw, fault_of_couple, fault_of_drive,
     fault_of_friction,
 };
-use crate::laws::loss::{Couple, Couples, Kinematics, OwnCouple};
+use crate::laws::loss::{Couple, Kinematics, OwnCouple};
 use crate::laws::state::{Slip, State};
-use crate::motions::body::fly::Flies;
-use crate::motions::body::fly::air::{AirFlight, DRIVEN_NUMBERS, Launch};
 use crate::motions::body::own::Own;
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::dry::friction::OwnFriction;
@@ -291,16 +289,6 @@ impl Own for OwnLaws<'_> {
         self.driven
             .get()
             .map_or(([0.0; 2], [0.0; 3]), |Driven { push, couple, .. }| (push.force.into(), couple))
-    }
-    fn flight<'a>(self, from: Launch<'_>, losses: Couples<f64>) -> Box<dyn Flies + 'a>
-    where
-        Self: 'a,
-    {
-        if self.drives() {
-            Box::new(AirFlight::<Self, DRIVEN_NUMBERS>::new(from, losses, self))
-        } else {
-            Box::new(AirFlight::<Self>::new(from, losses, self))
-        }
     }
 
     fn sees(&self, over: bool) {

@@ -40,19 +40,7 @@ _HALF_PI = np.pi / 2
 
 
 class Landmark(NamedTuple):
-    """A named point of a branch of steady states; `landmarks` lists those of a body.
-
-    Attributes
-    ----------
-    letter : str
-        Letter of the point, "A" to "G", as in `landmarks`.
-    meaning : str
-        Meaning of the point in words.
-    theta : float
-        Inclination at the point, in radians.
-    rate : float
-        Reduced rate at the point; infinite for C and D.
-    """
+    """A point of a branch: its letter, its meaning, theta, and the reduced rate, infinite for C and D."""
 
     letter: str
     meaning: str

@@ -36,7 +36,7 @@ pub(crate) const DRIVEN_NUMBERS: usize = NUMBERS + 4;
 const AIR_LOST: usize = 7;
 const AIR_TIME: usize = 8;
 /// The first of the velocities of the centre beside its parabola, after its place.
-const FASTER: usize = NUMBERS + 2;
+const AIR_VELOCITY: usize = NUMBERS + 2;
 /// Length of the first step, in units of the time in which the body turns by one radian.
 const FIRST_STEP: f64 = 0.05;
 /// Angle by which the fastest of rotation and nutation turns in the longest step.
@@ -210,7 +210,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
     fn velocity(&self, y: &[f64; N]) -> [f64; 2] {
         let ([forth, aside, _], (sin, cos)) = (self.free.velocity, self.from.pose[0].sin_cos());
         let falls = self.free.tilt * y[AIR_TIME];
-        [forth * cos - aside * sin + falls + y[FASTER], forth * sin + aside * cos + y[FASTER + 1]]
+        [forth * cos - aside * sin + falls + y[AIR_VELOCITY], forth * sin + aside * cos + y[AIR_VELOCITY + 1]]
     }
 
     /// The body with these numbers, and with these phi and psi since the start.
@@ -451,7 +451,7 @@ impl<G: Own, const A: usize> Flow<MOST_CIRCLES> for AirFlow<'_, G, A> {
         ]);
         if A > NUMBERS {
             let ([f_x, f_y], [v_x, v_y]) = (self.of.own.driven().0, self.of.velocity(&y));
-            all[NUMBERS..A].copy_from_slice(&[y[FASTER], y[FASTER + 1], f_x, f_y]);
+            all[NUMBERS..A].copy_from_slice(&[y[AIR_VELOCITY], y[AIR_VELOCITY + 1], f_x, f_y]);
             all[AIR_LOST] -= f_x * v_x + f_y * v_y;
         }
     }

@@ -6,7 +6,7 @@
 //! N0 is the normal force without friction, whose sign decides, since friction scales the normal force by a positive
 //! factor. [`strike`](crate::motions::body::strike) has the impacts.
 
-use super::air::Launch;
+use super::air::{AirFlight, DRIVEN_NUMBERS, Launch};
 use super::lands::TOUCH;
 use crate::laws::body::{Body, Rim, View, border_at, tilt};
 use crate::laws::contact::{Force, Table};
@@ -220,8 +220,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             Some(losses) => {
                 // The first step of a rougher run is longer, so that the two runs take different steps.
                 let longer = if self.perturbation > 0.0 { LONGER } else { 1.0 };
-                let (tol, tilt) = (self.of.slide.tol, self.of.tilt);
-                self.of.own.flight(Launch { body, from: &from, now, tol, longer, tilt }, losses)
+                let (own, tol, tilt) = (self.of.own, self.of.slide.tol, self.of.tilt);
+                let launch = Launch { body, from: &from, now, tol, longer, tilt };
+                if G::IS && own.drives() {
+                    Box::new(AirFlight::<G, DRIVEN_NUMBERS>::new(launch, losses, own))
+                } else {
+                    Box::new(AirFlight::<G>::new(launch, losses, own))
+                }
             }
             None => Box::new(Flight::new(body, &from, self.of.tilt)),
         };
