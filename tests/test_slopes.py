@@ -50,7 +50,7 @@ def test_a_table_is_what_was_given():
         (
             lambda: sc.roll(DISK, START, 1.0, table=TABLE, losses=sc.loss.Drilling(0.01), restitution=0.0),
             ValueError,
-            "slope = 0.2: expected 0 for a body that can lie on two circles, with drilling",
+            "slope = 0.2: expected 0, since the body can lie on two circles and has drilling",
         ),
         (
             lambda: sc.roll(

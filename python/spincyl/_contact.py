@@ -39,7 +39,7 @@ class _Law(Hinting):
     _function: ClassVar[Any] = None
 
     def _known(self, of: Scale | bool = True) -> Self:
-        """Mark the numbers as given in SI for this scale; a measured body accepts no other scale."""
+        """Mark the numbers as ones in SI; a measured body with another scale refuses them."""
         object.__setattr__(self, "_sized", of)
         return self
 

@@ -124,7 +124,7 @@ class EllipsoidState(Hinting):
         lift: Reals | None = None,
         scale: Any,
     ) -> "EllipsoidState":
-        """State from `w` in rad/s, `slip` and `lift` in m/s, and `height` in m.
+        """State in SI: `w` in rad/s, the velocities `slip` and `lift` in m/s, and `height` in m.
 
         `scale` is a measured stone, or its `Scale`.
         """

@@ -337,7 +337,7 @@ def arm_in_radii(name: str, value: Reals, scale: "Scale | Body") -> Reals:
 
 
 def marked_as_si(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
-    """Mark the law as given in SI for this scale; a measured body accepts no other scale."""
+    """Mark the law as one in SI; a measured body with another scale refuses it."""
     object.__setattr__(law, "_sized", of if isinstance(of, bool) else scale_of(of))
     return law
 

@@ -303,7 +303,10 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
             jump = f64::max(jump, found / magnitude(m).max(f64::MIN_POSITIVE));
         }
         if jump > JUMP_SHARE {
-            return refuse(jump, "no step, and no couple at rest: use tanh(x/e) for sgn(x)");
+            return refuse(
+                jump,
+                "a couple that is continuous, and zero at rest: for sgn(x) use tanh(x/e) with a small e",
+            );
         }
     }
     Ok(())
@@ -312,7 +315,12 @@ fn check_couple(law: &dyn CoupleLaw, body: &Body) -> Result<(), Error> {
 fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
     let most = law.coefficient(0.0);
     // In doubles 0.1 + 0.2 exceeds 0.3.
-    within("static", fixed, (most * (1.0 - POWER_ROUNDING), f64::INFINITY), "static >= mu at rest")?;
+    within(
+        "static",
+        fixed,
+        (most * (1.0 - POWER_ROUNDING), f64::INFINITY),
+        "at least mu(0), the friction of the law at the start of a slip",
+    )?;
     let mut from = (0.0, most);
     for i in 0..=1000 {
         let speed = 10f64.powf(-6.0 + 9.0 * f64::from(i) / 1000.0);

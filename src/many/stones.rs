@@ -90,7 +90,7 @@ impl StoneRow {
     }
 }
 
-/// Whether the reversals of the spins of many stones are counted, which needs the error of each motion on its way.
+/// Whether reversals of the spin are counted for many stones: this needs the estimated error at all times of each motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Turns {

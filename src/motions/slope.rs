@@ -41,7 +41,7 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     within("slope", slope, (-most, most), "between -pi/2 and pi/2, the ends excluded")?;
     let refuses = |what: &'static str| Err(Error::OutOfRange { name: "slope", value: slope, expected: what });
     let dry = [Law::DryContour, Law::Drilling].iter().all(|law| ask.losses.coefficient(*law) != 0.0);
-    within("turning", ask.turning, (-1e6, 1e6), "at most 1e6 sqrt(g/R)")?;
+    within("turning", ask.turning, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g/R)")?;
     let drills = ask.losses.coefficient(Law::Drilling) != 0.0;
     let along = ask.losses.iter().any(|(law, _)| law.is_along_contour());
     let rolls = ask.losses.coefficient(Law::RollingResistance) != 0.0;

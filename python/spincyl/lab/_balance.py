@@ -25,7 +25,7 @@ _INDISTINGUISHABLE = 0.9995
 
 
 class Fit(NamedTuple):
-    """The result of a fit: values of the variables, and their covariance in units of the given errors."""
+    """The result of a fit: values of the variables, and their covariance if the given errors are true."""
 
     names: tuple[str, ...]  #: varied variables, of "ratio" and "factor"
     values: Floats

@@ -290,7 +290,7 @@ def differences(t: Floats) -> tuple[Any, Floats]:
 
 
 def error_of_scatter(off: Floats) -> float:
-    """Standard error of values from their third differences, without wild ones; NaN if there are none."""
+    """Standard error of values, from their third differences without outliers; NaN without a difference."""
     if not off.size:
         return math.nan
     middle = 1.4826 * float(np.median(np.abs(off)))

@@ -190,7 +190,7 @@ def measured(
 
 
 def leaning(name: str, theta: Floats, body: Body) -> None:
-    """Raise ValueError for inclinations outside the body's range, as for degrees; NaN is allowed."""
+    """Raise ValueError for inclinations outside the body's range, such as degrees; NaN is allowed."""
     known = theta[np.isfinite(theta)]
     if not ((known > 0) & (known <= steepest(body))).all():
         degrees = (known > 0).all() and known.max() <= math.degrees(steepest(body))

@@ -446,5 +446,5 @@ def _duration(plain: Body, kind: Any, centre: str, theta: float, theta_err: floa
     off = np.abs(beside - one.stops_at)
     if not np.isfinite(off).any():
         told = f"no drift starts at {theta - theta_err:.4g} or at {theta + theta_err:.4g} rad"
-        raise ValueError(f"from_err = {theta_err!r}: {told}, the inclination minus or plus this error")
+        raise ValueError(f"from_err = {theta_err!r}: expected a smaller error; {told}")
     return float(one.stops_at), float(np.nanmean(off))

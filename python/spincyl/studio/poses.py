@@ -124,7 +124,7 @@ def _mean_pace(m: "Motion") -> float:
 
 
 class Repeat(NamedTuple):
-    """The relation of an exact motion to itself one period later."""
+    """How an exact motion repeats after one period: its path is turned and shifted."""
 
     period: float
     phi: float  #: increase per period

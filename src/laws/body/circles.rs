@@ -24,7 +24,8 @@ pub struct CircleBorder {
 }
 
 impl Body {
-    /// The borders at which the body passes from one circle to the next, in the order of their inclinations.
+    /// The inclinations at which the contact passes from one circle of the body to the next, in ascending order, and the
+    /// distances of the two points of contact there.
     ///
     /// ```
     /// let can = spincyl::Body::solid(2.0)?; // it lies on both rims at pi/2

@@ -72,7 +72,7 @@ pub(crate) struct PatchedPoint {
 }
 
 impl PatchedPoint {
-    /// Whether the patch may drill along an impact that begins with this slip; else it acts as a point.
+    /// Whether the patch may turn about the normal during an impact that begins with this slip; else it acts as a point.
     pub fn turns(&self, slip: [f64; 2], light: &Delassus) -> bool {
         let [m_1, m_2, m_n] = self.row;
         let planar = light.is_lean() && slip[1] == 0.0;

@@ -192,15 +192,15 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     let drills = ask.losses.coefficient(Law::Drilling) != 0.0 && ask.restitution.is_some();
     if ask.slope != 0.0 && drills && body.theta_end() < PI {
         // On two circles it would share in what holds the body along its axis.
-        let expected = "0 for a body that can lie on two circles, with drilling friction and a restitution";
+        let expected = "0, since the body can lie on two circles and has drilling friction and a restitution";
         return Err(Error::OutOfRange { name: "slope", value: ask.slope, expected });
     }
     for (name, u) in ["slip along the lean", "slip across"].into_iter().zip(start.slip.pair()) {
-        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g R) for a motion")?;
+        within(name, u, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g R) for a motion")?;
     }
     if let Some(AboveTable { height, lift }) = start.aloft {
         within("height", height, (0.0, 1e6), "0 to 1e6 R")?;
-        within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g R)")?;
+        within("lift", lift, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g R)")?;
         if ask.restitution.is_none() {
             let expected = "None, or a restitution, which a motion that starts in the air needs";
             return Err(Error::OutOfRange { name: "height", value: height, expected });

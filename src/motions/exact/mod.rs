@@ -207,9 +207,9 @@ fn check_body(body: &Body) -> Result<(), Error> {
 
 fn check_speeds(y: &State) -> Result<(), Error> {
     const SPEED: (f64, f64) = (-1e6, 1e6);
-    within("w1", y.w1, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;
-    within("w2", y.w2, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;
-    within("w3", y.w3, SPEED, "at most 1e6 sqrt(g/R) for a motion")?;
+    within("w1", y.w1, SPEED, "-1e6 to 1e6 sqrt(g/R) for a motion")?;
+    within("w2", y.w2, SPEED, "-1e6 to 1e6 sqrt(g/R) for a motion")?;
+    within("w3", y.w3, SPEED, "-1e6 to 1e6 sqrt(g/R) for a motion")?;
     Ok(())
 }
 

@@ -42,7 +42,7 @@ pub(crate) fn check_stone(
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
     }
     for (name, u) in ["slip along x", "slip along y"].into_iter().zip(slip.pair()) {
-        within(name, u, (-1e6, 1e6), "at most 1e6 sqrt(g a) for a motion")?;
+        within(name, u, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g a) for a motion")?;
         if !ask.table.rubs() && start.aloft.is_none() {
             within("slip", u, (0.0, 0.0), "0, or a law of friction as the contact")?;
         }
@@ -59,7 +59,7 @@ pub(crate) fn check_stone(
     check_patch(ask)?;
     if let Some(AboveTable { height, lift }) = start.aloft {
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
-        within("lift", lift, (-1e6, 1e6), "at most 1e6 sqrt(g a)")?;
+        within("lift", lift, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g a)")?;
         if ask.restitution.is_none() {
             let expected = "None, or a restitution, which a motion that starts in the air needs";
             return Err(Error::OutOfRange { name: "height", value: height, expected });

@@ -228,7 +228,7 @@ class Play:
         """Raise ValueError if the page shows a stone."""
         if self._told.get("stone"):
             raise ValueError(
-                "the page shows a rattleback, which is not a body of revolution; read its motion instead"
+                "the page shows a rattleback, which is not a body of revolution; see its `motion`"
             )
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:

@@ -169,7 +169,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
 
 
 def state_of(words: Mapping[str, Any]) -> State:
-    """The state that the words describe: given, steady, or at rest if no state is steady; then kicked."""
+    """The state of these keywords: given, or steady, or else at rest. The kick is added to it."""
     theta, given, turning = words["theta"], words.get("w"), words.get("precession")
     if given:
         start = State(theta, *given[:3], slip=tuple(given[3:]) if any(given[3:]) else None)
