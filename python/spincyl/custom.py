@@ -296,7 +296,7 @@ class Drive(_Own):
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Raises TypeError, since a drive depends on more than a state."""
-        raise TypeError(f"losses = {self!r}: a drive depends on time and place; call its function with a Moment")
+        raise TypeError(f"losses = {self!r}: a drive depends on the time; call its function with a Moment")
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Raises TypeError, since a drive depends on more than a state."""
