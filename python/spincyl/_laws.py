@@ -234,7 +234,7 @@ class Laws(Circles):
     def slip_slope(
         self, mu: Reals, posture: Posture = "rolling", *, phi: Reals = -np.pi / 2, theta: Reals = None
     ) -> Result:
-        """Slope of the table, in radians, beyond which the body at rest on it slips.
+        """Slope of the table, in radians, beyond which the body slips, rolling or at rest.
 
         Parameters
         ----------
