@@ -144,12 +144,12 @@ class Scale(Hinting):
 
 
 def unit_of_output(name: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts an output of a motion to SI, None without a conversion, and its unit."""
+    """The factor that converts an output to SI (None: no conversion), and the unit after the conversion."""
     return si_factor(UNITS.get(name, "1"), scale)
 
 
 def si_factor(natural: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts from a natural unit to SI, None without a conversion, and the unit of SI.
+    """The factor that converts a natural unit to SI (None: no conversion), and the unit after the conversion.
 
     Without a mass, forces and energies stay in natural units.
     """

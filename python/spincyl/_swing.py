@@ -124,7 +124,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
 def numbers_of_one(body: Body, state: State, *, several: bool = False) -> tuple[_Six, _Four]:
-    """The numbers of a single body, which may have `several` circles, and a single state."""
+    """The numbers of a single body and of a single state; the body may have several circles if `several`."""
     one = instance_of("body", body, Body)
     of, at = one._raw if several else one._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at

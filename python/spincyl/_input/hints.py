@@ -138,7 +138,7 @@ def with_hints(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def raise_with_proposal(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
-    """If an argument is unknown, raise a TypeError that proposes known arguments."""
+    """If the error is about an unknown argument, raise a TypeError that proposes known arguments."""
     known = signature(call).parameters
     odd = next((x for x in named if x not in known), None)
     if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):

@@ -48,7 +48,7 @@ class Fit(NamedTuple):
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """The ratio and the common factor, each with its error; errors from the scatter unless `known`."""
+        """Fitted ratio, its error, common factor, its error; errors are from the scatter unless `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
@@ -62,7 +62,7 @@ def with_ratio(body: Body, ratio: float) -> Body:
 
 
 class Balance:
-    """Measured inclinations and rates with their errors, and the torque that is left at each point."""
+    """Measured inclinations and rates with errors, and their fits by steady states, which have no torque."""
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
         self.odrpack = optional_library("odrpack", "lab")
@@ -86,7 +86,7 @@ class Balance:
         self.guess = float(np.median(shares)) if shares.size else 1.0
 
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
-        """Torque at points in units of their errors: theta'' times the moment of inertia about e2."""
+        """Unbalanced torque (theta'' times moment of inertia about e2) at points divided by their errors."""
         inclination, rate = place * self.sigma
         # an inclination beyond the pole is the same state as one with theta - 2 pi
         inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)
@@ -179,7 +179,7 @@ class Balance:
 def doubts_of_ratio(
     found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
 ) -> str:
-    """A warning about a fit: no ratio explains the points, or a common factor explains them as well."""
+    """Text that doubts a fit: no ratio explains the points, or a common factor does too; "" if neither."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:

@@ -86,7 +86,7 @@ def is_number(cell: str) -> bool:
 
 
 def missing_in(line: str, delimiter: str | None) -> list[float] | None:
-    """NaN for each cell if all cells of the line are marked as missing; else None."""
+    """A list with NaN for each cell if all cells of the line are marked as missing; else None."""
     try:
         cells = split(line, delimiter)
     except ValueError:

@@ -56,13 +56,13 @@ class WildTime(NamedTuple):
     deviations: float
 
     def told(self) -> str:
-        """The time in words."""
+        """Text with the place, the value, the name and the first inclination of the time."""
         start = f"from {math.degrees(self.theta):.4g} degrees"
         return f"{self.where} = {self.seconds:.4g} ({f'{self.name}, ' if self.name else ''}{start})"
 
 
 class Timed(NamedTuple):
-    """Times by first inclination, and their robust means."""
+    """Measured times, grouped by first inclination, with the robust mean of each group."""
 
     theta: Floats  #: (k,) first inclinations, ascending
     theta_err: Floats  #: (k,)

@@ -205,7 +205,7 @@ class _Instants(NamedTuple):
     rotation: Floats  #: (n, 3, 3)
 
     def at(self, rows: Any) -> "_Instants":
-        """Some of the instants."""
+        """The instants with these indices."""
         return _Instants(*(x[rows] for x in self))
 
 

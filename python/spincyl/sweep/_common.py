@@ -30,7 +30,7 @@ def in_memory(name: str, law: object, fields: Mapping[str, object]) -> None:
 
 @contextmanager
 def many_blocks() -> Iterator[None]:
-    """Silence dask's warning about many blocks: a map has as many as its axes' blocks multiplied."""
+    """Context that silences dask's warning about many blocks, which are usual for maps."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Increasing number of chunks")
         yield
@@ -94,7 +94,7 @@ def to_si(name: str, attrs: dict[str, Any], scale: Scale | None) -> tuple[float 
 
 
 def sizes(scale: Scale) -> dict[str, float]:
-    """The scale of measured bodies as attributes of a result."""
+    """The scale of measured bodies as a dict of attributes for a result."""
     return {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
 
 

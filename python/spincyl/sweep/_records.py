@@ -228,7 +228,7 @@ def with_added(there: bytes | None, ours: bytes) -> bytes:
 
 
 def says(there: bytes | None, ours: bytes) -> bool:
-    """Whether metadata in the store are those of this sweep, apart from a user's attributes and arrays."""
+    """Whether metadata in the store equal this sweep's, apart from a user's own attributes and arrays."""
     old = _node(there)
     return old is not None and _node(ours) is not None and _joined(old, json.loads(ours), open_=False) == old
 
