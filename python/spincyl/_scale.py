@@ -178,7 +178,7 @@ def moment_in_natural(name: str, value: Reals, scale: Scale | None) -> float:
         raise TypeError(f"{name} = {value!r}: a moment in kg m^2 needs {need}")
     found = number(name, si(name, value, "kilogram*metre**2")) / scale.mass / scale.radius**2
     if _LARGE_MOMENT < found < math.inf:
-        warn(f"{name}: {found:.3g} M R^2, as of a mass {math.sqrt(found):.3g} R away: is it in kg m^2?")
+        warn(f"{name}: {found:.3g} M R^2, as of a mass at {math.sqrt(found):.3g} R: is the moment in kg m^2?")
     return found
 
 
@@ -193,7 +193,7 @@ def refuse_other_scale(told: str, of: Scale | bool, scale: Scale | None) -> None
         return
     if not (math.isclose(of.radius, scale.radius) and math.isclose(of.gravity, scale.gravity)):
         made = f"R = {of.radius:g} m and g = {of.gravity:g} m/s^2"
-        raise ValueError(f"{told}: made for another scale, {made}; give from_si(..., scale=body)")
+        raise ValueError(f"{told}: made for another scale, {made}; use from_si(..., scale=body)")
 
 
 @overload

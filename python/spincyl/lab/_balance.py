@@ -179,13 +179,13 @@ class Balance:
 def doubts_of_ratio(
     found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
 ) -> str:
-    """Text that doubts a fit: no ratio explains the points, or a common factor does too; "" if neither."""
+    """Warning about a fit: no ratio explains the points, or a common factor does too; "" if neither."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:
         off = f"{one:.3g} times those of the body as built"
     if found.chi2 > 10:
-        hint = "give turns a second as hertz="
+        hint = "give turns per second as hertz="
         if alone.success and alone.squares < 0.1 * found.squares:
             hint = f"rates {off} would explain them with the ratio as built: {hint}"
         return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"
@@ -197,13 +197,13 @@ def doubts_of_ratio(
             return (
                 f"all rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'}"
                 f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frame rate"
-                " right? common=inf fits the factor as well"
+                " right? common=inf fits this factor of the rates as well"
             )
     ratio, ratio_err, *_ = found.told(known)
     as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
     if abs(ratio - own) > _equivalent_standard_errors(3.0, found.freedom, known) * ratio_err and as_well:
         return (
-            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
+            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from {own:.4g}, as built, but"
             f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
             " frame rate right? common=0.03 allows for an error of three per cent"
         )

@@ -114,7 +114,7 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
     if type(motion) is not Motion or getattr(motion.body, "rims", None) is not None:
         raise TypeError("body: expected the motion of a body of revolution with a circular rim")
     if motion._asked.slope or motion._asked.turning:
-        raise ValueError("body: expected a motion on a level table at rest; only there may its path be turned to fit")
+        raise ValueError("body: expected a motion on a level table at rest, since a fit turns its path")
     errors = film.errors
     if film.t.size < _LEAST or not all((e[np.isfinite(e)] > 0).any() for e in errors.values()):
         raise ValueError(

@@ -203,7 +203,7 @@ def fit_motion(
     data = measured_motion(guess, measured, errors)
     many = sum(int(np.isfinite(x).sum()) for x in data.values.values())
     if many <= len(numbers):
-        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers; free fewer")
+        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers; shorten free=")
     fit = _Fit(guess, data, numbers)
     fit.residuals(fit.begin)  # an output that the guess does not have raises its error
     low, high = fit.bounds()

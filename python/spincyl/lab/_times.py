@@ -213,7 +213,7 @@ def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | N
     if times.ndim > 2 or theta.ndim > 1:
         shapes = f"shapes {theta.shape} and {times.shape}"
         raise ValueError(
-            f"from_, seconds: expected a list of angles and at most a table of times, not {shapes}"
+            f"from_, seconds: expected a list of angles, and a list or a table of times, not {shapes}"
         )
     if theta.ndim and times.shape[-1:] != theta.shape:
         told = f"{theta.size} inclinations, and times of shape {times.shape}"

@@ -111,8 +111,8 @@ def uncertain(asked: dict[str, Any], error: np.ndarray, status: np.ndarray) -> N
     if rows.size:
         told = f"{rows.size} of {status.size} motions have estimated errors above {LARGE_ERROR}"
         first = ", ".join(map(str, rows[:_SHOWN])) + (", ..." if rows.size > _SHOWN else "")
-        which = f"motion{'s' * (rows.size > 1)} {first}; `error` of the result has them all"
-        why = ". Impacts multiply errors: to an earlier t they are smaller" if "restitution" in asked else ""
+        which = f"motion{'s' * (rows.size > 1)} {first}; `error` of the result has all errors"
+        why = ". Impacts multiply errors: at an earlier t they are smaller" if "restitution" in asked else ""
         warn(f"{told}, in natural units, up to {error[rows].max():.2g}: {which}{why}", ErrorWarning)
 
 
