@@ -201,7 +201,7 @@ def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
 @overload
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None: ...
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
-    """The given scale, or the common scale of measured bodies; None without any.
+    """The given scale, or the common scale of measured bodies; None if there is no scale.
 
     A measured body may be given in place of a scale.
 

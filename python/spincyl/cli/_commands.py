@@ -321,7 +321,7 @@ def roll_(args: Namespace) -> None:
 
 
 def recipient(args: Namespace) -> Callable[[Motion, Scale | None, Path], None] | None:
-    """Check the path, and return the function that writes the requested file; None without a file."""
+    """Check the path, and return the function that writes a file there; None if no file is requested."""
     if args.output is None or args.output == "-":
         return None
     writer = writer_of(Path(args.output))

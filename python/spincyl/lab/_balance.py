@@ -57,7 +57,7 @@ class Fit(NamedTuple):
 
 
 def with_ratio(body: Body, ratio: float) -> Body:
-    """The body with another ratio I1/I3 through I1; I3, rim, end and size stay the same."""
+    """The body with another I1, so that I1/I3 is `ratio`; I3, rim, theta_end and size stay the same."""
     return replace(body, i1=ratio * float(body.i3), bore=math.nan)
 
 

@@ -102,7 +102,7 @@ class Split(NamedTuple):
 
 
 def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset[str]) -> Split | None:
-    """Separate columns of text, such as names, from columns of numbers; None unless there are both.
+    """Separate columns of text, such as names, from columns of numbers; None if all are of one kind.
 
     The line of names is the first that is as wide as the table. ValueError if a column has numbers and texts.
     """

@@ -39,7 +39,7 @@ SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.
 
 
 def cleaned(name: str) -> tuple[str, str]:
-    """The name of a column without comment marks, quotes and unit, and the unit, "" if there is none.
+    """Return the name of a column without comment marks and quotes, and its unit ("" if it has none).
 
     "# degrees" is "degrees"; "t (s)", "t [s]" and "t / s" are "t" in "s".
     """

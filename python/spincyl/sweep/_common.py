@@ -87,7 +87,7 @@ def in_si(found: Any, scale: Scale | None) -> Any:
 
 
 def to_si(name: str, attrs: dict[str, Any], scale: Scale | None) -> tuple[float | None, dict[str, Any]]:
-    """The factor that converts a variable to SI, None if nothing is converted, and its new attributes."""
+    """The factor that converts a variable to SI (None: no conversion), and its attributes afterwards."""
     factor, said = si_factor(attrs.get("units", "1"), scale)
     factor = scale._worst if scale is not None and name == "error" else factor
     return (None, attrs) if factor is None else (factor, attrs | {"units": said})

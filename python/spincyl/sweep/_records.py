@@ -251,7 +251,7 @@ def _joined(old: Any, new: Any, *, open_: bool) -> Any:
 
 
 def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
-    """Write the files whose content differs; records first, so that a kill leaves no folder without one."""
+    """Write the files whose content differs, records first: a kill then leaves no folder without a record."""
     seal = sealed(record)
     records = {f"{name}/{RECORD}": seal for name in record["variables"]}
     store.folder.mkdir(exist_ok=True)
