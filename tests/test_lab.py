@@ -261,7 +261,7 @@ def test_uneven_times_of_the_frames_exclude_the_rates_that_only_look_the_same_in
 def test_an_inclination_many_errors_from_every_steady_one_is_warned_of():
     """Three per cent of the scale of length: five degrees, which a flat limit of ten would let pass."""
     tracks = from_a_phone(8.0, 240.0, ruler=0.97)
-    with pytest.warns(UserWarning, match=r"steady at 64\.\d degrees, \d+ errors away: .* does ruler= lack"):
+    with pytest.warns(UserWarning, match=r"steady at 64\.\d degrees, \d+ standard .* does ruler= lack"):
         sc.data.from_above(tracks, FAST)
     assert sc.data.from_above(tracks, FAST, ruler=0.03).hertz == pytest.approx(8.0, rel=1e-3)
 
