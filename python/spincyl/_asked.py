@@ -157,7 +157,7 @@ def outputs_wanted(want: Want | Iterable[Want]) -> frozenset[Want]:
 
 
 def union_of_wants(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
-    """All outputs that are named in several arguments `want` of `roll`, as a tuple of texts."""
+    """The set of all outputs that are named in any of several arguments `want` of `roll`."""
     return frozenset().union(*map(outputs_wanted, wants))
 
 

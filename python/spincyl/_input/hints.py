@@ -106,7 +106,7 @@ _INSTEAD = {
 
 
 def proposal(name: str, known: Iterable[str]) -> str:
-    """Text that proposes, after a colon, the known name most similar to a wrong one; empty if none is."""
+    """Text that proposes known names similar to a wrong one, after a colon; empty without a proposal."""
     names = [x for x in known if not x.startswith("_")]
     if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
         return ": semi_axes= are half of length, width and height of the whole ellipsoid"
