@@ -129,7 +129,7 @@ DRIFT = sc.drift(COIN, 0.3, sc.loss.ViscousContour(1e-3))
         (lambda: sc.assembled([]), "parts: expected at least one part, not an empty list$"),
         (
             lambda: sc.data.fit_losses(np.arange(8) / 10, np.full(8, 0.35), body=MEASURED),
-            "theta: expected a drift; all values are 0.35$",
+            "theta: expected values that change with t; all are 0.35$",
         ),
         (
             lambda: STEM.circular(np.radians(75), radius=3.0),

@@ -55,7 +55,7 @@ def test_what_is_no_comparison_in_hertz_is_refused_by_name(given, error, told):
 
 
 def test_turns_a_second_that_were_taken_for_reduced_rates_are_asked_for_by_their_name():
-    with pytest.warns(UserWarning, match="give turns a second as hertz="):
+    with pytest.warns(UserWarning, match="give turns per second as hertz="):
         sc.data.compare(TUBE, THETA, HERTZ)
 
 

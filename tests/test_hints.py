@@ -301,7 +301,7 @@ def test_a_body_that_hops_until_its_motion_is_unknown_warns_once():
     assert one.category is sc.ErrorWarning and m.status.name == "DONE"
     assert f"is {m.natural.error:.2g}, in natural units: impacts multiply errors" in str(one.message)
     # as the message says, it is known up to an earlier time, here without a warning
-    assert "known_until of the motion is the time" in str(one.message) and 0.05 < m.known_until < 0.2
+    assert "known up to the time known_until of the motion" in str(one.message) and 0.05 < m.known_until < 0.2
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         early = sc.roll(coin, start, m.known_until, **how)

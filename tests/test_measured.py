@@ -582,7 +582,7 @@ def test_a_moment_in_kg_m2_that_no_body_has_is_refused_by_its_name(make, error, 
 
 
 def test_moments_in_g_mm2_without_their_unit_warn():
-    with pytest.warns(UserWarning, match=r"i1: 4e\+07 M R\^2, .*: is it in kg m\^2") as said:
+    with pytest.warns(UserWarning, match=r"i1: 4e\+07 M R\^2, .*: is the moment in kg m\^2") as said:
         sc.Body.solid(1.0).in_metres(0.1, radius=0.01, i1=400.0, i3="4000 g mm^2")
     assert len(said) == 1
 

@@ -97,7 +97,9 @@ def test_one_found_by_steps_is_drawn_at_its_own_times_or_refused():
     time, drawn = curve(sc.plot.motion(m)[0])
     assert np.array_equal(time, t)
     assert np.array_equal(drawn, np.degrees(m.theta))
-    with pytest.raises(ValueError, match=r"^m: expected at least two times, not 1 time; give roll more"):
+    with pytest.raises(
+        ValueError, match=r"^m: expected at least two times, not 1 time; give roll more times"
+    ):
         sc.plot.motion(sc.roll(CYLINDER, START, 20.0, step=1e-2))
     with pytest.raises(ValueError, match="has no duration from t = 20 on"):
         sc.plot.motion(sc.roll(CYLINDER, START, [20.0], t0=20.0))

@@ -225,7 +225,7 @@ def test_an_attribute_of_the_sweep_that_was_changed_is_named(store):
     group = zarr.open_group(store, mode="r+")
     name = next(iter(group["rate"].attrs))
     group["rate"].attrs[name] = "mine"
-    assert any(f"changed attributes are as before: {name} of rate/zarr.json" in x for x in quietly(store)[1])
+    assert any(f"changed attributes are restored: {name} of rate/zarr.json" in x for x in quietly(store)[1])
     assert quietly(store)[1] == []
 
 

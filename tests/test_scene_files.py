@@ -72,8 +72,8 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path):
 
     assert "version 1" in refused(lambda x: x.update({"spincyl-scene": 2}))
     assert "natural" in refused(lambda x: x.pop("natural"))
-    assert "its answer is not" in refused(lambda x: x["natural"]["ask"].update(restitution=0.4))
-    assert "its answer is not" in refused(lambda x: x["expected"]["position"][0].__setitem__(2, 7.0))
+    assert "its motion is not" in refused(lambda x: x["natural"]["ask"].update(restitution=0.4))
+    assert "its motion is not" in refused(lambda x: x["expected"]["position"][0].__setitem__(2, 7.0))
     path = tmp_path / "no.json"
     path.write_text("{", encoding="utf-8")
     with pytest.raises(ValueError, match="path = .*no.json.*: expected the JSON file of a scene"):

@@ -330,7 +330,7 @@ def test_a_table_that_turns_takes_a_ball_round_and_does_work():
     tilted, both = sc.Table(0.1, turning=rate), drags + sc.loss.RollingResistance(0.01)
     with pytest.raises(ValueError, match="turning = 0.8: expected 0 with drilling friction"):
         sc.roll(ball, start, 1.0, table=tilted, losses=both)
-    with pytest.raises(ValueError, match="only for roll"):
+    with pytest.raises(ValueError, match="only sc.roll takes a table that turns"):
         sc.sweep.roll(ball, start, 1.0, table=table)
     with pytest.raises(ValueError, match="does not turn"):
         sc.scene(m, scale=sc.Scale(0.01, 0.01)).data

@@ -98,7 +98,7 @@ def test_a_sweep_of_bodies_that_hop_warns_once_of_those_that_are_no_longer_known
     )
     (one,) = said
     assert one.category is sc.ErrorWarning
-    worst = f"up to {natural.error:.2g}: motions 1, 3; `error` of the result has them all. Impacts multiply"
+    worst = f"up to {natural.error:.2g}: motions 1, 3; `error` of the result has all errors. Impacts multiply"
     assert f"2 of 4 motions have estimated errors above 0.1, in natural units, {worst}" in str(one.message)
     assert (np.flatnonzero(found.error > found.error[0] * 1e3) == [1, 3]).all()
 

@@ -36,7 +36,7 @@ _DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
-    """The arguments of `roll`, for one motion, or for many, whose coefficients may be arrays."""
+    """The checked arguments of `roll` for one motion, or for many, whose coefficients may be arrays."""
 
     times: Floats
     t0: float = 0.0
@@ -127,7 +127,7 @@ def options_for_core(
 
 
 def times_of(t: Reals) -> Floats:
-    """Times as a one-dimensional array that is not empty."""
+    """Return times as a one-dimensional array; ValueError for an empty array or one of more dimensions."""
     if type(t) is float:
         return np.array([t])
     if type(t) is np.ndarray and t.dtype is _DOUBLE and t.ndim == 1 and t.size:
@@ -157,7 +157,7 @@ def outputs_wanted(want: Want | Iterable[Want]) -> frozenset[Want]:
 
 
 def union_of_wants(wants: tuple[Want | Iterable[Want], ...]) -> frozenset[Want]:
-    """The union of several arguments `want` of `roll`, as a tuple of words."""
+    """The set of all outputs that are named in any of several arguments `want` of `roll`."""
     return frozenset().union(*map(outputs_wanted, wants))
 
 
@@ -178,7 +178,7 @@ def ask(
     max_nfev: int | None,
     table: "Table | None" = None,
 ) -> Asked:
-    """Check the arguments of `roll`, in natural units; an error names the argument."""
+    """Check the arguments of `roll`, and return them in natural units; an error names the wrong argument."""
     times = times_of(t)
     if t0 is not None:
         t0 = number("t0", t0)
@@ -237,7 +237,7 @@ def ask(
 
 
 def on_table(asked: Asked, table: "Table") -> Asked:
-    """The arguments with a table; on a slope the pose is always computed, since phi matters."""
+    """Return the arguments with a table; on a slope the pose is always computed, since phi matters."""
     from spincyl._table import Table
 
     table = instance_of("table", table, Table)

@@ -309,7 +309,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     @elementwise
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
-        """Number of steady states with the centre at rest that have a given rate; NaN if it is out of range.
+        """Number of steady states with the centre at rest that have a rate; NaN for a rate out of range.
 
         Parameters are those of `inclinations`, whose angles it counts.
         """

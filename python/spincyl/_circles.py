@@ -55,7 +55,7 @@ class Apex(NamedTuple):
 
 
 class Circles:
-    """Base of `Laws`: the circles of a body."""
+    """Base of `Laws`: properties and methods about the circles on which a body can stand."""
 
     ell: Reals
     i1: Reals
@@ -212,7 +212,7 @@ class Circles:
 
 
 def rows_of(name: str, given: Iterable[Sequence[float]], *widths: int, metre: str = "") -> list[list[float]]:
-    """Check rows of numbers, each with one of these widths; with a `metre` they may be lengths as texts."""
+    """Return checked rows of numbers, of one of these widths; with a unit `metre`, texts are converted."""
     try:
         rows = [list(row) for row in given]
     except TypeError:
@@ -256,7 +256,7 @@ def set_rims(body: Any) -> None:
 
 
 def borders_of(six: list[float], rows: list[list[float]]) -> Floats:
-    """The inclinations at which the circles of a body land one after the other."""
+    """Inclinations, in radians, at which a body passes from each of its circles to the next one."""
     return np.array([row[0] for row in _core.body_circles(six, rows)[1]])
 
 
@@ -296,7 +296,7 @@ def extent_of(rims: Floats) -> tuple[float, float]:
 
 
 def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
-    """Radius and fillet of the circle on which a single body stands, for each number of a circle."""
+    """Radius and fillet of the circles of a single body that have the numbers `rim`."""
     if body.rims is None:
         return 1.0 - floats(body.fillet), body.fillet
     radius, _, fillet = np.moveaxis(body.rims[rim], -1, 0)
@@ -304,7 +304,7 @@ def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
 
 
 def circles_at(body: Any, theta: Floats) -> NDArray[np.uint8]:
-    """The circles that carry a single body at these inclinations; 0 if it has no `rims`."""
+    """Numbers of the circles that carry a single body at these inclinations; 0 if it has no `rims`."""
     found = np.zeros(theta.size, np.uint8)
     if getattr(body, "rims", None) is not None:
         found += (body._borders < theta[:, np.newaxis]).sum(-1).astype(np.uint8)

@@ -263,7 +263,7 @@ def refuse_own_law(contact: AnyContact) -> None:
 
 
 def without_coefficient(contact: AnyContact) -> AnyContact:
-    """The same contact with coefficient 0, for many motions, whose coefficients are in columns.
+    """The same contact with coefficient 0: the coefficients of many motions are passed as columns.
 
     A law that the user wrote stays the same.
     """

@@ -333,7 +333,7 @@ class Ellipsoid(StoneStarts):
         if units.size != 1:
             raise ValueError(
                 f"radius: expected stones of one size, not of {units.size} sizes, since a family has one"
-                " scale; measure each stone by itself"
+                " scale; convert each stone by itself"
             )
         return float(units[0])
 

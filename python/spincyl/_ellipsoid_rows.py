@@ -20,20 +20,20 @@ def six_of_tensor(inertia: Floats) -> list[float]:
 
 
 def with_whole_tensor(numbers: Floats) -> Floats:
-    """Rows with all nine components of a symmetric tensor in place of its six, the numbers 3 to 8."""
+    """Replace the six independent numbers of a tensor in rows, the numbers 3 to 8, by all nine components."""
     return numbers[
         ..., [0, 1, 2, *(3 + i for i in (0, 5, 4, 5, 1, 3, 4, 3, 2)), *range(9, numbers.shape[-1])]
     ]
 
 
 def row_parts(rows: Reals) -> tuple[Reals, ...]:
-    """Axes, tensor, offset and theta_end of rows from `with_whole_tensor`, then each further number."""
+    """Split rows from `with_whole_tensor` into axes, tensor, offset, theta_end and each further number."""
     tensor = rows[..., 3:12].reshape(*rows.shape[:-1], 3, 3)
     return rows[..., :3], tensor, rows[..., 12:15], *(rows[..., i][()] for i in range(15, rows.shape[-1]))
 
 
 def by_blocks(law: Callable[..., Floats], signature: str, size: int, *arrays: Reals) -> Reals:
-    """Apply `law`, whose last axis has length `size`, to arrays: by blocks, lazily, if one of them is lazy.
+    """Apply `law` to arrays, lazily if one of them is lazy; the last axis of its result has length `size`.
 
     `signature` is that of a generalised ufunc of NumPy.
     """
@@ -55,7 +55,7 @@ def _named_as_in_python() -> Iterator[None]:
 
 
 def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
-    """Rows of checked stones, with largest semi-axis and reach of each (`Ellipsoid::reach`); (..., 18)."""
+    """Rows (..., 18) of checked stones, each with its largest semi-axis and its `Ellipsoid::reach`."""
     each = axes, inertia.reshape(*inertia.shape[:-2], 9), offset, theta_end[..., None]
     shape = np.broadcast_shapes(*(x.shape[:-1] for x in each))
     given = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in each], axis=-1)
@@ -69,7 +69,7 @@ def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Float
 def rows_by(
     *arrays: Floats, make: Callable[..., Any], names: tuple[str, ...], wide: dict[str, bool]
 ) -> Floats:
-    """Rows of stones from a constructor of the core, with the largest semi-axis of each; (..., 17).
+    """Rows (..., 17) of stones that a constructor of the core makes, each with its largest semi-axis.
 
     The arrays belong to the names in `wide`, which says whether the last axis of each has components. Names
     that are not in `wide` are passed as None.

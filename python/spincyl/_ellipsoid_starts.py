@@ -26,7 +26,7 @@ from spincyl._slip import rise_of_stone, slip_of_stone
 
 
 class StoneStarts(Sized, Hinting):
-    """Base of stones: the states from which their motions start."""
+    """Base of `Ellipsoid`: methods that make the states from which motions start."""
 
     def spinning(
         self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
@@ -158,5 +158,5 @@ class StoneStarts(Sized, Hinting):
 
 
 def tilt_of_stone(name: str, value: Reals) -> Reals:
-    """An angle in radians; warns above pi/2, where degrees were probably meant."""
+    """Return an angle in radians; warn above pi/2, where degrees were probably meant."""
     return as_doubles(radians(name, value, likely=math.pi / 2))

@@ -176,7 +176,7 @@ _POSTURE_OF = {RestsOn.FACE: 0, RestsOn.OTHER_FACE: 0, RestsOn.SIDE: 2, RestsOn.
 
 
 def held(m: "Motion") -> Held | None:
-    """The share of friction that holds the body at the end of a motion; None if it is not at rest."""
+    """The share of friction that holds a body at the end of a motion; None if the body is not at rest."""
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own or m._asked.turning:
         return None

@@ -75,9 +75,7 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
     ):
         if np.any(np.isnan(kappa) & standing):
             on = "both its rims" if more else "its whole face"
-            why = (
-                "stable() is for a body on one point of its rim, where this state is not steady: it is False"
-            )
+            why = "stable() is False, as for a body on one point of its rim, where this state is not steady"
             warnings.warn(f"at: theta = {place}, where the body stands on {on}; {why}{more}", stacklevel=4)
 
 

@@ -296,7 +296,7 @@ def _sum_of(laws: tuple[Law, ...]) -> Loss:
 
 
 def losses_in_words(losses: Loss, scale: Scale | None = None) -> str:
-    """Laws with their coefficients to four digits; with a scale, in the units that `from_si` reads."""
+    """Loss laws as text, with four digits of each coefficient; with a scale, in the units of `from_si`."""
     if losses._function is not None:
         return repr(losses)
     found = []
@@ -337,7 +337,7 @@ def arm_in_radii(name: str, value: Reals, scale: "Scale | Body") -> Reals:
 
 
 def marked_as_si(law: _Kind, of: "Scale | Body | bool" = True) -> _Kind:
-    """Mark the law as one in SI; a measured body with another scale refuses it."""
+    """Mark a law as given in SI for the scale `of`; a measured body with another scale refuses the law."""
     object.__setattr__(law, "_sized", of if isinstance(of, bool) else scale_of(of))
     return law
 
@@ -359,7 +359,7 @@ def checked_law(losses: object, body: Body | None = None) -> Loss:
 
 
 def natural_units_in_si(scale: "Scale | Body", weighed: bool = False) -> tuple[float, float, float]:
-    """Metres, seconds and joules of the natural units; with `weighed`, an error if the mass is unknown."""
+    """Natural units of length, time and energy in SI; with `weighed`, ValueError if the mass is unknown."""
     found = scale_of(scale)
     if weighed and found.mass == 1.0 and isinstance(scale, Scale):
         message = f"scale = {found!r}: this loss depends on the mass of the body, taken as 1 kg; give mass="

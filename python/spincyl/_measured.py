@@ -185,7 +185,7 @@ def _seconds(before: str, number: str, second: float) -> str:
 
 
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":
-    """Convert a motion in natural units to SI for a measured body; times and step are those of the user.
+    """Convert a motion to SI for a measured body; `seconds` and `step` are the times and the step as given.
 
     `told` converts the outputs that are computed on access.
     """

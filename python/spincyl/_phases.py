@@ -128,7 +128,7 @@ LOST_COLUMN, IMPULSE_COLUMNS, COUPLE_COLUMN = 4, slice(5, 8), 8
 def state_of_phase(
     four: Sequence[float], slip: Sequence[float] | None, aloft: Sequence[float] | None = None
 ) -> State:
-    """The state of theta, w1, w2, w3, of the slip along e_h and e2, and of height and lift; None for none."""
+    """The state with theta, w1, w2, w3; if given, with the slip along e_h and e2, and height and lift."""
     height, lift = aloft or (None, None)
     return state_without_checks(four, None if slip is None else (slip[0], slip[1]), height, lift)
 
@@ -239,7 +239,7 @@ def has_two_rims(body: "Body") -> bool:
 
 
 def lowest_point_height(body: "Body", theta: Floats, rim: Floats, told: Any) -> Floats:
-    """(n,) height of the lowest point of a body, from that of one rim; in the air another may be lower.
+    """(n,) height of the lowest point of a body, from that of one rim; in flight another rim may be lower.
 
     A height that is negative by rounding is 0; any other negative one is told as it is.
     """

@@ -150,7 +150,7 @@ def with_coefficient(restitution: Restitution, e: float) -> Restitution:
 
 
 def law_for_core(restitution: Any) -> tuple[str, float] | None:
-    """The name of a law of restitution and its tangential coefficient; None for a number."""
+    """Name and tangential coefficient of a law of restitution; None if the restitution is a number."""
     if not isinstance(restitution, _ImpactLaw):
         return None
     return type(restitution).__name__, getattr(restitution, "tangential", 0.0)

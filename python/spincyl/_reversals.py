@@ -23,7 +23,7 @@ def _spin(m: "EllipsoidMotion", t: Floats) -> Floats:
 
 
 def reversal_times(m: "EllipsoidMotion") -> Floats:
-    """Times in natural units of the reversals of the spin of a motion in natural units, in order."""
+    """Times at which the spin of a motion reverses, in ascending order; motion and times in natural units."""
     begin, end = m._asked.t0, m.known_until
     found: list[float] = []
     spin = float(m.start.spin)

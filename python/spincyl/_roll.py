@@ -288,12 +288,12 @@ def roll(
     if not stone and step is None and not given_up_too and not m.error <= LARGE_ERROR:
         why = f"{'impacts multiply errors, and ' if hops else ''}its last states are not known"
         told = f"the estimated error of the motion is {m.error:.2g}, in natural units: {why}"
-        warn(f"{told}; known_until of the motion is the time up to which they are", ErrorWarning)
+        warn(f"{told}; they are known up to the time known_until of the motion", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)
     if stone and m._doubt:
-        why = f"after that its estimated error reaches {m.error:.2g}"
+        why = f"after this time its estimated error reaches {m.error:.2g}"
         warn(f"the motion is {m._doubt} (known_until); {why}", ErrorWarning)
     gained = sum(hit.gained for hit in m.impacts) if isinstance(restitution, Newton | Poisson) else 0.0
     if gained > _GAINED:

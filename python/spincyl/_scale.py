@@ -144,12 +144,12 @@ class Scale(Hinting):
 
 
 def unit_of_output(name: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts an output of a motion to SI, None without a conversion, and its unit."""
+    """The factor that converts an output to SI (None: no conversion), and the unit after the conversion."""
     return si_factor(UNITS.get(name, "1"), scale)
 
 
 def si_factor(natural: str, scale: Scale | None) -> tuple[float | None, str]:
-    """The factor that converts from a natural unit to SI, None without a conversion, and the unit of SI.
+    """The factor that converts a natural unit to SI (None: no conversion), and the unit after the conversion.
 
     Without a mass, forces and energies stay in natural units.
     """
@@ -178,7 +178,7 @@ def moment_in_natural(name: str, value: Reals, scale: Scale | None) -> float:
         raise TypeError(f"{name} = {value!r}: a moment in kg m^2 needs {need}")
     found = number(name, si(name, value, "kilogram*metre**2")) / scale.mass / scale.radius**2
     if _LARGE_MOMENT < found < math.inf:
-        warn(f"{name}: {found:.3g} M R^2, as of a mass {math.sqrt(found):.3g} R away: is it in kg m^2?")
+        warn(f"{name}: {found:.3g} M R^2, as of a mass at {math.sqrt(found):.3g} R: is the moment in kg m^2?")
     return found
 
 
@@ -193,7 +193,7 @@ def refuse_other_scale(told: str, of: Scale | bool, scale: Scale | None) -> None
         return
     if not (math.isclose(of.radius, scale.radius) and math.isclose(of.gravity, scale.gravity)):
         made = f"R = {of.radius:g} m and g = {of.gravity:g} m/s^2"
-        raise ValueError(f"{told}: made for another scale, {made}; give from_si(..., scale=body)")
+        raise ValueError(f"{told}: made for another scale, {made}; use from_si(..., scale=body)")
 
 
 @overload
@@ -201,7 +201,7 @@ def scale_of(scale: "Scale | Body", *bodies: "Body") -> Scale: ...
 @overload
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None: ...
 def scale_of(scale: "Scale | Body | None", *bodies: "Body") -> Scale | None:
-    """The given scale, or the common scale of measured bodies; None without any.
+    """The given scale, or the common scale of measured bodies; None if there is no scale.
 
     A measured body may be given in place of a scale.
 

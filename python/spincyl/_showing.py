@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Showing:
-    """Plot, sound and film of a motion."""
+    """Base of `Motion`: methods that draw a motion, and that write its sound or its film."""
 
     def plot(self, axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
         """Draw inclination, path and contact force, as `spincyl.plot.motion` does, and return the axes."""

@@ -41,7 +41,7 @@ def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
 
 
 def told_of_lowest(body: "Laws", state: State, rim: Any, flies: Any) -> State:
-    """Convert states on the circles `rim`, with slip and flight, to the lowest circle in the air.
+    """Convert states that refer to the circles `rim`, so that states in the air refer to the lowest circle.
 
     From a state of `State`, the circle follows from its inclination alone.
     """

@@ -94,7 +94,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
 
 
 def swing_on(body: Body, state: State, contact: Contact, rim: int | None = None) -> Swing:
-    """The nutation of a body of several circles on the circle `rim`; default: the circle that carries it."""
+    """The nutation of a body of several circles on the circle `rim`, or else on the one that carries it."""
     of, start = numbers_of_one(body, state, several=True)
     numbers_without_slip(
         state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"
@@ -124,7 +124,7 @@ _Six: TypeAlias = tuple[float, float, float, float, float, float]
 
 
 def numbers_of_one(body: Body, state: State, *, several: bool = False) -> tuple[_Six, _Four]:
-    """The numbers of a single body, which may have `several` circles, and a single state."""
+    """The numbers of a single body and of a single state; the body may have several circles if `several`."""
     one = instance_of("body", body, Body)
     of, at = one._raw if several else one._numbers, numbers(state)
     (ell, i1, i3, bore, fillet, most), (theta, w1, w2, w3) = of, at
@@ -140,7 +140,7 @@ def numbers_of_one(body: Body, state: State, *, several: bool = False) -> tuple[
 
 
 def single_slip(state: State) -> tuple[float, float]:
-    """The slip of a single state; 0 without one."""
+    """The slip of a single state along e_h and e2; zeros for a state without a slip."""
     if state.slip is None:
         return 0.0, 0.0
     along, across = state._slip
@@ -150,7 +150,7 @@ def single_slip(state: State) -> tuple[float, float]:
 
 
 def single_aloft(state: State) -> tuple[float, float] | None:
-    """Height and lift of a single state in the air; None on the table."""
+    """Height and lift of a single state in the air; None for a state on the table."""
     if state.height is None:
         return None
     if not is_scalar(state.height, state.lift):

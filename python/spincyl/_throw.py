@@ -350,7 +350,7 @@ def _on_its_side(w1: Reals, w3: Reals, across: Reals) -> State:
 
 
 def scale_of_body(body: object, scale: Scale | None) -> Scale | None:
-    """The given scale, or that of a measured body."""
+    """The given scale, or else the scale of a measured body; None if neither is known."""
     return scale_of(scale, instance_of("body", body, Body))
 
 

@@ -102,7 +102,7 @@ def turning_spin(
 
 
 def within_time(t: float | None, scale: Scale | None) -> float | None:
-    """The time of a search in natural units."""
+    """Convert the duration of a search to natural units; None stays None."""
     if t is None:
         return None
     return float(number("t", t if scale is None else natural_time("t", t, scale)))

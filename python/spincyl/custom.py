@@ -64,7 +64,7 @@ class _Own(Loss):
 
     def __add__(self, other: Loss) -> Loss:
         if getattr(other, "_function", None) is not None:
-            raise TypeError(f"losses = {self!r} + {other!r}: expected a law of your own of one function")
+            raise TypeError(f"losses = {self!r} + {other!r}: expected at most one law of your own in a sum")
         return self._beside(other if self._others is None else self._others + other)
 
     def __radd__(self, other: Any) -> Loss:
@@ -296,7 +296,7 @@ class Drive(_Own):
 
     def couple(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Raises TypeError, since a drive depends on more than a state."""
-        raise TypeError(f"losses = {self!r}: a drive depends on the time; call its function with a Moment")
+        raise TypeError(f"losses = {self!r}: a drive needs time and place; call its function with a Moment")
 
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
         """Raises TypeError, since a drive depends on more than a state."""

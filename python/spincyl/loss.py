@@ -262,11 +262,11 @@ class AirQuadratic(Law):
 class AirFilm(Law):
     """A viscous film of air between a flat face and the table: P = (pi/4) viscosity psi'^2/sin(theta).
 
-    P is the power that the law takes, psi' the spin. The couple is m = (pi/4) viscosity psi' h/sin(theta)^2,
-    along the horizontal vector h, which is e_h of `State`. Source: Moffatt, Nature 404, 833 (2000). The film
-    fills the gap only where theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R, with the kinematic viscosity nu
-    of air; for Euler's disk, below 0.005 rad. At larger inclinations use `BoundaryLayer`. The drift of a
-    measured body that starts at a larger inclination issues a warning.
+    P is the power that the law takes, psi' the rate of the spin about the axis. The couple is m = (pi/4)
+    viscosity psi' h/sin(theta)^2, along the horizontal vector h, which is e_h of `State`. Source: Moffatt,
+    Nature 404, 833 (2000). The film fills the gap only where theta^(3/4) is below nu^(1/2) (R/(4 g))^(1/4)/R,
+    with the kinematic viscosity nu of air; for Euler's disk, below 0.005 rad. At larger inclinations use
+    `BoundaryLayer`. The drift of a measured body that starts at a larger inclination issues a warning.
 
     Parameters
     ----------
@@ -296,9 +296,10 @@ class AirFilm(Law):
 class BoundaryLayer(Law):
     """Boundary layers of the air that a flat face presses out below it: ``P = k |psi'|^(5/2)``.
 
-    P is the power that the law takes, psi' the spin. The couple is ``m = k |psi'|^(3/2) sgn(psi') h/s``, with
-    s = sin(theta) and the horizontal vector h, which is e_h of `State`. Source: Bildsten, Phys. Rev. E 66,
-    056309 (2002). The law holds at inclinations so large that the film of `AirFilm` does not fill the gap.
+    P is the power that the law takes, psi' the rate of the spin about the axis. The couple is
+    ``m = k |psi'|^(3/2) sgn(psi') h/s``, with s = sin(theta) and the horizontal vector h, which is e_h of
+    `State`. Source: Bildsten, Phys. Rev. E 66, 056309 (2002). The law holds at inclinations so large that the
+    film of `AirFilm` does not fill the gap.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ _INSTEAD = {
 
 
 def proposal(name: str, known: Iterable[str]) -> str:
-    """Text that proposes a known name similar to a wrong one, after a colon; empty if none is similar."""
+    """Text that proposes known names similar to a wrong one, after a colon; empty without a proposal."""
     names = [x for x in known if not x.startswith("_")]
     if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
         return ": semi_axes= are half of length, width and height of the whole ellipsoid"
@@ -138,7 +138,7 @@ def with_hints(call: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def raise_with_proposal(call: Callable[..., Any], named: dict[str, Any], error: TypeError) -> None:
-    """If an argument is unknown, raise a TypeError that proposes known arguments."""
+    """If the error is about an unknown argument, raise a TypeError that proposes known arguments."""
     known = signature(call).parameters
     odd = next((x for x in named if x not in known), None)
     if odd is not None and f"unexpected keyword argument {odd!r}" in str(error):

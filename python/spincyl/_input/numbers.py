@@ -131,12 +131,12 @@ def si(name: str, value: Reals, unit: str) -> Reals:
 
 
 def metres(measures: dict[str, Any]) -> dict[str, float]:
-    """Single lengths in metres, by name."""
+    """Convert single lengths, given by name, to a dict of numbers in metres."""
     return {name: number(name, si(name, x, "metre")) for name, x in measures.items()}
 
 
 def lengths_in_metres(name: str, value: Any) -> tuple[Any, bool]:
-    """Lengths by name or in a list, in metres if one of them is a text with a unit; and whether one is."""
+    """Return lengths, in metres if one of them is a text with a unit, and whether there is such a text."""
     listed = not isinstance(value, dict) and isinstance(value, Sequence)
     named = {f"{name}[{i}]": x for i, x in enumerate(value)} if listed else value
     if not isinstance(named, dict) or not any(isinstance(x, str) for x in named.values()):
@@ -335,7 +335,7 @@ def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
 
 
 def with_common_shape(*values: Any) -> Reals:
-    """An array of the common shape of the values; for a body or a state, the shape of its fields."""
+    """An array of zeros in the common shape of numbers, bodies and states; 0 if there is no such shape."""
     fields: list[Any] = []
     for value in values:
         own = next((getattr(value, x) for x in ("_raw", "_numbers", "_coefficients") if hasattr(value, x)), 0)
@@ -360,7 +360,7 @@ def refuse_bad_value(name: str, value: Reals, bad: Callable[[Any], Any], expecte
 
 
 def in_range(name: str, value: object, low: float, high: float, unit: str = "") -> float:
-    """A number in its range, or an error naming the argument."""
+    """Return a number between `low` and `high`, or raise an error that names the argument."""
     found = number(name, si(name, value, "radian") if unit == "radians" else value)
     if not low <= found <= high:
         raise ValueError(f"{name} = {found!r}: expected {low:g} to {high:g}{unit and f' ({unit})'}")
@@ -407,7 +407,7 @@ def flag(name: str, value: object) -> bool:
 
 
 def numbered(most: int, *values: Reals, name: str = "root") -> tuple[Reals, ...]:
-    """`values` with a new last axis, followed by the numbers 0, 1, ... along it.
+    """Return `values` with a new last axis each, and the numbers 0, 1, ... along this axis.
 
     For laws with up to `most` results. xarray broadcasts by name: there the new axis is called `name`.
     """

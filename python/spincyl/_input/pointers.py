@@ -16,7 +16,7 @@ class Pointer(NamedTuple):
 
 
 def pointer(function: object, told: str) -> Pointer | None:
-    """The C function that is given by numba, ctypes or SciPy, or None; TypeError for another signature."""
+    """The C function of a numba, ctypes or SciPy object, or None; TypeError for a signature not `told`."""
     import ctypes
 
     void, number, several = None, ctypes.c_double, ctypes.POINTER(ctypes.c_double)

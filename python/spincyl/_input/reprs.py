@@ -10,7 +10,7 @@ _FEW = 6
 
 
 def repr_of_call(name: str, *plain: Reals, **named: Reals | str) -> str:
-    """A call of a constructor, which Python can evaluate unless an array was abridged."""
+    """The text of a call of a constructor, which Python can evaluate unless an array was abridged."""
     words = [repr_of_numbers(x) for x in plain]
     words += [f"{key}={repr(x) if isinstance(x, str) else repr_of_numbers(x)}" for key, x in named.items()]
     line = f"{name}({', '.join(words)})"
@@ -18,7 +18,7 @@ def repr_of_call(name: str, *plain: Reals, **named: Reals | str) -> str:
 
 
 def repr_of_numbers(value: Reals) -> str:
-    """A number with all digits, a short array as a list, a long array by its ends and shape; or a tuple."""
+    """The text of a number with all digits, of a short array as a list, of a long one by ends and shape."""
     if isinstance(value, tuple):
         return f"({', '.join(map(repr_of_numbers, value))})"
     if is_scalar(value):

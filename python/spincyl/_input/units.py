@@ -125,7 +125,7 @@ def has_unit(text: str) -> bool:
 
 
 def angle(text: str) -> float:
-    """The angle '1.3', '1.3rad', '85deg' or '85°' in radians."""
+    """Convert the text of an angle, such as '1.3', '1.3rad', '85deg' or '85°', to radians."""
     number, unit = _parts(text)
     value = float(number)
     if unit in _DEGREES:
@@ -239,7 +239,7 @@ speed = _natural_or("speed", MetresPerSecond)
 
 
 def whole_text(text: str) -> int:
-    """A whole number, also written as 1e6."""
+    """Convert the text of a whole number, such as 1000000 or 1e6, to an int."""
     try:
         return int(text)
     except ValueError:
@@ -255,7 +255,7 @@ def whole_text(text: str) -> int:
 
 
 def suspicion_of_units(what: str, sides: tuple[float, float], volume: float, mass: float) -> str:
-    """The reason why a size (length, width) or a density seems to be in millimetres or grams; else empty."""
+    """Why a size (length, width) or a density seems to be in millimetres or grams; "" if neither does."""
     why = ""
     if max(sides) > _LENGTHS[1]:
         why = f"{sides[0]:.4g} m long and {sides[1]:.4g} m wide; 1 mm is 1e-3"

@@ -127,7 +127,7 @@ def _body_from_numbers(args: Namespace) -> Body:
 
 
 def body_of(args: Namespace) -> tuple[Body, Scale | None]:
-    """The body, and its scale if the radius is known."""
+    """The body that the options describe, and its scale if the radius is known, else None."""
     radius = args.radius
     if args.outer is not None:
         if radius is not None and args.ell is None:
@@ -183,7 +183,7 @@ def steady(args: Namespace) -> None:
 
 
 def portrait(args: Namespace) -> None:
-    """Write the map, as a picture or as data."""
+    """Write the map of steady states with the centre at rest, as a picture or as data."""
     if not 2 <= args.points <= 100_000:
         raise ValueError(f"--points {args.points}: expected 2 to 100000")
     if not args.ell_max > 0:
@@ -321,7 +321,7 @@ def roll_(args: Namespace) -> None:
 
 
 def recipient(args: Namespace) -> Callable[[Motion, Scale | None, Path], None] | None:
-    """Check the path, and return the function that writes the requested file; None without a file."""
+    """Check the path, and return the function that writes a file there; None if no file is requested."""
     if args.output is None or args.output == "-":
         return None
     writer = writer_of(Path(args.output))
@@ -336,7 +336,7 @@ def delivered(
     rows: Iterable[Row] = (),
     numbers: dict[str, Any] | None = None,
 ) -> None:
-    """Print or write a motion, after the rows and numbers that the command adds."""
+    """Print or write a motion, below the further rows and numbers of the command."""
     piped = args.output == "-"
     if args.json:
         told = motion_numbers(m, scale) | (numbers or {})

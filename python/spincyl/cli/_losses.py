@@ -66,7 +66,7 @@ def option(sub: Any, *names: str, required: bool = False) -> None:
 
 
 def losses_of(args: Namespace, scale: Scale | None) -> Loss | None:
-    """The losses given by the options; None without any."""
+    """The losses that the options give; None if no option gives a loss."""
     if args.losses is None:
         return None
     return loss.Sum(_law_of_given(given, scale, weighed=args.mass is not None) for given in args.losses)

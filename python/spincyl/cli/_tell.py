@@ -94,7 +94,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
         return "" if scale is None else f"{n[name]:.6g} {unit}"
 
     def tilt(name: str) -> str:
-        """Angle of a vector to the axis, if the vector has a direction."""
+        """Text with the angle between a vector and the axis; "" if the vector has no direction."""
         return f"{name} = {math.degrees(n[name]):.4f} deg to the axis" if n["angular_velocity"] else ""
 
     yield "reduced rate", f"{n['rate']:.9g}", ""

@@ -209,7 +209,7 @@ def _warning_of_aliases(films: Readings, t: Floats, degrees: float) -> str:
     told = "never steady"
     if near.size:
         steady = math.degrees(near[np.abs(np.sin(near) - math.sin(math.radians(degrees))).argmin()])
-        told = f"steady at {steady:.3g} degrees, {slow.off:.2g} errors away"
+        told = f"steady at {steady:.3g} degrees, {slow.off:.2g} standard errors away"
     told = f"the tube was seen at {degrees:.4g} degrees, but at {slow.hertz:.4g} turns a second it is {told}"
     if taken is not slow:
         return f"{told}; {alike}: the faster rate is taken"

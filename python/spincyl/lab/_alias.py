@@ -41,7 +41,7 @@ class Reading(NamedTuple):
 
 
 class Readings(NamedTuple):
-    """The slowest rate that the frames may show, the rate that is taken, and those that are possible."""
+    """Rates that the frames of a film allow: the slowest, the one that is taken, and all possible ones."""
 
     slowest: Reading
     taken: Reading
@@ -50,7 +50,7 @@ class Readings(NamedTuple):
 
 
 def uniform(t: Floats, direction: Floats) -> tuple[float, float, float]:
-    """Angular velocity by least squares, its standard error, and the scatter of the directions."""
+    """Fit a uniform rotation to directions: angular velocity, its standard error, scatter of directions."""
     table = t - t.mean()
     squares = float(table @ table)
     slope = float(table @ direction) / squares

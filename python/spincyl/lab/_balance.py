@@ -48,7 +48,7 @@ class Fit(NamedTuple):
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """The ratio and the common factor, each with its error; errors from the scatter unless `known`."""
+        """Fitted ratio, its error, common factor, its error; errors are from the scatter unless `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
@@ -57,12 +57,12 @@ class Fit(NamedTuple):
 
 
 def with_ratio(body: Body, ratio: float) -> Body:
-    """The body with another ratio I1/I3 through I1; I3, rim, end and size stay the same."""
+    """The body with another I1, so that I1/I3 is `ratio`; I3, rim, theta_end and size stay the same."""
     return replace(body, i1=ratio * float(body.i3), bore=math.nan)
 
 
 class Balance:
-    """Measured inclinations and rates with their errors, and the torque that is left at each point."""
+    """Measured inclinations and rates with errors, and their fits by steady states, which have no torque."""
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
         self.odrpack = optional_library("odrpack", "lab")
@@ -86,7 +86,7 @@ class Balance:
         self.guess = float(np.median(shares)) if shares.size else 1.0
 
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
-        """Torque at points in units of their errors: theta'' times the moment of inertia about e2."""
+        """Unbalanced torque (theta'' times moment of inertia about e2) at points divided by their errors."""
         inclination, rate = place * self.sigma
         # an inclination beyond the pole is the same state as one with theta - 2 pi
         inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)
@@ -179,13 +179,13 @@ class Balance:
 def doubts_of_ratio(
     found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
 ) -> str:
-    """A warning about a fit: no ratio explains the points, or a common factor explains them as well."""
+    """Warning about a fit: no ratio explains the points, or a common factor does too; "" if neither."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:
         off = f"{one:.3g} times those of the body as built"
     if found.chi2 > 10:
-        hint = "give turns a second as hertz="
+        hint = "give turns per second as hertz="
         if alone.success and alone.squares < 0.1 * found.squares:
             hint = f"rates {off} would explain them with the ratio as built: {hint}"
         return f"chi2 = {found.chi2:.3g}: no inertia ratio explains these points within their errors; {hint}"
@@ -197,13 +197,13 @@ def doubts_of_ratio(
             return (
                 f"all rates look {abs(factor - 1):.1%} too {'large' if factor > 1 else 'small'}"
                 f" ({factor:.4f} +- {factor_err:.1g}, with I1/I3 = {ratio:.4g}): are radius and frame rate"
-                " right? common=inf fits the factor as well"
+                " right? common=inf fits this factor of the rates as well"
             )
     ratio, ratio_err, *_ = found.told(known)
     as_well = alone.squares <= found.squares + 4 * (1.0 if known else found.chi2)
     if abs(ratio - own) > _equivalent_standard_errors(3.0, found.freedom, known) * ratio_err and as_well:
         return (
-            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from the built {own:.4g}, but"
+            f"I1/I3 = {ratio:.4g} is {abs(ratio - own) / ratio_err:.1f} errors from {own:.4g}, as built, but"
             f" rates {off} in all points ({one:.4f} +- {one_err:.1g}) explain them as well: are radius and"
             " frame rate right? common=0.03 allows for an error of three per cent"
         )

@@ -110,11 +110,11 @@ class FilmComparison(NamedTuple):
 
 
 def beside(motion: Motion, film: Filmed) -> FilmComparison:
-    """Compare a film with a motion; the arguments are called `body` and `theta` in `compare`."""
+    """Compare a film with a motion, for `compare`; errors name the arguments as there, `body` and `theta`."""
     if type(motion) is not Motion or getattr(motion.body, "rims", None) is not None:
         raise TypeError("body: expected the motion of a body of revolution with a circular rim")
     if motion._asked.slope or motion._asked.turning:
-        raise ValueError("body: expected a motion on a level table at rest, so that its path may be turned")
+        raise ValueError("body: expected a motion on a level table at rest, since a fit turns its path")
     errors = film.errors
     if film.t.size < _LEAST or not all((e[np.isfinite(e)] > 0).any() for e in errors.values()):
         raise ValueError(
@@ -174,7 +174,7 @@ def begin_of(motion: Motion, film: Filmed) -> float:
 
 
 def motion_at(motion: Motion, film: Filmed, seconds: Floats) -> At:
-    """A motion at ascending times of a film, with the axes and the origin of the motion."""
+    """A motion, evaluated at ascending times of a film, along the axes and from the origin of the motion."""
     scale = motion.scale or film.scale
     source = motion if "pose" in motion.natural._asked.want else motion.wanting("pose")
     natural, begin = seconds / float(scale.seconds(1.0)), source.natural._asked.t0

@@ -86,7 +86,7 @@ def is_number(cell: str) -> bool:
 
 
 def missing_in(line: str, delimiter: str | None) -> list[float] | None:
-    """NaN for each cell if all cells of the line are marked as missing; else None."""
+    """A list with NaN for each cell if all cells of the line are marked as missing; else None."""
     try:
         cells = split(line, delimiter)
     except ValueError:
@@ -102,7 +102,7 @@ class Split(NamedTuple):
 
 
 def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset[str]) -> Split | None:
-    """Separate columns of text, such as names, from columns of numbers; None unless there are both.
+    """Separate columns of text, such as names, from columns of numbers; None if all are of one kind.
 
     The line of names is the first that is as wide as the table. ValueError if a column has numbers and texts.
     """

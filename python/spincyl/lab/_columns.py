@@ -39,7 +39,7 @@ SECONDS = {"": 1.0, "s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.
 
 
 def cleaned(name: str) -> tuple[str, str]:
-    """The name of a column without comment marks, quotes and unit, and the unit, "" if there is none.
+    """Return the name of a column without comment marks and quotes, and its unit ("" if it has none).
 
     "# degrees" is "degrees"; "t (s)", "t [s]" and "t / s" are "t" in "s".
     """
@@ -62,7 +62,7 @@ class Camera(NamedTuple):
     degrees: float  #: angle of the x axis, counterclockwise
 
     def pixels(self, place: Any) -> Any:
-        """Pixels x + iy, downward, of places x + iy."""
+        """Convert places x + iy on the table to pixels x + iy of the picture, whose y points downward."""
         flat = self.scale * place * cmath.exp(1j * math.radians(self.degrees))
         return complex(self.x, self.y) + np.conj(flat)
 
@@ -167,7 +167,7 @@ def columns_of(name: str, table: Any) -> Columns:
 
 
 class Picked(NamedTuple):
-    """A column of a table."""
+    """A column picked from a table: its name, its numbers, and the factor that converts them to SI."""
 
     key: str  #: its name
     values: Floats  #: numbers in the unit of the table

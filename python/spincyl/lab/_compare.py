@@ -333,7 +333,7 @@ def compare(
     if x["theta"].size < LEAST:
         if common > 0:
             raise ValueError(
-                f"common = {common!r}: expected 0 for fewer than three points, which fit no factor"
+                f"common = {common!r}: expected 0 for fewer than three points, which determine no factor"
             )
         residual = x["rate"] - body.rate(x["theta"])
         alone_chi2 = float(np.mean(away**2))
@@ -362,7 +362,7 @@ def compare(
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
         raise ValueError(
-            f"theta and rate: no real body has the fitted I1/I3 = {ratio:.3g}; give turns a second as hertz="
+            f"theta and rate: no real body has the fitted I1/I3, {ratio:.3g}; give turns per second as hertz="
         )
     said = doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
     if said:

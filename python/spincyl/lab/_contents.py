@@ -22,7 +22,7 @@ def contents(path: str | PathLike[str]) -> bytes:
 
 
 def limited(file: IO[bytes], name: str, most: int) -> bytes:
-    """The bytes of a file, whatever size the directory of its zip file gives; ValueError beyond `most`."""
+    """Read a file in a zip file, even if its stated size is wrong; ValueError for more than `most` bytes."""
     pieces, left = [], most
     while piece := file.read(_BYTES_PER_READ):
         pieces.append(piece)

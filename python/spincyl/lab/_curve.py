@@ -61,7 +61,7 @@ class Curve:
         return drift(self.body, start, law, centre=self.centre)
 
     def rested(self, coefficients: Sequence[float] | Floats, theta: float) -> float:
-        """Inclination at which the centre was at rest, for a drift with `theta` at the first time."""
+        """Inclination at which the centre was at rest, for a drift that is at `theta` at the first time."""
         share = float(coefficients[-1]) if len(coefficients) > len(self.laws) else 0.0
         return theta + share * (self.ends[1 if self.down else 0] - theta)
 
@@ -72,7 +72,7 @@ class Curve:
             return self.drift(coefficients, theta)
 
     def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
-        """Times at which the drift passes inclinations, from `top` on; for rolling, from the first one."""
+        """Times at which a drift from `top` passes inclinations; if rolling, a drift from the first one."""
         begin = self.top
         if self.centre != "rest":
             begin = float(theta.max() if self.down else theta.min())

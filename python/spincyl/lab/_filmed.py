@@ -183,7 +183,7 @@ class Filmed(NamedTuple):
 
     @property
     def predicted(self) -> float:
-        """Steady inclination at this rate that is nearest to the measured one; NaN if there is none."""
+        """Steady inclination at the measured rate, nearest to the measured inclination, or NaN."""
         if not self.inclinations.size:
             return math.nan
         near = math.pi / 2 if math.isnan(self.theta) else self.theta

@@ -281,7 +281,7 @@ class LossFit(NamedTuple):
 
 
 def in_si(found: LossFit, body: Body, second: float) -> LossFit:
-    """Convert a fit from natural units to those of a measured body with this unit of time in seconds."""
+    """Convert a fit to the units of a measured body, whose natural unit of time lasts `second` seconds."""
 
     def told(fit: FittedLoss) -> FittedLoss:
         residual = fit.residual | {
@@ -316,7 +316,7 @@ def called(laws: Sequence[Any]) -> str:
 
 
 def printed(found: FittedLoss) -> list[tuple[float, float, str]]:
-    """Coefficients with errors and units as they are printed: `from_si` reads them."""
+    """Each coefficient with its standard error and unit, as printed and as `from_si` reads them."""
     pairs = zip(found.law.laws, found.coefficients.tolist(), found.coefficient_errs.tolist(), strict=True)
     units = [(law._printed(found.drift.body.scale), k, error) for law, k, error in pairs]
     return [(factor * k, factor * error, unit) for (factor, unit), k, error in units]

@@ -203,7 +203,7 @@ def fit_motion(
     data = measured_motion(guess, measured, errors)
     many = sum(int(np.isfinite(x).sum()) for x in data.values.values())
     if many <= len(numbers):
-        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers; free fewer")
+        raise ValueError(f"measured: {many} values cannot determine {len(numbers)} numbers; shorten free=")
     fit = _Fit(guess, data, numbers)
     fit.residuals(fit.begin)  # an output that the guess does not have raises its error
     low, high = fit.bounds()
@@ -297,18 +297,18 @@ class _Fit:
         return placed.motion, outputs_at(placed, self.data, rows[1:])
 
     def residuals(self, at: Floats, share: float = 1.0) -> Floats:
-        """Residuals in units of their errors, of the first share of the duration."""
+        """Residuals divided by their standard errors, in the first `share` of the duration."""
         off = off_by(self.data, self.computed(at)[1])
         return np.concatenate([(off[n] / self.data.errors[n])[self.seen(n, share)] for n in off])
 
     def seen(self, name: str, share: float) -> Any:
-        """Which values of an output are measured, and in the first share of the duration."""
+        """Whether each value of an output was measured, and in the first `share` of the duration."""
         t = self.data.t
         early = t <= t[0] + share * (t[-1] - t[0])
         return np.isfinite(self.data.values[name]) & early[:, np.newaxis]
 
     def trial(self, at: Floats, share: float) -> Floats:
-        """The residuals, large where the model does not hold."""
+        """The residuals for a trial of the fit; large numbers where the motion cannot be computed."""
         try:
             found = self.residuals(at, share)
         except ValueError:
@@ -316,7 +316,7 @@ class _Fit:
         return np.nan_to_num(np.clip(found, -self.most, self.most), nan=self.most)
 
     def estimate_errors(self, at: Floats) -> None:
-        """Errors of the outputs from the scatter about a fit, without points beyond four deviations."""
+        """Set the errors of outputs from their scatter about a fit, without points beyond four deviations."""
         off = off_by(self.data, self.computed(at)[1])
         parts = len(off)
         for name in self.data.estimated:
@@ -365,7 +365,7 @@ class _Fit:
         return found._replace(undetermined=tuple(self.undetermined(at, found, jacobian)))
 
     def undetermined(self, at: Floats, found: MotionFit, jacobian: Floats) -> list[str]:
-        """Why the points do not determine some of the numbers."""
+        """Sentences that say which of the fitted numbers the points do not determine, and why."""
         said = []
         effect = np.linalg.norm(jacobian, axis=0)
         low, high = self.bounds()
@@ -389,7 +389,7 @@ class _Fit:
         return said
 
     def warnings(self, at: Floats, found: MotionFit) -> list[str]:
-        """Warnings about the fit as a whole."""
+        """Sentences that warn about the fit as a whole."""
         said = []
         motion = found.motion.natural
         if motion.t[-1] < self.data.t[-1] and motion.status.name != "STOPS":

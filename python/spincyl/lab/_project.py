@@ -39,7 +39,7 @@ class _Builder(ElementTree.TreeBuilder):
 
 
 def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] | None:
-    """The tracks of a project, packed or not; None if the file is not a project."""
+    """The tracks of a Tracker project, zipped or not; None if the file is not such a project."""
     if raw[:4] == b"PK\x03\x04":
         packed = unpacked(raw, name, lambda inside: inside.suffix.lower() == ".trk")
         if len(packed) > 1:

@@ -35,7 +35,7 @@ _FASTEST = 2.0  #: Radians from row to row up to which turns are counted.
 
 
 class Measured(NamedTuple):
-    """A measured motion in natural units; each output is a column for each of its components."""
+    """A measured motion in natural units, with one column for each component of an output."""
 
     t: Floats  #: (n,) ascending
     order: Any  #: order of the rows of the table by time
@@ -55,7 +55,7 @@ class Measured(NamedTuple):
 
     @property
     def times(self) -> Floats:
-        """All times at which a motion is needed: those of the rows, then those of the frames of slopes."""
+        """All times at which a motion is needed: the times of the rows, then of the frames of slopes."""
         return self.t if self.sloped is None else np.r_[self.t, self.sloped.t]
 
     def correlation(self) -> Floats | None:
@@ -156,7 +156,7 @@ def _column(name: str, values: Any, written: str, unit: str) -> Floats:
 
 
 def outputs_at(placed: Placed, data: Measured, at: Any) -> dict[str, Floats]:
-    """The outputs of a computed motion at the measured times, the last ones after its end.
+    """The outputs of a computed motion at the measured times; after its end they keep their last values.
 
     `at` has the rows of the motion at all times of `data.times`.
     """
@@ -186,7 +186,7 @@ def outputs_at(placed: Placed, data: Measured, at: Any) -> dict[str, Floats]:
 
 
 def off_by(data: Measured, shown: dict[str, Floats]) -> dict[str, Floats]:
-    """Measured minus computed outputs; angles of turning without whole turns."""
+    """Measured minus computed outputs; whole turns are removed from the differences of angles of rotation."""
     found = {}
     for name, column in data.values.items():
         off = column - shown[name]

@@ -20,13 +20,13 @@ _SAME = 1e-6  # of the time between two frames: times closer than this are one
 
 
 class Slopes(np.ndarray[Any, np.dtype[np.float64]]):
-    """Column of slopes over the frames of a film, with these frames, also after slicing or rescaling."""
+    """Column of slopes over the frames of a film; it keeps these frames when it is sliced or rescaled."""
 
     frames: tuple[Floats, int] | None  #: times of all frames, ascending, and the window
 
     @classmethod
     def of(cls, values: Floats, t: Floats, window: int) -> Self:
-        """The slopes with the times of all frames, in seconds, and the window."""
+        """Make the column from slopes, the times of all frames in seconds, and the window in frames."""
         found = np.asarray(values).view(cls)
         found.frames = (t, window)
         return found
@@ -53,7 +53,7 @@ class Sloped(NamedTuple):
     weights: Floats  #: (n, window)
 
     def of(self, values: Floats) -> Floats:
-        """The same slopes of other values in the frames."""
+        """Slopes over the same frames of other values, given at all frames."""
         return slope(values, self.rows, self.weights)
 
     def correlation(self, kept: Any) -> Floats:
@@ -111,6 +111,6 @@ def slope(values: Floats, rows: Any, weights: Floats) -> Floats:
 
 
 def has_gap(t: Floats, rows: Any) -> Any:
-    """Whether neighbouring frames last much longer than usual."""
+    """Whether the frames of each row span much more time than usual, since frames are missing."""
     usual = (rows.shape[1] - 1) * float(np.median(np.diff(t)))
     return np.ptp(t[rows], axis=1) > _WIDEST * usual

@@ -220,7 +220,7 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
     """Whether values rise, by rank correlation; ValueError if they neither rise nor fall."""
     seen = np.isfinite(values)
     if np.ptp(values[seen]) == 0:
-        raise ValueError(f"{name}: expected a drift; all values are {values[seen][0]:.6g}")
+        raise ValueError(f"{name}: expected values that change with t; all are {values[seen][0]:.6g}")
     correlation = float(np.corrcoef(_ranks(t[seen]), _ranks(values[seen]))[0, 1])
     if not abs(correlation) > 0.5:
         raise ValueError(

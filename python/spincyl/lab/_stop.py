@@ -146,7 +146,7 @@ class StopFit(NamedTuple):
         return len(self.fits) < 2 or self.fits[1].daic > APART
 
     def of(self, centre: str, law: Any = None) -> FittedStop:
-        """Return the fit for the drift "rest" or "rolling", of a law given by its class, or of the best.
+        """Return the fit for the drift "rest" or "rolling": that of a law, given by its class, or the best.
 
         Raises KeyError with the reason if there is none.
         """

@@ -56,13 +56,13 @@ class WildTime(NamedTuple):
     deviations: float
 
     def told(self) -> str:
-        """The time in words."""
+        """Text with the place, the value, the name and the first inclination of the time."""
         start = f"from {math.degrees(self.theta):.4g} degrees"
         return f"{self.where} = {self.seconds:.4g} ({f'{self.name}, ' if self.name else ''}{start})"
 
 
 class Timed(NamedTuple):
-    """Times by first inclination, and their robust means."""
+    """Measured times, grouped by first inclination, with the robust mean of each group."""
 
     theta: Floats  #: (k,) first inclinations, ascending
     theta_err: Floats  #: (k,)
@@ -213,7 +213,7 @@ def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | N
     if times.ndim > 2 or theta.ndim > 1:
         shapes = f"shapes {theta.shape} and {times.shape}"
         raise ValueError(
-            f"from_, seconds: expected a list of angles and at most a table of times, not {shapes}"
+            f"from_, seconds: expected a list of angles, and a list or a table of times, not {shapes}"
         )
     if theta.ndim and times.shape[-1:] != theta.shape:
         told = f"{theta.size} inclinations, and times of shape {times.shape}"

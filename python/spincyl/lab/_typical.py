@@ -66,7 +66,7 @@ def _rows(name: str) -> Iterator[list[str]]:
 
 @cache
 def typical() -> Table:
-    """The table, from its files."""
+    """The table of all published coefficients, read from the files of the package."""
     sources = {key: f"{key}: {source}" for key, source in _rows("sources.csv")}
     return Table(
         Typical(of, pair, float(low), float(high), unit, sure, sources[key])

@@ -126,7 +126,7 @@ def _with_coefficients(losses: Loss, values: Mapping[str, float]) -> Loss:
 
 
 def in_units_of(guess: Motion, made: Motion) -> Motion:
-    """A motion in natural units in those of the guess."""
+    """Convert a motion in natural units to the units of the motion `guess`."""
     if guess.scale is None:
         return made
     return in_si(made, guess.body, made._asked.times * guess.scale._units[1], None)

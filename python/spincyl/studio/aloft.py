@@ -40,24 +40,24 @@ FLIES, ON_FACE = 2, 7
 
 
 def goes_up(m: "Motion") -> bool:
-    """Whether the motion leaves the table, lies on both rims, stands on its face or rocks at any time."""
+    """Whether the motion at any time leaves the table, lies on both rims, stands on its face or rocks."""
     rocks = m._impacts is not None and len(m._impacts) > 0
     return rocks or (m._phases is not None and any(phase.kind not in _ON_RIM for phase in m.phases))
 
 
 def strikes(m: "Motion") -> "tuple[Impact, ...]":
-    """The impacts of a motion; none if it ends where the body leaves the table."""
+    """The impacts of a motion; an empty tuple if the motion ends where the body leaves the table."""
     return () if m._impacts is None else m.impacts
 
 
 def force_beside(m: "Motion") -> Floats:
-    """(n, 3) force on the other rim along the axes of the laboratory; 0 where it does not touch."""
+    """(n, 3) force on the other rim along the axes of the laboratory; 0 where this rim is in the air."""
     found: Floats = np.nan_to_num(m._extra.get("contact_force_other", np.zeros((m.t.size, 3))))
     return found
 
 
 def pressed(centre: Floats, force: Floats) -> Floats:
-    """(n, 3) centre of the pressure on a face, off the place below the centre of mass by the friction."""
+    """(n, 3) centre of pressure on a face; friction shifts it from the point below the centre of mass."""
     with np.errstate(divide="ignore", invalid="ignore"):
         off = np.nan_to_num(centre[:, 2:] * force[:, :2] / force[:, 2:])
     return np.column_stack([centre[:, :2] - off, np.zeros(len(centre))])
@@ -95,7 +95,7 @@ class Aloft(NamedTuple):
 
 
 def aloft(m: "Motion", first: float, last: float) -> Aloft:
-    """Kinks of a motion between two times, and the reference of its angles."""
+    """Kinks of a motion between two times, and the changes of the rim to which its angles refer."""
     kinks = {x.time for x in strikes(m.natural)}
     kinds = ["", *(phase.kind for phase in m.phases)]
     kinks |= {
@@ -193,7 +193,7 @@ def _has_pole(sides: Floats, poles: Floats) -> np.ndarray:
 
 
 def parts_of_flight(m: "Motion", first: float, last: float) -> list[tuple[float, float, float, Phase]]:
-    """Begin, end and nutations per unit of time of each phase in these times, and the phase."""
+    """For each phase between two times: its begin, its end, its nutations per unit of time, and the phase."""
     times = [*(phase.time for phase in m.phases), last]
     found = []
     for phase, end in zip(m.phases, times[1:], strict=True):

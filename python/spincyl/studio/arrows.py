@@ -51,7 +51,7 @@ class Vectors(NamedTuple):
 
 
 def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
-    """The vectors that are drawn as arrows or define the axis."""
+    """The vectors at the times `t` that are drawn as arrows or that define the axis."""
     first, last = sorted(span(m))
     t = np.clip(t, first, last)
     (w,) = seen(m, t, "w")
@@ -79,7 +79,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
 
 
 def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
-    """The magnitude of each vector whose arrow has the usual length: the largest; for forces the median N."""
+    """Size of each vector for which its arrow has the usual length: its largest; for forces the median N."""
     first, last = sorted(span(m))
     of = vectors(m, np.linspace(first, last, _SAMPLES), drawn).of
     sizes = {name: np.linalg.norm(x, axis=-1) for name, x in of.items()}

@@ -39,7 +39,7 @@ def photo_of(ax: Any, vector: bool) -> Any:
 
 
 def surface_of(ax: Any, vector: bool) -> Any:
-    """An artist that draws triangles in their order: shaded, or each in one colour for a vector drawing."""
+    """An artist that draws triangles in the given order: shaded, or in plain colours for a vector drawing."""
     from matplotlib.artist import Artist
     from matplotlib.backends.backend_agg import RendererAgg
     from matplotlib.collections import PolyCollection

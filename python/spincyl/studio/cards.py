@@ -332,7 +332,7 @@ def _angle(x: Reals) -> str:
 
 
 def span_in_words(theta: Floats) -> str:
-    """The least and the greatest angle in degrees, or a single angle."""
+    """Text with the least and the greatest angle in degrees, or with the angle if there is only one."""
     if theta.size == 1:
         return f"{math.degrees(theta.item()):.4g}°"
     return f"{math.degrees(theta.min()):.4g}° to {math.degrees(theta.max()):.4g}°"

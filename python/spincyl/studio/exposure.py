@@ -101,7 +101,7 @@ def exposure(
 
 
 class Shutter:
-    """A camera from above with an open shutter. Times and lengths are natural.
+    """A camera from above with an open shutter; times and lengths are in natural units.
 
     A picture starts from the one before: only the light of the time in which the shutter is open for one of
     the two, but not for both, is computed. There is a picture for each list of `ink`. Default of `middle`:
@@ -205,7 +205,7 @@ class _Instants(NamedTuple):
     rotation: Floats  #: (n, 3, 3)
 
     def at(self, rows: Any) -> "_Instants":
-        """Some of the instants."""
+        """The instants with these indices."""
         return _Instants(*(x[rows] for x in self))
 
 

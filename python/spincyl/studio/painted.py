@@ -61,7 +61,7 @@ def _without_flat_corners(profile: Profile, off: float) -> Profile:
     corners, normals = np.array(profile.corners), np.array(profile.normals)
 
     def spanned(first: int, last: int) -> bool:
-        """Whether a line from one corner to another stands for those between."""
+        """Whether a straight line between two corners is close enough to all corners between them."""
         line, rows = corners[last] - corners[first], slice(first + 1, last)
         away, long = corners[rows] - corners[first], max(float(np.hypot(*line)), 1e-300)
         share = (away @ line / long**2)[:, np.newaxis]

@@ -95,7 +95,7 @@ def _wall_of_bore(b: float, c: float, low: float, high: float) -> list[tuple[_Co
 
 
 def striped(surfaces: list[Profile]) -> list[Profile]:
-    """The surfaces of the widest part, which has the stripes; no ring if there is another part."""
+    """The surfaces of the widest part, which has the stripes; a ring only if all parts are rings."""
     broad = [surface for surface in surfaces if surface.name != "ring"] or surfaces
     name = max(broad, key=lambda surface: max(r for r, _ in surface.corners)).name
     return [surface for surface in surfaces if surface.name == name]

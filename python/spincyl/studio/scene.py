@@ -174,7 +174,7 @@ class Scene:
         most = data["error"]["position"] + apart.position_error, data["error"]["angle"] + apart.angle_error
         allowed = most[0] + _ROUNDING * units.radius, most[1] + _ROUNDING
         if apart.position.max() > allowed[0] or apart.angle.max() > allowed[1]:
-            why = f"its answer is not that of its body, start and table, computed again: {apart}"
+            why = f"its motion is not that of its body, start and table when computed again: {apart}"
             raise ValueError(f"path = {str(path)!r}: {why}")
         return found
 

@@ -115,7 +115,7 @@ class Sources(NamedTuple):
     impulses: Floats  #: their sizes, in M sqrt(g R)
 
     def amplitudes(self, rate: int) -> tuple[Floats, Floats]:
-        """Pressures of the ringing: of the noise at each time, without the beat, and of each impact."""
+        """Pressures of the ringing: of the noise at each time, without the beat, and after each impact."""
         answer = _answer(rate)
         strike = _STRIKE * math.sqrt(rate) * float(np.abs(answer).max())
         return np.sqrt(self.speed * float(answer @ answer)), strike * self.impulses

@@ -30,7 +30,7 @@ def in_memory(name: str, law: object, fields: Mapping[str, object]) -> None:
 
 @contextmanager
 def many_blocks() -> Iterator[None]:
-    """Silence dask's warning about many blocks: a map has as many as its axes' blocks multiplied."""
+    """Context that silences dask's warning about many blocks, which are usual for maps."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Increasing number of chunks")
         yield
@@ -87,14 +87,14 @@ def in_si(found: Any, scale: Scale | None) -> Any:
 
 
 def to_si(name: str, attrs: dict[str, Any], scale: Scale | None) -> tuple[float | None, dict[str, Any]]:
-    """The factor that converts a variable to SI, None if nothing is converted, and its new attributes."""
+    """The factor that converts a variable to SI (None: no conversion), and its attributes afterwards."""
     factor, said = si_factor(attrs.get("units", "1"), scale)
     factor = scale._worst if scale is not None and name == "error" else factor
     return (None, attrs) if factor is None else (factor, attrs | {"units": said})
 
 
 def sizes(scale: Scale) -> dict[str, float]:
-    """The scale of measured bodies as attributes of a result."""
+    """The scale of measured bodies as a dict of attributes for a result."""
     return {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
 
 

@@ -85,7 +85,7 @@ def kept_contact(contact: AnyContact) -> dict[str, Reals]:
 def checked_table(table: Table | None) -> Table | None:
     """Return a table on which many motions can be computed, or an error that names it."""
     if table is not None and instance_of("table", table, Table).turning != 0:
-        raise ValueError(f"table = {table!r}: a table that turns is only for roll")
+        raise ValueError(f"table = {table!r}: only sc.roll takes a table that turns")
     return table
 
 

@@ -59,7 +59,7 @@ class Status(IntEnum):
 
 
 def flags(codes: type[IntEnum]) -> dict[str, object]:
-    """Attributes that list the codes in an array and their meanings."""
+    """Attributes of a result that list the codes in an array and the meaning of each code."""
     return {
         "flag_values": [int(c) for c in codes],
         "flag_meanings": " ".join(c.name.lower() for c in codes),
@@ -76,7 +76,7 @@ def given_up(status: np.ndarray) -> None:
 
 
 def refused(columns: dict[str, Floats], asked: dict[str, Any], status: np.ndarray) -> None:
-    """Warn if motions are invalid although their inputs are numbers, with the reason of the first one."""
+    """Warn if motions are invalid although their inputs are numbers, with the reason for the first one."""
     missing: Any = False
     for name, x in columns.items():
         known = name == "theta_end" or name in _OF_CIRCLES  # NaN where the body says it, or has fewer circles
@@ -111,13 +111,13 @@ def uncertain(asked: dict[str, Any], error: np.ndarray, status: np.ndarray) -> N
     if rows.size:
         told = f"{rows.size} of {status.size} motions have estimated errors above {LARGE_ERROR}"
         first = ", ".join(map(str, rows[:_SHOWN])) + (", ..." if rows.size > _SHOWN else "")
-        which = f"motion{'s' * (rows.size > 1)} {first}; `error` of the result has them all"
-        why = ". Impacts multiply errors: to an earlier t they are smaller" if "restitution" in asked else ""
+        which = f"motion{'s' * (rows.size > 1)} {first}; `error` of the result has all errors"
+        why = ". Impacts multiply errors: at an earlier t they are smaller" if "restitution" in asked else ""
         warn(f"{told}, in natural units, up to {error[rows].max():.2g}: {which}{why}", ErrorWarning)
 
 
 def broadcast(fields: dict[str, Reals]) -> tuple[tuple[int, ...], list[str]]:
-    """The common shape of those fields that have no names of dimensions, and the names that we give these."""
+    """Common shape of the fields without named dimensions, and the names given to these dimensions."""
     try:
         shape = np.broadcast_shapes(*(np.shape(x) for x in fields.values() if not hasattr(x, "dims")))
     except ValueError:
@@ -158,7 +158,7 @@ def free(named: list[Any], names: list[str], spread: frozenset[str]) -> None:
 
 
 def in_order(array: Any, dims: list[str]) -> Any:
-    """The array with those of its dimensions that are in `dims` in that order, as NumPy broadcasts them."""
+    """The array with its dimensions in the order of `dims`, as NumPy needs it for broadcasting."""
     own = iter([d for d in dims if d in array.dims])
     return array.transpose(*(next(own) if d in dims else d for d in array.dims))
 

@@ -228,7 +228,7 @@ def with_added(there: bytes | None, ours: bytes) -> bytes:
 
 
 def says(there: bytes | None, ours: bytes) -> bool:
-    """Whether metadata in the store are those of this sweep, apart from a user's attributes and arrays."""
+    """Whether metadata in the store equal this sweep's, apart from a user's own attributes and arrays."""
     old = _node(there)
     return old is not None and _node(ours) is not None and _joined(old, json.loads(ours), open_=False) == old
 
@@ -251,7 +251,7 @@ def _joined(old: Any, new: Any, *, open_: bool) -> Any:
 
 
 def lay_out(store: Store, record: Record, files: dict[str, bytes]) -> None:
-    """Write the files whose content differs; records first, so that a kill leaves no folder without one."""
+    """Write the files whose content differs, records first: a kill then leaves no folder without a record."""
     seal = sealed(record)
     records = {f"{name}/{RECORD}": seal for name in record["variables"]}
     store.folder.mkdir(exist_ok=True)

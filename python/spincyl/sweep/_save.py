@@ -300,7 +300,7 @@ def _begin(result: "xarray.Dataset", store: Store, record: Record) -> tuple[Reco
             what = f"{len(wrong)} of {count} files of metadata, coordinates and records"
             said.append(f"{what} are missing or damaged and are made again")
         if lost:
-            said.append(f"changed attributes are as before: {', '.join(lost[:3])}{', ...' * (len(lost) > 3)}")
+            said.append(f"changed attributes are restored: {', '.join(lost[:3])}{', ...' * (len(lost) > 3)}")
         _records.lay_out(store, there, files)
     _records.settle(store, there)
     return there, said

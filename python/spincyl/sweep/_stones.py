@@ -115,5 +115,5 @@ def fill(
     given_up(out["status"])
     lost = np.count_nonzero((out["known_until"] < all_of["end"]) | np.isinf(out["error"]))
     if lost:
-        why = "after that their errors are too large, and no reversals are counted; give a smaller tol="
+        why = "after this time their errors are too large, and no reversals are counted; give a smaller tol="
         warn(f"{lost} of {out['status'].size} motions are known only up to known_until: {why}", ErrorWarning)

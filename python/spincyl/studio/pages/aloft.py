@@ -15,7 +15,7 @@ _BRIEF = 2e-3
 
 
 def flying(m: Motion) -> dict[str, Any]:
-    """Phases as (time, code, whether the other rim is down), and as described: (time, code, impacts).
+    """Phases as (time, code, whether the other rim is down), and as a text tells them: (time, code, impacts).
 
     A stone has no rims.
     """

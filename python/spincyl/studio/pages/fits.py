@@ -11,7 +11,7 @@ from spincyl._table import Table
 def check_contents(
     friction: bool, contact: AnyContact, losses: Loss | None, body: Body | None = None
 ) -> None:
-    """Check that the page includes friction and losses if needed, and that numbers have a fitting unit."""
+    """Check that the page includes friction and losses if needed, and that SI coefficients suit the body."""
     if losses is not None:
         checked_law(losses, body)
     if body is not None:

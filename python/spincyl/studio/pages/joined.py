@@ -14,7 +14,7 @@ _UNFIT = re.compile(
 
 
 def text(name: str) -> str:
-    """The text of a file in the folder `js`."""
+    """The content of a file in the folder `js`, as text."""
     return files(__package__).joinpath("js", name).read_text("utf-8")
 
 

@@ -39,7 +39,7 @@ class _Words(HTMLParser):
 
 
 def words_of(page: str, script: str, more: Iterable[str]) -> list[str]:
-    """The English words of a page and its script, and more of them."""
+    """The English texts that a page and its script show, and those in `more`, each once."""
     reader = _Words()
     reader.feed(page)
     asked = [json.loads(word) for of in (_ASKED, _NAMED) for word in of.findall(script)]
@@ -47,7 +47,7 @@ def words_of(page: str, script: str, more: Iterable[str]) -> list[str]:
 
 
 def numbered(script: str, words: list[str]) -> str:
-    """A script with the numbers of its words."""
+    """A script in which each text to be translated is replaced by its number in `words`."""
     number = {word: str(k) for k, word in enumerate(words)}
     script = _NAMED.sub(lambda found: number[json.loads(found[1])], script)
     return _ASKED.sub(lambda found: "W(" + number[json.loads(found[1])], script)
@@ -55,13 +55,13 @@ def numbered(script: str, words: list[str]) -> str:
 
 @cache
 def language(code: str) -> tuple[str, Mapping[str, str]]:
-    """The name of a language in itself, and its words by the English ones."""
+    """The name of a language in that language, and its translations of English texts."""
     told = json.loads(files(__package__).joinpath("languages", f"{code}.json").read_text("utf-8"))
     return told["name"], told["words"]
 
 
 def table(words: list[str]) -> str:
-    """For each language its name and its words, in JSON; a word that it lacks is English."""
+    """JSON with the name and the texts of each language; a text without translation stays English."""
     found: dict[str, tuple[str, list[str]]] = {"en": ("English", words)}
     for code in LANGUAGES:
         name, told = language(code)

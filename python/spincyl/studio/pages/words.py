@@ -27,7 +27,7 @@ TALL = 0.05, 20.0
 
 
 def words_of_body(body: Body) -> dict[str, Any]:
-    """Words that describe a body in a page's address: the dimensions of a tube, or the numbers of a body."""
+    """Keywords that describe a body in a page's address: the dimensions of a tube, or numbers of a body."""
     if isinstance(body, Ellipsoid):
         raise TypeError("body: expected a Body, not a stone; for the motion of a stone use sc.view")
     instance_of("body", body, Body)
@@ -85,7 +85,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 
 def words_of_state(state: State) -> dict[str, Any]:
-    """Words that describe a state in a page's address: the inclination, and w1, w2, w3 with the slip."""
+    """Keywords that describe a state in a page's address: the inclination, and w1, w2, w3 with the slip."""
     instance_of("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):
@@ -95,7 +95,7 @@ def words_of_state(state: State) -> dict[str, Any]:
 
 
 def words_of_table(contact: AnyContact) -> dict[str, Any]:
-    """Words that describe a contact in a page's address, with its coefficient."""
+    """Keywords that describe a contact in a page's address: its name and its coefficient."""
     if not isinstance(contact, str) and isinstance(contact, Coulomb | Viscous):
         table_for_core(contact, 0.0)  # raises an error for a custom law
     if isinstance(contact, Coulomb | Viscous) and not is_scalar(*contact._numbers):
@@ -114,12 +114,12 @@ def words_of_table(contact: AnyContact) -> dict[str, Any]:
 
 
 def words_of_restitution(restitution: float | None) -> dict[str, Any]:
-    """Words for a coefficient of restitution; none if the motion ends at lift-off."""
+    """Keyword for a coefficient of restitution in a page's address; {} if the motion ends at lift-off."""
     return {} if restitution is None else {"restitution": in_range("restitution", restitution, 0, 1)}
 
 
 def words_of_slope(table: Table | None) -> dict[str, Any]:
-    """Words for a slope, and the direction of the first lean; none for a level table."""
+    """Keywords for a slope and the direction of the first lean in a page's address; {} for a level table."""
     if table is None:
         return {}
     instance_of("table", table, Table)
@@ -133,7 +133,7 @@ def words_of_slope(table: Table | None) -> dict[str, Any]:
 
 
 def words_of_loss(losses: Loss | None) -> dict[str, Any]:
-    """Words that describe a loss law in a page's address: its name and its coefficient."""
+    """Keywords that describe a loss law in a page's address: its name and its coefficient."""
     if losses is None:
         return {}
     if not isinstance(losses, Loss):
@@ -149,7 +149,7 @@ def words_of_loss(losses: Loss | None) -> dict[str, Any]:
 
 
 def body_of(words: Mapping[str, Any]) -> Body:
-    """The body that the words describe, with its size if it is given."""
+    """The body that these keywords describe, with its size if a radius is given."""
     natural, radius = _natural_of(words), words.get("radius")
     if radius is None:
         return natural
@@ -169,7 +169,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
 
 
 def state_of(words: Mapping[str, Any]) -> State:
-    """The state of these keywords: given, or steady, or else at rest. The kick is added to it."""
+    """The state that these keywords give, or else a steady state, or else rest; then the kick is added."""
     theta, given, turning = words["theta"], words.get("w"), words.get("precession")
     if given:
         start = State(theta, *given[:3], slip=tuple(given[3:]) if any(given[3:]) else None)
@@ -183,7 +183,7 @@ def state_of(words: Mapping[str, Any]) -> State:
 
 
 def table_of(words: Mapping[str, Any]) -> AnyContact:
-    """The contact that the words describe."""
+    """The contact that these keywords describe."""
     found: Any = words.get("contact", "rolling")
     # the unit was checked when it was set
     if found == "viscous":
@@ -195,7 +195,7 @@ def table_of(words: Mapping[str, Any]) -> AnyContact:
 
 
 def restitution_of(words: Mapping[str, Any]) -> float | None:
-    """The restitution that the words describe; None without friction, where the page has no bounces."""
+    """The restitution that these keywords describe; None without friction, where the page has no bounces."""
     found: float | None = words.get("restitution")
     if found is None and words.get("height") is not None:
         return 0.0  # a page follows a frustum on both of its circles
@@ -203,13 +203,13 @@ def restitution_of(words: Mapping[str, Any]) -> float | None:
 
 
 def slope_of(words: Mapping[str, Any]) -> Table | None:
-    """The table that the words describe; None for a level one."""
+    """The table that these keywords describe; None for a level table."""
     slope = words.get("slope")
     return Table(slope, phi0=words.get("phi0") or 0.0) if slope else None
 
 
 def losses_of(words: Mapping[str, Any]) -> Loss | None:
-    """The loss law that the words describe."""
+    """The loss law that these keywords describe; None without losses."""
     name = words.get("law", "none")
     if name == "none" or not words.get("loss"):
         return None
@@ -218,7 +218,7 @@ def losses_of(words: Mapping[str, Any]) -> Loss | None:
 
 
 def scenes(friction: bool = True) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The scenes of the page: name and words. If `friction` is false, only scenes that need none."""
+    """Name and keywords of each scene of the page; if `friction` is false, only scenes without friction."""
     for name, told in _all():
         if friction or not (
             "stone" in told or told.get("contact") in ("coulomb", "viscous") or "law" in told

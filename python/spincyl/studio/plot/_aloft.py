@@ -51,7 +51,7 @@ def breaks(m: "Motion") -> np.ndarray:
 
 
 def parted(where: np.ndarray, *curves: Floats) -> list[Floats]:
-    """Curves with a gap before each of these places."""
+    """Curves with a gap (NaN) before each point at which `where` is true."""
     at = np.flatnonzero(where)
     return [np.insert(np.asarray(curve, float), at, np.nan) for curve in curves]
 

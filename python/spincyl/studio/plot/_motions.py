@@ -231,7 +231,7 @@ def _with_close_times(m: "Motion") -> "tuple[Motion, bool]":
         if m.t.size < 2:
             many = f"{m.t.size} time{'' if m.t.size == 1 else 's'}"
             raise ValueError(
-                f"m: expected at least two times, not {many}; give roll more, as t=np.linspace(0, 20, 999)"
+                f"m: expected at least two times, not {many}; give roll more times, t=np.linspace(0, 20, 999)"
             )
         return m.wanting("pose", "force"), True
     first, last = span(m)
