@@ -105,7 +105,7 @@ def test_what_an_output_needs_is_advised_where_it_helps_and_only_there(chosen, k
 def test_the_example_of_a_missing_unit_is_of_the_same_quantity(unit):
     with pytest.raises(TypeError, match=r"or a text with a unit, as '[^']+', not '3'$") as caught:
         units.number_in_si("3", unit)
-    assert units.number_in_si(re.search(r"as '(\S+)'", str(caught.value))[1], unit) > 0
+    assert units.number_in_si(re.search(r"as '([^']+)'", str(caught.value))[1], unit) > 0
 
 
 RIM = parts.cylinder(outer_diameter="300mm", length="20mm", mass="0.5kg", at="90mm")

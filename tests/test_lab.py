@@ -143,7 +143,7 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
         (({"O": tracks["O"]}, TUBE), r"expected two tracks, not one \('O'\)"),
         (({}, TUBE), "expected two tracks, not none"),
         (({"a": 1, "b": 2, "c": 3}, TUBE), "'a', 'b', 'c'.*ends="),
-        (({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE), "expected a column 'x'; there are 't'"),
+        (({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE), r"expected a column 'x' \(or 'X'\); there are 't'"),
         (
             ({n: {"t": c["t"], "x (px)": c["x"], "y": c["y"]} for n, c in tracks.items()}, TUBE),
             "unit 'px' of x",
