@@ -82,10 +82,10 @@ class Circles:
 
     @property
     def spans(self) -> Floats:
-        """(n - 1,) distances, in R, between the two points that touch the table at each of the `borders`.
+        """(n - 1,) distances, in R, between neighbouring circles where both touch the table, at `borders`.
 
-        A distance of 0 is a smooth joint, as between a ball and the edge at which it is cut: nothing lands
-        there.
+        A distance of 0 is a smooth joint, as between a ball and the edge at which it is cut: the
+        contact passes on without an impact.
         """
         return self._told()[1][:, 1].copy()
 

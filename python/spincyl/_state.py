@@ -206,7 +206,7 @@ def state_without_checks(
 
 
 def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
-    """The four numbers of a state, without its slip, or TypeError."""
+    """The inclination, w1, w2, w3 of a state, without its slip; TypeError for anything else."""
     return instance_of("state", state, State)._numbers
 
 

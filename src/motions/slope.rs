@@ -190,7 +190,7 @@ impl Slope {
         Ok(since)
     }
 
-    /// The initial conditions in the units of the slope, at time 0.
+    /// The initial conditions at time 0, in the units in which gravity across the slope is 1.
     pub fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
         let speed = |u: f64| self.scale.speed(u);
         Start {

@@ -179,7 +179,7 @@ class Balance:
 def doubts_of_ratio(
     found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
 ) -> str:
-    """Warning about a fit: no ratio explains the points, or a common factor does too; "" if neither."""
+    """Warning about a fit that no ratio explains, or a common factor just as well; "" without one."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:

@@ -119,7 +119,7 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
     if film.t.size < _LEAST or not all((e[np.isfinite(e)] > 0).any() for e in errors.values()):
         raise ValueError(
             f"theta: the errors of the marks cannot be estimated from {film.t.size} frames;"
-            " give from_above(mark_err=)"
+            " give their error with from_above(mark_err=)"
         )
     if film.t[-1] < begin_of(motion, film):
         raise ValueError(f"theta: the film ends at {film.t[-1]:.4g} s, before the motion begins")

@@ -57,7 +57,7 @@ class Sloped(NamedTuple):
         return slope(values, self.rows, self.weights)
 
     def correlation(self, kept: Any) -> Floats:
-        """Correlation of the errors of the kept slopes, if the directions have equal errors."""
+        """Correlation of the errors of kept slopes, which are differences of directions of equal errors."""
         whole = np.zeros((len(self.rows), self.t.size))
         np.put_along_axis(whole, self.rows, self.weights, axis=1)
         whole = whole[kept]

@@ -115,7 +115,8 @@ def held(reach: float, top: float) -> float:
 def opened(t: float, turns: float, along: Floats, turned: Floats, *, before: bool) -> tuple[float, float]:
     """Beginning and end of an exposure that lasts for a number of turns after `t`, or before `t`.
 
-    `turned` is the number of turns about the vertical at the times `along`. It stays within the motion.
+    `turned` is the number of turns about the vertical at the times `along`. The exposure stays within
+    the motion.
     """
     if before:
         first, last = opened(-t, turns, -along[::-1], -turned[::-1], before=False)

@@ -134,7 +134,7 @@ class Repeat(NamedTuple):
 
 
 def repeats(m: "Motion") -> Repeat | None:
-    """The repetition of an exact motion shown for more than a period; ValueError beyond 3000 periods."""
+    """How an exact motion repeats, if it lasts for over a period; ValueError beyond 3000 periods."""
     first, last = sorted(span(m))
     period = pace(m)
     if last - first > _LONGEST * period:

@@ -29,7 +29,7 @@ pub(super) struct Edge {
 const ALIKE: f64 = 1e-12;
 
 impl Edge {
-    /// The edge that touches at every inclination, unless another one is deeper.
+    /// The edge of this radius, height and fillet, alone: it touches at every inclination.
     pub fn of(r: f64, z: f64, rho: f64) -> Self {
         Self { r, z, rho, from: 0.0, to: PI }
     }

@@ -73,7 +73,7 @@ impl<T: Real> Rim<T> {
         Self { ell: self.ell - other.ell, a: self.a - other.a, rho: self.rho - other.rho }
     }
 
-    /// The derivative g' with one rounding less than [`slope`](Self::slope), in SIMD lanes and in single numbers alike.
+    /// The derivative dg/dtheta of the lever g, with one rounding less than [`slope`](Self::slope), in SIMD lanes and in single numbers alike.
     #[inline(always)]
     pub fn fused_slope(&self, (s, c): (T, T)) -> T {
         self.ell.fma(c, self.a * s)

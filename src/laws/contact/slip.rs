@@ -559,8 +559,8 @@ pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
-/// Horizontal velocity of the centre of a body that slips, along e_h and along e2. Without a slip the contact point is at
-/// rest.
+/// The horizontal velocity of the centre of a body that slips, along e_h, which is horizontal below the axis, and along e2,
+/// across it. With a slip of 0 the contact point is at rest.
 pub fn centre_velocity(body: &Body, y: &State, slip: Slip) -> [f64; 2] {
     Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip.pair())
 }

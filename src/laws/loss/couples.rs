@@ -408,7 +408,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         Couples { coefficients, present, ways, pull, om, given: Some(Couple { pressed, ..given }) }
     }
 
-    /// The kinematics from sine and cosine of theta, w1/s and w, with the signs that a caller holds fixed.
+    /// The kinematics from the sine s and the cosine of theta, w1/s and w. Signs that a caller holds are kept.
     #[inline(always)]
     pub fn seen(&self, rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Kinematics<T> {
         let mut seen = Kinematics::of(rim, angle, precession, w);

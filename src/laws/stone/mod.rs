@@ -145,7 +145,7 @@ impl Ellipsoid {
     }
 
     fn turned(axes: [f64; 3], [a, b, c]: [f64; 3], twist: f64, offset: [f64; 3]) -> Result<Self, Error> {
-        within("twist", twist, (-1e6, 1e6), "an angle of at most 1e6 radians")?;
+        within("twist", twist, (-1e6, 1e6), "an angle of -1e6 to 1e6 radians")?;
         let (s, co) = twist.sin_cos();
         let mut across = (a - b) * s * co;
         // A twist by a quarter or half of a turn leaves only rounding errors here.

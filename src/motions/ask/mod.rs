@@ -192,7 +192,7 @@ impl Ask {
         Self { stop_at_rolling: true, ..self }
     }
 
-    /// Returns these options with this largest number of evaluations, or with `None`.
+    /// Returns these options with this largest number of evaluations; `None` is no limit.
     #[must_use]
     pub fn with_max_evaluations(self, most: impl Into<Option<u64>>) -> Self {
         Self { max_evaluations: most.into(), ..self }

@@ -85,7 +85,7 @@ def _words_of_scale(scale: Scale | None) -> dict[str, float]:
 
 
 def words_of_state(state: State) -> dict[str, Any]:
-    """Keywords that describe a state in a page's address: the inclination, and w1, w2, w3 with the slip."""
+    """Keywords of a state in a page's address: the inclination, w1, w2, w3, and the slip."""
     instance_of("state", state, State)
     numbers = state.theta, state.w1, state.w2, state.w3
     if not is_scalar(*numbers):

@@ -57,7 +57,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
     Natural units are used. For a measured body the units are seconds, newtons (the weight if the mass is
     unknown), and millimetres (metres if R is at least 0.1 m). The time after the end of a motion is grey.
 
-    - With a law of friction, the path is red and the time is tinted while the body slips.
+    - With a law of friction, the path is red, and the background over time is shaded, while the body slips.
     - With `restitution`, the height of the lowest point is drawn together with the inclination. Impacts are
       marked, and the times in the air and on both rims are tinted, too.
     - For a body that rolls straight at constant inclination, the distance of its centre from the first

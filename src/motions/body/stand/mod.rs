@@ -122,7 +122,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[SIN], self.at[COS]) = (0.0, up);
         self.sees_face();
         if self.of.turning != 0.0 {
-            let expected = "0 for a body on its face, whose table does not turn";
+            let expected = "0 for a body on its face, since its table must not turn";
             return Err(Error::OutOfRange { name: "turning", value: self.ask.turning, expected });
         }
         let next = if up * at.w2 < 0.0 { self.rises_from_face() } else { self.stands_on_face() };
