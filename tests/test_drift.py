@@ -101,7 +101,10 @@ def test_a_single_question_without_an_answer_is_an_error_with_its_name():
         (lambda: sc.drift(TALL, 0.36, VISCOUS, centre="rolling"), "kappa = -"),
         (lambda: sc.drift(TALL, sc.State(1.0, 0.3, 0.0, 0.1), VISCOUS, centre="rolling"), "theta'' = "),
         (lambda: sc.drift(TALL, TALL.steady(0.2).kicked(0.1), VISCOUS, centre="rolling"), "w2 = -0.1"),
-        (lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS), "centre='rest' needs"),
+        (
+            lambda: sc.drift(TALL, TALL.circular(1.2, 3.0), VISCOUS),
+            r"whose centre is at rest, or give centre='rolling'",
+        ),
         (lambda: sc.drift(TALL, 0.2, VISCOUS, centre="slipping"), "centre = 'slipping'"),
     ],
 )

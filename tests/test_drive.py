@@ -17,7 +17,7 @@ def axes_at(theta, phi):
 
 
 def accelerations(body, y, push, mu, slope=0.0):
-    """Rates of (axis, w, centre velocity, centre) of a body on its rim, by Newton and Euler, in the axes of the table.
+    """Rates of (axis, w, centre velocity, centre) along the axes of the table, by Newton and Euler.
 
     Without `mu` the contact point is at rest, else it slips against friction.
     """
@@ -155,7 +155,8 @@ def test_the_work_of_a_drive_is_what_a_body_gains():
 def test_a_sweep_of_driven_bodies_has_the_motions_of_roll_one_by_one():
     pushes = sc.custom.Drive(lambda now: ((0.1 * np.cos(now.time), 0.1), now.axes.T @ [0.0, 0.05, 0.03]))
     coin, theta = sc.Body.solid(0.1), np.linspace(0.4, 1.3, 6)
-    options = {"losses": pushes + sc.loss.AirLinear(0.01), "contact": sc.Coulomb(0.3), "restitution": 0.4}
+    losses = pushes + sc.loss.AirLinear(0.01)
+    options = {"losses": losses, "contact": sc.Coulomb(0.3), "restitution": 0.4, "tol": 1e-10}
     y = coin.steady(theta).kicked(0.1)
     starts = sc.State(y.theta, y.w1, y.w2, y.w3, height=0.2)
     many = sc.sweep.roll(coin, starts, 3.0, **options)
