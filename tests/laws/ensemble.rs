@@ -326,8 +326,8 @@ fn what_makes_no_sense_is_refused_or_marked() {
         let out = MotionOutput::new(&mut error, &mut method, &mut status);
         roll(&starts, job, out, 1, |_| true).unwrap_err().to_string()
     };
-    assert!(refused(&Job::new(&[])).contains("at least one time"));
-    assert!(refused(&Job::new(&[1.0, 0.5])).contains("in order"));
+    assert!(refused(&Job::new(&[])).contains("one or more times"));
+    assert!(refused(&Job::new(&[1.0, 0.5])).contains("ascending"));
     assert!(refused(&Job::new(&times).with_tol(0.0)).starts_with("tol = 0.0"));
     for (ask, name) in [
         (Ask::default().with_slope(0.2), "slope = 0.2"),

@@ -193,8 +193,8 @@ fn a_file_comes_back_and_says_what_is_wrong_with_it() {
     };
     assert!(refused("/spincyl-scene", 2.into()).contains("spincyl-scene = 2"));
     assert!(refused("/body/mass", "much".into()).contains("much"));
-    assert!(refused("/expected/position/0/2", 7.0.into()).contains("its answer"));
-    assert!(refused("/natural/ask/restitution", 0.4.into()).contains("its answer"));
+    assert!(refused("/expected/position/0/2", 7.0.into()).contains("the known motion of this file"));
+    assert!(refused("/natural/ask/restitution", 0.4.into()).contains("the known motion of this file"));
     assert!(Scene::read("{}").unwrap_err().to_string().starts_with("text: missing field"));
     let mut bare = file.clone();
     bare.as_object_mut().unwrap().remove("natural");
