@@ -227,7 +227,7 @@ def test_the_wrapper_is_thin_and_no_file_is_long():
     assert not {name: n for name, text in texts.items() if (n := len(text.splitlines())) > 450}
     top = [path.read_text("utf-8") for path in PACKAGE.glob("*.py") if path.stem not in DOORS]
     assert len(top) > 20
-    assert sum(map(code_lines, top)) <= 4910
+    assert sum(map(code_lines, top)) <= 4900
 
 
 def test_the_name_of_a_function_or_class_occurs_once_in_a_layer():

@@ -152,7 +152,7 @@ class Outputs(Hinting):
     )
     drilling = Number(
         PATCH,
-        "(n,) angular velocity about the vertical, relative to the table, sqrt(g/R) or rad/s. Needs a patch.",
+        "(n,) angular velocity about the vertical over the table, sqrt(g/R) or rad/s. Needs a patch.",
     )
     creep = Number(
         PATCH, "(n,) creep, slip/(`drilling` times the radius of the patch); 0 in rolling. Needs a patch."

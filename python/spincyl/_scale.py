@@ -172,9 +172,7 @@ def si_factor(natural: str, scale: Scale | None) -> tuple[float | None, str]:
 def moment_in_natural(name: str, value: Reals, scale: Scale | None) -> float:
     """A moment of inertia in M R^2, from kg m^2, a text with a unit or a quantity."""
     if scale is None or not scale._is_weighed:
-        need = (
-            "radius and mass of the body: in_metres(mass, radius=, i1=, i3=), or scale=sc.Scale(radius, mass)"
-        )
+        need = "radius and mass: in_metres(mass, radius=, i1=, i3=), or scale=sc.Scale(radius, mass)"
         raise TypeError(f"{name} = {value!r}: a moment in kg m^2 needs {need}")
     found = number(name, si(name, value, "kilogram*metre**2")) / scale.mass / scale.radius**2
     if _LARGE_MOMENT < found < math.inf:
