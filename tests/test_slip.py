@@ -467,7 +467,7 @@ def test_any_start_gives_a_motion_that_keeps_its_energy_or_a_refusal(
         m = sc.roll(body, start, np.linspace(0, 3, 31), contact=contact, want=("pose", "force"))
     except ValueError as e:
         # a slip of 1e-130 is lost beside the rotation of the body
-        refusals = ("no unique contact force (Painleve) at", "cannot be computed")
+        refusals = ("no unique contact force (Painleve) at", "rounding errors outweigh the motion")
         assert any(words in str(e) for words in refusals)
         return
     total = m.energy + m.dissipated
