@@ -91,6 +91,8 @@ const PROBE_REACTION: f64 = 0.125;
 /// Sweeps of the projection before Newton's method, and if Newton's method has not converged.
 const PROJECTION_SWEEPS: [usize; 2] = [100, 5000];
 const NEWTON_STEPS: usize = 25;
+/// The square of a singular value of the slope, beside the sum of all, below which it counts as zero.
+const SINGULAR: f64 = 1e-15;
 /// Size of an error of the reactions that counts as rounding.
 const CONVERGED: f64 = 1e-13;
 /// A part whose reaction is so close to its limit is held, since friction holds up to its limit.
@@ -263,7 +265,7 @@ impl Together {
             self.project_repeatedly(&mut r, sweeps);
             for _ in 0..NEWTON_STEPS {
                 let (off, slope) = self.projection_error(&r);
-                let Ok(step) = slope.svd(true, true).solve(&off, 1e-10) else { break };
+                let Some(step) = least_step(&slope, &off) else { break };
                 let next = r - step;
                 if self.projection_error(&next).0.amax() >= off.amax() {
                     break;
@@ -433,6 +435,14 @@ impl Together {
         };
         Self::of([slips, limits[1], limits[2], limits[3]], respond)
     }
+}
+
+/// The shortest x with slope x = off. Two reactions that resist the same motion make the slope singular; where it nearly is,
+/// x is too short, and the next step of Newton's method adds the rest.
+fn least_step(slope: &SMatrix<f64, REACTIONS, REACTIONS>, off: &Reactions) -> Option<Reactions> {
+    let squared = slope * slope.transpose();
+    let shift = SMatrix::from_diagonal_element(SINGULAR * squared.trace());
+    Some(slope.tr_mul(&(squared + shift).cholesky()?.solve(off)))
 }
 
 #[cfg(test)]

@@ -227,7 +227,7 @@ impl FaceFriction {
             // The next step is below rounding, as each has the square of the one before.
             close = width.abs() <= LAST_STEP * arc.width
                 && angle.abs() <= LAST_STEP * arc.angle.min(arc.off).abs();
-            let bounded = (arc.width + width).clamp(0.2 * arc.width, 1.0) - arc.width;
+            let bounded = (arc.width + width).max(0.2 * arc.width).min(1.0) - arc.width;
             arc = arc.moved(bounded, angle.clamp(-0.3, 0.3));
         }
         None
