@@ -1,7 +1,7 @@
 """Build and pack the cores of the live page, with a record of the sources that they were built from.
 
 core.lzma has what every page needs; core.friction.lzma also has friction and losses. The code of a page has
-to be short, so each is built from a copy of the sources in which no function has to be inlined, and is split.
+to be short, so each is built from a copy of the sources in which few functions have to be inlined, and is split.
 
     python web/build.py            builds both if rustup has the target, else says how to install it
     python web/build.py FOLDER     writes them there, for a comparison; the committed ones stay
@@ -40,9 +40,16 @@ READ = [
     "benches/*.rs",
     "benches/Cargo.toml",
 ]
-#: What the library inlines everywhere for its speed, a page inlines where the compiler finds that it pays.
+#: What the library inlines everywhere for its speed, a page inlines where the compiler finds that it pays; except for
+#: stones, whose motion takes a page longest.
 INLINED = "inline(always)", "inline"
-FLAGS = ["-C", "target-feature=+simd128", "-C", "link-arg=--compress-relocations"]
+STONES = HOME / "src/laws/stone", HOME / "src/motions/stone"
+#: A loop has its variables as they are written, since variables made for addressing compress worse.
+FLAGS = [
+    *("-C", "target-feature=+simd128"),
+    *("-C", "link-arg=--compress-relocations"),
+    *("-C", "llvm-args=--disable-lsr"),
+]
 
 
 def sources():
@@ -70,13 +77,14 @@ def can():
 
 
 def copied():
-    """A copy of what a build reads, without functions that have to be inlined."""
+    """A copy of what a build reads, in which only functions of stones have to be inlined."""
     copy = HOME / "target/short"
     shutil.rmtree(copy, ignore_errors=True)
     for path in (path for pattern in READ for path in HOME.glob(pattern)):
         to = copy / path.relative_to(HOME)
         to.parent.mkdir(parents=True, exist_ok=True)
-        to.write_text(path.read_text(encoding="utf-8").replace(*INLINED), encoding="utf-8")
+        text = path.read_text(encoding="utf-8")
+        to.write_text(text if path.parent in STONES else text.replace(*INLINED), encoding="utf-8")
     return copy
 
 

@@ -1,9 +1,16 @@
 """Splits a core into streams of like numbers, which compress better; `play.join.js` joins them."""
 
 #: The streams, in their order; "head" and "tail" are what is before and after the code.
-STREAMS = ("head", "forms", "codes", "constants", "offsets", "gets", "sets", "floats", "tail")
+STREAMS = ("head", "forms", "codes", "short", "middle", "long", "offsets", "gets", "sets", "floats", "tail")
 #: Instructions with one number: branches, calls, globals, the size of the memory and integers of 64 bits.
 PLAIN = 12, 13, 16, 35, 36, 63, 64, 66
+#: log2 of the bytes that a load or store moves, in the order of their codes: their alignment, but for few.
+ALIGNED, FIRST_ALIGNED = "23230011001122232301012", 40
+#: Added to the code of a load or store that is aligned otherwise: no instruction has such a code.
+OTHERWISE = 185
+#: Codes of an integer constant by its length: of one byte, two, and more.
+CONSTANT = {1: (65, "short"), 2: (249, "middle")}
+LONG = 250, "long"
 #: The section of a module that contains its code.
 CODE = 10
 
@@ -84,9 +91,16 @@ class Split:
         elif code in (33, 34):
             self.number("sets")
         elif 40 <= code <= 62:
-            self.number("codes", "offsets")
+            if self.core[self.at] == int(ALIGNED[code - FIRST_ALIGNED]):
+                self.at += 1
+            else:
+                self.streams["codes"][-1] += OTHERWISE
+                self.number("codes")
+            self.number("offsets")
         elif code == 65:
-            self.number("constants")
+            length = next(n for n in range(1, 6) if self.core[self.at + n - 1] < 128)
+            self.streams["codes"][-1], stream = CONSTANT.get(length, LONG)
+            self.bytes(stream, length)
         elif code in (67, 68):
             self.bytes("floats", 4 if code == 67 else 8)
         elif code == 252:
