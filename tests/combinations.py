@@ -80,7 +80,7 @@ REASONS = [
     Reason("B", r"acts along a rim, which a stone", True,
            "The loss law acts along a rim, and a stone has no rim."),
     Reason("C", r"together with drilling friction, which gives the same couple", True,
-           "The friction of a patch already resists drilling; the law would count it twice."),
+           "The friction of a patch already resists drilling; the loss law `Drilling` would count it twice."),
     Reason("D", r"are those of a body of revolution, and a stone has no axis", True,
            "A couple of your own is a function of the inclination of an axis, and a stone has no axis."),
 ]  # fmt: skip
@@ -216,7 +216,7 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
     lines = [
         "Each row is a reason to refuse a combination, with the number of combinations that are refused for it:",
         "",
-        "| letter of the reason | reason | number of combinations refused for one motion | number refused for many motions |",
+        "| letter of the reason | reason | number of combinations refused for one motion (`roll`) | number of combinations refused for many motions (`sweep.roll`) |",
         "| --- | --- | --- | --- |",
     ]
     for physics in (True, False):
@@ -242,8 +242,8 @@ def count(found: dict[tuple[str, str, str, str, str], Cell]) -> str:
 #: the sentence before each table
 _KEY = (
     "Each row is a loss law, and each column a law of friction of the contact. A cell says whether motions with both are"
-    ' computed: "yes", "on the\ntable" (only as long as the body touches the table), or "no" with the letter of the reason'
-    " (A to D in the table above)."
+    ' computed: "yes", "on the\ntable" (only as long as the body touches the table), or "no" with the letter of the reason:'
+    " A, a ball has no face; B, a stone\nhas no rim; C, a patch resists drilling already; D, a stone has no axis."
 )
 #: heads of the columns
 _HEADS = {
