@@ -92,7 +92,7 @@ def efficiency(client, blocks, count, rounds):
         "time of dask, two workers (µs)",
     )
     head(
-        "Time per motion by the clock. Each row is a job, computed in four ways; the efficiency is the shorter time of two threads of one process over the time of two workers:",
+        "Time per motion by the clock. Each row is a job, the motions from one kind of initial states; the efficiency is the shortest time without dask, half the time to draw the initial states plus that of `sweep.roll`, over the time of two workers:",
         "job",
         "motions per block",
         "number of blocks",
@@ -101,7 +101,7 @@ def efficiency(client, blocks, count, rounds):
     )
     for line in walls:
         row(*line)
-    title = "CPU time per motion of all threads and processes, in which other work on the computer counts less. Each row is a job, computed in the same four ways:"
+    title = "CPU time per motion, the sum over all threads and processes, on which other work on the computer has less influence. Each row is a job, the motions from one kind of initial states; the efficiency is the sum of the first two times over the time of two workers:"
     part = "part of this time in client and scheduler (µs)"
     head(title, "job", *told, part, "efficiency (ratio of times)")
     for line in cpus:
@@ -112,7 +112,7 @@ def efficiency(client, blocks, count, rounds):
 def graph(blocks):
     """The number and the size of the tasks that the scheduler receives."""
     head(
-        "Bytes that the scheduler sends to the workers to describe a block. Each row is a job with blocks of one size:",
+        "Bytes that the scheduler sends to the workers to describe a block. Each row is a job, the motions from one kind of initial states, with blocks of one size:",
         "job",
         "motions per block",
         "tasks per block",
@@ -135,7 +135,7 @@ def spread(client, blocks, count):
     from distributed import get_task_stream
 
     head(
-        "Times in which a worker computes a block of the sweep. Each row is a job:",
+        "Times in which a worker computes a block of the sweep. Each row is a job, the motions from one kind of initial states:",
         "job",
         "number of blocks",
         "median time (s)",
@@ -167,7 +167,7 @@ def plan(blocks, each, used, kept):
         "results per second (MB/s)",
     )
     head(
-        "Times and sizes of a sweep of 1e9 motions, computed from the tables above. Each row is a job with a number of workers and of blocks:",
+        "Times and sizes of a sweep of 1e9 motions, computed from the tables above. Each row is a job, the motions from one kind of initial states, with a number of workers and of blocks:",
         "job",
         "number of workers",
         "number of blocks",

@@ -30,7 +30,7 @@ def scheduler(folder, count):
         "saved": lambda n: sc.sweep.save(lazy(kicked, 2 * n, 2), pathlib.Path(folder) / f"small{n}.zarr"),
     }
     head(
-        "Time that the scheduler takes for one more block, measured with blocks of two motions. Each row is a use of the results:",
+        "Time that the scheduler takes for one more block, measured with blocks of two motions. In each row the results of a block are used in one way, counted by their status or saved to files:",
         "use of the results",
         "CPU time of client and scheduler per block (ms)",
         "time by the clock per block with two workers (ms)",
@@ -56,7 +56,12 @@ def memory(blocks):
         "further memory of a busy worker at its peak (MB)",
         "further memory over the results of a block",
     )
-    head("Memory that a worker needs for a block. Each row is a job:", "job", "motions per block", *told)
+    head(
+        "Memory that a worker needs for a block. Each row is a job, the motions from one kind of initial states:",
+        "job",
+        "motions per block",
+        *told,
+    )
     for name, start in JOBS.items():
         size = blocks[name]
         with workers() as (_, client):
@@ -88,7 +93,7 @@ def saved(cluster, folder, size, count):
     store, start = pathlib.Path(folder) / "sweep.zarr", any_start
     total = size * count
     head(
-        "A sweep from any initial states that two workers save in 24 blocks. Each row is something that happens meanwhile:",
+        "Time and files of a sweep from any initial states, which two workers save in 24 blocks. Each row is an event during the saving:",
         "what happens during the saving",
         "time by the clock (s)",
         "bytes per motion",
