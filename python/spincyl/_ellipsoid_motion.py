@@ -149,9 +149,9 @@ class EllipsoidMotion(Motion):
 
 
 def start_of_stone(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
-    """The state from which a stone starts, without a slip where no law of friction acts on the table.
+    """Return the initial state of a stone, without its `slip` if the contact has no law of friction.
 
-    An error names an argument that only bodies of revolution have.
+    Raises an error for `step` and `method`, which only bodies of revolution have.
     """
     instance_of("state", state, EllipsoidState)
     slides = has_friction(contact) or (restitution is not None and state.height is not None)

@@ -198,7 +198,7 @@ def state_without_checks(
     height: Reals | None = None,
     lift: Reals | None = None,
 ) -> State:
-    """Make a state from numbers known to be valid; checks would take longer than computing many a motion."""
+    """Make a state from numbers known to be valid; checks would take longer than computing a short motion."""
     found = object.__new__(State)
     theta, w1, w2, w3 = four
     found.__dict__.update(theta=theta, w1=w1, w2=w2, w3=w3, slip=slip, height=height, lift=lift)
