@@ -310,7 +310,7 @@ def common_shape(named: dict[str, Reals]) -> tuple[int, ...]:
 
 
 def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Decorator of functions with broadcast arguments: names shapes that do not fit, silences NumPy.
+    """Decorator for functions that broadcast their arguments: an error about shapes names the arguments.
 
     Overflow gives inf and invalid operations give NaN, without warnings, as in the core.
     """

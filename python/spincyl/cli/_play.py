@@ -41,7 +41,7 @@ def play_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--theta", type=angle, metavar="ANGLE", help="inclination (default 1.3, for the default tube 89.5deg)"
     )
-    how.add_argument("--kick", type=float, default=0.0, help="theta' added to the state (default 0)")
+    how.add_argument("--kick", type=float, default=0.0, help="number added to the initial theta' (default 0)")
     tables = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument(
         "--contact", choices=tables, default="rolling", help="contact with the table (default: rolling)"
@@ -72,11 +72,13 @@ def play_options(sub: ArgumentParser) -> None:
         "--slow",
         type=float,
         default=20.0,
-        help="factor of slow motion (default 20; for a body without a size, R = 1 cm)",
+        help="factor of slow motion (default 20; a body without a size has R = 1 cm)",
     )
     sub.add_argument("-o", "--output", required=True, metavar="FILE", help="output file (.html)")
     sub.add_argument(
-        "--lean", action="store_true", help="smaller page without friction and losses, only rubber and ice"
+        "--lean",
+        action="store_true",
+        help="smaller page without friction and losses: rolling or a smooth table",
     )
     sub.add_argument("--open", action="store_true", help="open the page in the browser")
 

@@ -18,7 +18,7 @@ Numbers: TypeAlias = dict[str, Any]
 
 
 def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
-    """Print rows in three columns."""
+    """Print rows in three columns: a name, a value in natural units, and the value in SI or degrees."""
     for name, natural, si in rows:
         print(f"  {name:<22} {natural:<34} {si}".rstrip(), file=file)
 
@@ -212,7 +212,7 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
 
 
 def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
-    """Energy that a motion has lost, and its share."""
+    """Text of the energy that a motion has lost, in M g R; and text of its share, with joules if known."""
     first = float(m.energy[0])
     first += float(m.dissipated[0]) if has_friction(m.contact) else 0.0
     first += 0.0 if m.losses is None else float(m.work_lost[0])

@@ -12,7 +12,7 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._scale import Scale, si_factor
 
-#: Begin of the hash of an array, or of another input, in the record of a sweep.
+#: Text before the hash of an array, or of another input, in the record of a sweep.
 CONTENT = "content "
 
 

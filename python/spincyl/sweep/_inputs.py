@@ -168,7 +168,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -----
     The arguments are stored in the coordinates ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The
     names end with the names of the fields of `Body`, `State`, `Coulomb`, `Viscous` and the laws of
-    `spincyl.loss`; for an `Ellipsoid` they end with a1, i11, i23, d1 and so on. These coordinates are in
+    `spincyl.loss`; for an `Ellipsoid` they end with a1 (semi-axis), i11 and i23 (inertia),
+    d1 (offset) and so on. These coordinates are in
     natural units, also for measured bodies.
 
     Examples
@@ -220,7 +221,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
 
 
 def _input(array: Any) -> Any:
-    """A number, or an array with the coordinates of its dimensions only."""
+    """Return an array without dimensions as a number, any other with no coordinates but its dimensions."""
     return float(array) if array.ndim == 0 else array.reset_coords(drop=True)
 
 

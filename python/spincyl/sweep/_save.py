@@ -75,8 +75,8 @@ def save(
     -----
     UserWarning
         If completed blocks, coordinates or metadata are missing or damaged; there is one warning, and they
-        are computed again. It names the attributes of this sweep that had another value. If files cannot be
-        locked; two processes could then save to one store unnoticed.
+        are computed again. The warning names the attributes of this sweep that had another value. If files
+        cannot be locked; two processes could then save to one store unnoticed.
 
     Notes
     -----

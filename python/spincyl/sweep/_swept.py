@@ -1,4 +1,4 @@
-"""Sweeps of motions: columns in, a Dataset out, at once or block by block for arrays of dask."""
+"""Computation of a sweep: a Dataset from columns of inputs, at once or in blocks for arrays of dask."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -50,7 +50,7 @@ def swept(
     progress: Progress | bool | None,
     length: str = "R",
 ) -> "xarray.Dataset":
-    """The Dataset of a sweep. `law` fills the columns of a block; `labels` has their units and meanings."""
+    """The Dataset of many motions. `law` fills the columns of a block; `labels` has their units and meanings."""
     lib: Any = optional_library("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
