@@ -44,7 +44,7 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("velocity", "v", "speed"), "body.centre_velocity(m.states) is that of the centre"),
         **dict.fromkeys(
             ("position", "positions", "x", "path", "trajectory", "centre_of_mass", "center", "pose"),
-            'roll with want="pose" gives centre, contact_point and orientation',
+            'centre, contact_point and orientation need want="pose" in roll',
         ),
         **dict.fromkeys(("quaternion", "quaternions", "rotation", "attitude"), "orientation is a quaternion"),
         **dict.fromkeys(("angle", "tilt", "alpha", "inclination"), "theta is the inclination"),
@@ -52,21 +52,21 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("precession", "gamma"), "states has it: m.states.precession"),
         "spin": "states has it: m.states.spin; psi is the angle of the spin",
         **dict.fromkeys(("events", "end", "ending", "stops_at"), "event has the time and state of the end"),
-        **dict.fromkeys(("heat", "lost", "energy_lost"), "see dissipated, work_lost and lost_in_impacts"),
         **dict.fromkeys(
-            ("force", "forces", "normal_force"), 'roll with want="force" gives normal and friction'
+            ("heat", "lost", "energy_lost"), "dissipated, work_lost and lost_in_impacts are the lost energies"
         ),
+        **dict.fromkeys(("force", "forces", "normal_force"), 'normal and friction need want="force" in roll'),
         **dict.fromkeys(("animate", "animation", "video", "movie", "gif"), "sc.view(m).save('film.mp4')"),
         **dict.fromkeys(("view", "show", "display", "page", "html"), "sc.view(m) shows it"),
         **dict.fromkeys(("save", "to_csv", "csv"), "to_dataframe().to_csv(path), or sc.view(m).save(path)"),
         **dict.fromkeys(("df", "dataframe", "to_pandas", "table"), "to_dataframe() is a table"),
-        **dict.fromkeys(("bounces", "hits", "collisions"), "roll with restitution= gives impacts"),
+        **dict.fromkeys(("bounces", "hits", "collisions"), "impacts has them, if roll gets restitution="),
         **dict.fromkeys(("steps", "step"), "nfev counts evaluations; rk4 is about a fixed step"),
     },
     "EllipsoidMotion": {
         **dict.fromkeys(
             ("velocity", "v", "speed"),
-            'slip is that of the contact point; roll with want="pose" gives centre',
+            'slip is that of the contact point; centre needs want="pose"',
         ),
         **dict.fromkeys(("precession", "phi", "psi"), "spin is the angular velocity about the vertical"),
     },

@@ -16,7 +16,7 @@ class Pointer(NamedTuple):
 
 
 def pointer(function: object, told: str) -> Pointer | None:
-    """The C function of a numba, ctypes or SciPy object, or None; TypeError if its signature is not `told`."""
+    """C function of a numba, ctypes or SciPy object, or None; TypeError if the signature is not `told`."""
     import ctypes
 
     void, number, several = None, ctypes.c_double, ctypes.POINTER(ctypes.c_double)

@@ -50,7 +50,7 @@ def swept(
     progress: Progress | bool | None,
     length: str = "R",
 ) -> "xarray.Dataset":
-    """The Dataset of many motions. `law` fills the columns of a block; `labels` has their units and meanings."""
+    """The Dataset of many motions. `law` fills columns of a block; `labels` has their units and meanings."""
     lib: Any = optional_library("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
