@@ -204,7 +204,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     @elementwise
     def hertz(self, at: Reals | State) -> Result:
-        """Precession rate in turns per second; needs a measured body.
+        """Precession rate of a state, in turns per second; needs a measured body.
 
         Parameters
         ----------

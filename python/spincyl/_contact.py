@@ -26,7 +26,7 @@ Face: TypeAlias = Literal["ring", "disc"]
 CODES = {name: dict(values) for name, values in _core.codes()}
 #: Code of each kind of contact, including the laws of friction.
 TABLES = CODES["Table"]
-#: Code of each way in which the table presses on a face.
+#: Code of each value of `Face`.
 FACES = CODES["Face"]
 
 
@@ -287,7 +287,7 @@ def check_contact_scale(contact: AnyContact, scale: Scale | None) -> None:
 
 
 def has_patch(contact: object) -> bool:
-    """Whether a contact, or one of several contacts, has a patch."""
+    """Whether a contact has a patch of positive radius; of many contacts, whether one has, or may have."""
     if not isinstance(contact, Coulomb):
         return False
     patch = contact.patch
@@ -295,7 +295,7 @@ def has_patch(contact: object) -> bool:
 
 
 def code_of_friction(contact: Friction) -> int:
-    """The code of a law of friction."""
+    """Code by which the compiled core knows the kind of a law of friction."""
     return TABLES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
 
 

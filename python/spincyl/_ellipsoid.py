@@ -403,7 +403,7 @@ class Ellipsoid(StoneStarts):
         return [*components(self.semi_axes), *moments, *components(self.offset), self.theta_end]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
-        """Apply a function of the core to each stone of a family; NaN, or the error of a single stone."""
+        """Apply a function of the core to each stone; where it fails, NaN, or the error of a single stone."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
         common_shape({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})

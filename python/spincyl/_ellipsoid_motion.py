@@ -122,7 +122,7 @@ class EllipsoidMotion(Motion):
 
     @property
     def _doubt(self) -> str:
-        """The time up to which the motion is known, in words; empty if that is its end."""
+        """Text such as "known to 1 % up to t = 5"; empty if the motion is known up to its end."""
         if self.natural._known_until is None:  # type: ignore[attr-defined]
             return ""
         second = "" if self.scale is None else " s"

@@ -94,7 +94,7 @@ MESSAGES = {
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
     Ending.STOPS: ("dry friction holds the whole body", "comes to rest"),
-    Ending.BOUNDED: ("the motion was given up", "goes on"),
+    Ending.BOUNDED: ("the motion was given up", "still moves"),
     Ending.LANDING: ("no unique landing on both rims", "lands on both rims"),
 }
 

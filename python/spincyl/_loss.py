@@ -30,10 +30,10 @@ from spincyl._state import State, numbers
 
 
 class LossRow(NamedTuple):
-    """A row of the core's table of loss laws."""
+    """What the compiled core knows of a loss law: its coefficient, its units, and where it acts."""
 
     parameter: str  #: the name of the coefficient
-    exponent: float | None  #: with which a thin disk comes to its end
+    exponent: float | None  #: n: theta of a thin disk falls as (remaining time)^n
     measures: str  #: what the unit of the coefficient measures, such as a length
     natural: str
     si: str
@@ -88,7 +88,7 @@ class Loss(Hinting):
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power lost, in M g R sqrt(g/R).
+        """Power that the law takes from a body in a state, in M g R sqrt(g/R).
 
         With the couple m and the angular velocity w it is P = -m.w >= 0, and the energy falls as dE/dt = -P.
 
@@ -179,7 +179,7 @@ class Law(Loss):
 
     @property
     def _parameter(self) -> str:
-        """The name of the coefficient."""
+        """The name of the coefficient, such as "eps"."""
         return fields(self)[0].name  # type: ignore[arg-type]
 
     @property

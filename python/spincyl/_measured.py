@@ -179,7 +179,7 @@ def _in_seconds(scale: Scale, length: str) -> Iterator[None]:
 
 
 def _seconds(before: str, number: str, second: float) -> str:
-    """A time in seconds; a proposed step is rounded so that it does not become longer."""
+    """Text of a time in seconds, from a text in natural units; a step that is proposed is rounded down."""
     told = float(number) * second
     return f"{0.99 * told:.3g}" if before == "a step of " else f"{told:.12g}"
 

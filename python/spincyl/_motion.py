@@ -375,7 +375,7 @@ class Motion(Outputs, Showing):
 
     @property
     def _doubt(self) -> str:
-        """The time up to which the motion is known, in words; empty if that is its end."""
+        """Text such as "known to 1 % up to t = 5"; empty if the motion is known up to its end."""
         return ""
 
     def _about(self) -> dict[str, Any]:

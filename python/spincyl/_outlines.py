@@ -199,5 +199,5 @@ class Outlines:
 
 
 def _half(diameter: float) -> float:
-    """The radius in metres, of a diameter."""
+    """Half of a diameter, in metres; the diameter is a number in metres or a text with a unit."""
     return in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres") / 2

@@ -227,7 +227,7 @@ def methods_in_words(phases: Sequence[Phase], within: float) -> str:
 
 
 def slipping_time(phases: Sequence[Phase], end: float) -> float:
-    """Total time of slipping up to the time `end`."""
+    """Total duration of the phases of slipping, up to the time `end`."""
     begins = np.array([phase.time for phase in phases] + [end])
     slips = np.array([phase.kind in ("slipping", "lying", "pivoting") for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())

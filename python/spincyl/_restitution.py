@@ -140,7 +140,7 @@ def check_restitution(restitution: object) -> None:
 
 
 def coefficient_of(restitution: Any) -> float:
-    """The coefficient of normal restitution."""
+    """The coefficient of normal restitution of a law, or of a number, which is the coefficient itself."""
     return float(restitution.e if isinstance(restitution, _ImpactLaw) else restitution)
 
 

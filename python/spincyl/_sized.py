@@ -139,7 +139,7 @@ class Sized:
         return self.scale
 
     def _check_scale(self) -> None:
-        """Raise TypeError for a scale of another type."""
+        """Raise TypeError if the field `scale` is neither a `Scale` nor None."""
         given: Any = self.scale
         if given is not None and not isinstance(given, Scale):
             raise TypeError(f"scale: expected a Scale, not {type(given).__name__}")

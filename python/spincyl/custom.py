@@ -281,7 +281,7 @@ class Drive(_Own):
                 (x, y), (m1, m2, m3) = found
                 return np.array([x, y, m1, m2, m3], dtype=float) / ([force] * 2 + [couple] * 3)
             except (TypeError, ValueError):
-                expected = "a force along x and y, and a couple along e1, e2, e3"
+                expected = "the function to return ((fx, fy), (m1, m2, m3)), force and couple"
                 raise TypeError(f"drive: expected {expected}, not {found!r}") from None
 
         return push

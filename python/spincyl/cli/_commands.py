@@ -39,7 +39,7 @@ _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
 def _refuse_options(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that exclude a kind of body, naming the first of them."""
+    """Raise ValueError if an option of `names` is given, which the options of this `kind` of body exclude."""
     for name in names:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} cannot be combined with {kind}: {why}")
@@ -150,7 +150,7 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
 
 
 def steady(args: Namespace) -> None:
-    """Print steady states as a table."""
+    """Print the steady states that the options ask for, as a table or as JSON."""
     body, scale = body_of(args)
     if args.hertz and scale is None:
         raise ValueError("--hertz needs --radius, or --outer and --length in metres")
@@ -233,7 +233,7 @@ def _draw_map(data: Any, args: Namespace) -> None:
 
 
 def figures(args: Namespace) -> None:
-    """Draw the figures of a lecture."""
+    """Draw the figures of a lecture as files in a folder, and print their paths."""
     optional_library("matplotlib", "plot").use("agg")
     from spincyl import plot
 
@@ -298,7 +298,7 @@ def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
 
 
 def roll_(args: Namespace) -> None:
-    """Compute a motion; print a summary, or write a file."""
+    """Compute a motion from an initial state; print a summary, and write a file if -o is given."""
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")

@@ -64,7 +64,7 @@ def drift_options(sub: ArgumentParser) -> None:
 
 
 def drift(args: Namespace) -> None:
-    """Compute a drift; print a summary, or write a file."""
+    """Compute a drift; print a summary, and write a file if -o is given."""
     body, scale = body_of(args)
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")

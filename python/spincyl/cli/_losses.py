@@ -14,7 +14,7 @@ _NAMES = {command_line_name(law): coefficient for coefficient, law in KINDS.item
 
 
 def _help_line(name: str, coefficient: str) -> str:
-    """A line of help: coefficients in natural units and in SI, and the law in words."""
+    """A line of help on a loss law: its name, an example in natural units, one in SI, and what it is."""
     natural, in_si, words = KINDS[coefficient]._example
     return f"  {name + '=' + natural:<24} or {in_si:<9} {words}"
 

@@ -1,4 +1,4 @@
-"""The command `play`: the live page as one file."""
+"""The command `play`: an interactive page that computes motions, as one file."""
 
 import math
 import sys
@@ -84,7 +84,7 @@ def play_options(sub: ArgumentParser) -> None:
 
 
 def run(args: Namespace) -> None:
-    """Write the live page."""
+    """Write the interactive page to a file, and open it in the browser if --open is given."""
     told = args.ell, args.balls, args.ball, args.outer, args.inner, args.length, args.bore, args.fillet
     body, scale = (None, None) if all(x is None for x in told) else body_of(args)
     if body is not None and scale is not None:

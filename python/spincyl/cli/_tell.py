@@ -1,4 +1,4 @@
-"""Output of bodies, states and motions: numbers for JSON, and rows of a table."""
+"""Output of bodies, states and motions on the command line: numbers for JSON, and rows of a table."""
 
 import json
 import math
@@ -118,7 +118,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
 def _stability_in_words(
     body: Body, state: State, contact: Contact, kappa: float, scale: Scale | None
 ) -> tuple[str, str]:
-    """Whether a state is stable, and its nutation or growth rate."""
+    """Text whether a state is stable, with its nutation or growth rate; and a text of this rate in SI."""
     if kappa > 0:
         nutation = body.nutation(state, contact)
         turns = "" if scale is None else f"{scale.turns(nutation):.6g} turns/s"
@@ -189,7 +189,7 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
 
 
 def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Row]:
-    """The nutation of a motion without phases, as rows."""
+    """Turning points, period, and turn and drift per period of a motion without phases, as rows."""
     found = swing(m.body, m.start, contact)
     ends = (found.theta_min, found.theta_max)
     yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
@@ -256,7 +256,7 @@ _MOST_PHASES = 6
 
 
 def _most_friction(m: Motion) -> float:
-    """The largest coefficient of friction on the table; in the air there is none."""
+    """The largest coefficient of friction of a motion, apart from the times when the body is in the air."""
     needs = m.friction_coefficient
     return float((needs if m.natural._impacts is None else needs[m.normal > 0]).max(initial=0.0))
 

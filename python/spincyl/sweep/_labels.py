@@ -67,7 +67,7 @@ def flags(codes: type[IntEnum]) -> dict[str, object]:
 
 
 def given_up(status: np.ndarray) -> None:
-    """Warn if the core has given up motions."""
+    """Warn of motions whose computation was given up at a limit (`Status.BOUNDED`)."""
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"

@@ -132,7 +132,7 @@ def _block_of_motions(
     threads: int,
     progress: Progress | None,
 ) -> tuple[np.ndarray, ...]:
-    """The arrays of one block of motions."""
+    """Compute one block of motions; dask calls this function for each block of lazy inputs."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     shapes = {name: (*shape, times.size) if name in spread else shape for name in names}
     types = {name: np.float64 if name in WRITTEN else _dtype(name) for name in names}
