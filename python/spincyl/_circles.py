@@ -116,7 +116,7 @@ class Circles:
         """
         told = self._told()[1]
         if not len(told):
-            raise ValueError("k: the body stands on a single circle; an apex needs two")
+            raise ValueError(f"k = {k!r}: the body has a single circle; an apex needs two, k and k + 1")
         row = told[whole("k", k, 0, len(told) - 1)]
         if row[1] == 0:
             raise ValueError(f"k = {k}: circles {k} and {k + 1} meet smoothly; no body can lie on both")

@@ -70,7 +70,7 @@ def _how_to_get(m: "Motion", needs: str) -> str:
         made = "custom.Couple(function)" if own else f"loss.{made}"
         why, how = "losses=", f"losses=sc.{made}"
     elif needs == FACE:
-        return 'needs a body that stands on its face, as from sc.spun, a contact in sc.roll, and want="force"'
+        return 'needs a phase on the face: give roll a state of sc.spun, a law of friction and want="force"'
     elif needs == FRICTION:
         why, how = (
             f"a law of friction, not contact = {contact_in_words(m.contact)!r}",

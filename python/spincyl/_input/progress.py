@@ -16,7 +16,7 @@ _shows_bars = True  # False while something else tells how far the work is
 
 
 class _Bar:
-    """A bar that appears on standard error when the work takes longer than a few seconds."""
+    """A progress bar that appears on standard error when the work takes longer than a few seconds."""
 
     def __init__(self, what: str, patience: float) -> None:
         self._what, self._patience, self._begun = what, patience, time.monotonic()

@@ -373,7 +373,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
 
 
 def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | None) -> dict[str, Any]:
-    """The columns of all motions, by the names that the core uses."""
+    """The inputs of all motions as columns, by the names that the compiled core uses."""
     fields: dict[str, Any] = {
         name: getattr(bodies, name) for name in ("ell", "i1", "i3", "fillet", "theta_end")
     }
@@ -441,7 +441,7 @@ def _fill(
     threads: int,
     progress: Progress | None,
 ) -> None:
-    """Fill the columns of a block of motions."""
+    """Compute a block of motions from its columns; write the results into the arrays of `out`."""
     _core.ensemble(columns, times, asked, out, (threads, has_large_stack()), progress)
     given_up(out["status"])
     refused(columns, asked, out["status"])

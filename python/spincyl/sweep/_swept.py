@@ -116,7 +116,7 @@ def swept(
 
 
 def _about(name: str, labels: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
-    """The attributes of an output, in natural units."""
+    """The attributes of an output of a sweep: its natural unit and its meaning."""
     unit, meaning = labels[name]
     return {"units": unit, "long_name": meaning} | (flags(Status) if name == "status" else {})
 
