@@ -244,7 +244,7 @@ def table_for_core(
 ) -> tuple[int, tuple[float, float, float]]:
     """Code and coefficients of a contact for the core; ValueError if the coefficients are arrays.
 
-    A law that the user wrote raises TypeError, unless `own`.
+    A law that the user wrote raises TypeError, unless `own` is true.
     """
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)

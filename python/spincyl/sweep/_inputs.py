@@ -42,7 +42,7 @@ _UNITS = (
 
 
 def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, Reals]:
-    """The fields of bodies, of states and of losses, by the names of their coordinates.
+    """The fields of bodies, states and losses, by the names of the coordinates that a result has for them.
 
     The moments of a tube follow from its bore and are left out, unless the bores are lazy and may be NaN.
     """
@@ -61,7 +61,7 @@ def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, R
 
 
 def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Reals]:
-    """The numbers of stones and of their states, by the names of their coordinates."""
+    """The numbers of stones and their states, by the names of the coordinates that a result has for them."""
     found = dict(zip((f"body_{name}" for name in _AXES), stones._columns(), strict=True))
     found |= zip((f"start_{name}" for name in _NORMAL), components(states.vertical), strict=True)
     found |= zip((f"start_{name}" for name in _W), components(states.w), strict=True)
@@ -73,7 +73,7 @@ def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Real
 
 
 def kept_contact(contact: AnyContact) -> dict[str, Reals]:
-    """The coefficients of a law of friction, by the names of their coordinates."""
+    """The coefficients of friction, by the names of the coordinates that a result has for them."""
     if isinstance(contact, Viscous):
         return {"contact_c": contact.c}
     if not isinstance(contact, Coulomb) or contact._function is not None:
@@ -90,7 +90,7 @@ def checked_table(table: Table | None) -> Table | None:
 
 
 def kept_table(table: Table | None) -> dict[str, Reals]:
-    """The slope and the heading of a table, by the names of their coordinates."""
+    """`slope` and `phi0` of a table, by the names of the coordinates that a result has for them."""
     return {} if table is None else {"table_slope": table.slope, "table_phi0": table.phi0}
 
 

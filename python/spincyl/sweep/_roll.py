@@ -306,7 +306,9 @@ def roll(
     )
     odd = asked.step is not None or asked.beyond or asked.times[-1] < 0
     if checked_table(table) is not None and odd:
-        raise ValueError("step, beyond, t < 0: cannot be combined with table=")
+        raise ValueError(
+            "step, beyond, t < 0: cannot be combined with table=, with which motions are integrated forward"
+        )
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not has_friction(contact) and (restitution is None or states.height is None):
@@ -368,7 +370,7 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
             )
         if step is not None or asked.beyond or (has_friction(contact) and asked.mu != np.inf):
             given = f"contact={contact!r}, losses={losses!r}, restitution={asked.restitution!r}"
-            raise ValueError(f"step, mu, beyond: cannot be combined with {given}")
+            raise ValueError(f"step, mu, beyond: cannot be combined with {given}; leave them out")
     return asked._replace(step=None if step is None else number("step", step))
 
 
