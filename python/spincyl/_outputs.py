@@ -208,8 +208,8 @@ class Outputs(Hinting):
         """Share of the largest dry friction that holds the body at rest; None unless it is at rest.
 
         The body is at rest if the motion ends with `Ending.STOPS`. The share is 0 on a level table, unless
-        dry losses hold the body on its edge at another inclination than `theta_balance`. It is None for a stone, for a
-        law of your own, and on a table that turns.
+        dry losses hold the body on its edge at another inclination than `theta_balance`. It is None for a
+        stone, for a law of your own, and on a table that turns.
         """
         found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found
