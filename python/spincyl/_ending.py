@@ -107,8 +107,8 @@ class ErrorWarning(UserWarning):
     """The estimated error of a motion is too large.
 
     For a stone, the message gives the time at which the estimated error becomes too large. A body that hops
-    multiplies its errors in each impact; a motion to an earlier time has a smaller error, and
-    `Motion.known_until` says which.
+    multiplies its errors in each impact; a motion to an earlier time has a smaller error.
+    `Motion.known_until` is the latest time up to which the error is small enough.
     """
 
 

@@ -223,7 +223,7 @@ class Law(Loss):
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """A tuple of this law alone; for a sum the tuple has each of its laws."""
+        """The laws in this object as a tuple: only this law itself; for a sum each of its laws."""
         return (self,)
 
     def __repr__(self) -> str:

@@ -287,7 +287,7 @@ class Motion(Outputs, Showing):
 
     @property
     def losses(self) -> "Loss | None":
-        """The `losses` given to `roll`, or None. They do not include sliding friction."""
+        """The `losses` given to `roll`, or None. Sliding friction is not one of these loss laws."""
         return self._asked.losses
 
     def to_xarray(self) -> "xarray.Dataset":

@@ -13,7 +13,7 @@ from spincyl._scale import Scale, moment_in_natural
 
 
 class Sized:
-    """Base of bodies that may be measured: `scale` is None if the size is unknown."""
+    """Base class of bodies that may be measured: `scale` is None if the size is unknown."""
 
     scale: Scale | None
     #: The letter of the unit of length: R of a rim, or a, the largest semi-axis of a stone.

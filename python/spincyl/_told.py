@@ -83,7 +83,7 @@ def end_in_words(m: "Motion") -> str:
 
 
 def _unit_of_times(m: "Motion") -> str:
-    """The unit of the motion's times, to append to a number."""
+    """Text to append to a time of the motion: " s" for a measured body, else empty."""
     return "" if m.scale is None else " s"
 
 

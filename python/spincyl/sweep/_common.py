@@ -99,7 +99,7 @@ def sizes(scale: Scale) -> dict[str, float]:
 
 
 def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:
-    """The inputs that determine the numbers of a lazy result: `save` resumes only a sweep with equal ones."""
+    """Inputs that determine the numbers of a lazy result: `save` resumes only a sweep with equal inputs."""
     from dask.base import tokenize
 
     told = {"spincyl": version("spincyl"), "job": job}

@@ -169,7 +169,7 @@ def _differs(there: Record, here: Record) -> str | None:
 def in_the_way(store: Store, record: Record, files: dict[str, bytes]) -> str | None:
     """The name of the first file of another origin that `lay_out` or a block would overwrite.
 
-    A file whose bytes are those that `lay_out` writes may lack its record: nothing of it would be lost.
+    A file whose bytes are those that `lay_out` writes may lack its record: overwriting it loses nothing.
     """
     known = record.get("layout", {})
     ours = [name for name in record["variables"] if _is_of(store.folder / name / RECORD, record)]

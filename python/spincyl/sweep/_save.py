@@ -388,7 +388,7 @@ def _write(
 ) -> np.ndarray:
     """Write a computed block, and then the mark that it is complete.
 
-    The first arrays are the indices of the block along each dimension.
+    The first of `arrays` are the indices of the block, one for each chunked dimension, and then results.
     """
     import zarr
 
