@@ -301,7 +301,7 @@ def flicked(
         why = "give exactly one of hertz and w1, and exactly one of launch and spin_hertz"
         raise TypeError(f"hertz, w1, launch, spin_hertz: {why}")
     if scale is None and not (hertz is None and spin_hertz is None):
-        raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body or scale=; w1= works without")
+        raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body or scale=; w1= does not")
     refuse_bad_value("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
 
     def turns(name: str, value: Reals) -> Reals:
