@@ -145,7 +145,7 @@ def test_a_tube_that_is_flicked_too_gently_stays_on_its_side_and_it_is_said(caps
     assert "at most 1: the end does not rise" in out and "the body lies on its side at t = 0" in out
     err = said(capsys, *FLICK[:-1], "0.9", "-o", tmp_path / "flick.html", status=2).err
     assert err.startswith(
-        "spincyl flick: launch number 0.9: the motion ends at once, nothing to write; the other rim does not rise"
+        "spincyl flick: launch number 0.9: the motion ends at once and is not written; the other rim does not rise"
     )
     assert not (tmp_path / "flick.html").exists()
 

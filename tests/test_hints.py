@@ -194,7 +194,7 @@ def test_a_can_that_is_thrown_says_how_it_goes_on_with_two_rims():
     can = sc.Body.solid(1.8)
     thrown = sc.thrown(can, 1.0, 2.0)
     m = sc.roll(can, thrown, 5.0, contact=sc.Coulomb(0.3))
-    assert m.status == sc.Ending.SIDE and "with restitution=0.0 it goes on" in m.message
+    assert m.status == sc.Ending.SIDE and "with restitution=0.0 the motion continues" in m.message
     m = sc.roll(can, thrown, 5.0, contact=sc.Coulomb(0.3), restitution=0.0)
     assert m.status == sc.Ending.DONE and "restitution" not in m.message
     falls = sc.roll(can, can.steady(1.45).kicked(-0.5), 50.0)
@@ -301,7 +301,10 @@ def test_a_body_that_hops_until_its_motion_is_unknown_warns_once():
     assert one.category is sc.ErrorWarning and m.status.name == "DONE"
     assert f"is {m.natural.error:.2g}, in natural units: impacts multiply errors" in str(one.message)
     # as the message says, it is known up to an earlier time, here without a warning
-    assert "known up to the time known_until of the motion" in str(one.message) and 0.05 < m.known_until < 0.2
+    assert (
+        "Motion.known_until is the time up to which states are known" in str(one.message)
+        and 0.05 < m.known_until < 0.2
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         early = sc.roll(coin, start, m.known_until, **how)

@@ -285,6 +285,6 @@ def test_a_law_of_air_asks_for_the_mass_of_the_body():
 
 @pytest.mark.parametrize("law", [DryContour, RollingResistance, Drilling])
 def test_an_arm_in_millimetres_is_warned_of(law):
-    with pytest.warns(UserWarning, match="more than half the radius"):
+    with pytest.warns(UserWarning, match="exceeds half the radius"):
         law.from_si(0.06, scale=EULER)
     law.from_si("0.06mm", scale=EULER)

@@ -553,7 +553,7 @@ def test_a_tippe_top_and_a_cup_take_their_moments_in_kg_m2():
         (
             lambda of: of(0.1, i3="3e-5 kg m^2"),
             ValueError,
-            r"^i3 = .*<= 2 i1.*; M R\^2 is 1e-05 kg m\^2 of this body",
+            r"^i3 = .*<= 2 i1.*; M R\^2 is 1e-05 kg m\^2 for this body",
         ),
         (lambda of: of(0.1, i1=1e-9), ValueError, "^i1 = .*; M R.2 is 1e-05"),
         (

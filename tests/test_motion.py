@@ -142,7 +142,7 @@ def test_time_may_fall_or_be_a_number_or_start_elsewhere():
     assert np.allclose(later.y, sc.roll(CYLINDER, START, [2.0, 3.0], t0=0.0).y, atol=1e-13)
     assert np.array_equal(sc.roll(CYLINDER, START, [0.0]).y[:, 0], start)
     assert np.array_equal(sc.roll(CYLINDER, START, [5.0], t0=5.0).y[:, 0], start)
-    with pytest.raises(ValueError, match=r"^t: for an array of one time give t0="):
+    with pytest.raises(ValueError, match=r"^t: an array of one time needs t0="):
         sc.roll(CYLINDER, START, [5.0])
 
 

@@ -105,7 +105,9 @@ def test_an_egg_stands_where_it_spins_faster_than_its_limit():
 def test_a_motion_says_how_the_stone_stands_and_turns_back():
     m = sc.roll(STONE, START, np.linspace(0, 20, 401), want=("pose", "force"))
     assert isinstance(m, sc.Motion) and isinstance(m, sc.EllipsoidMotion)
-    assert m.success and m.message.startswith("the last time was reached; found by steps within 1e-14")
+    assert m.success and m.message.startswith(
+        "the last time was reached; found in steps with tolerance 1e-14"
+    )
     assert m.spin[0] == pytest.approx(-0.6) and m.spin[-1] > 0.2
     assert np.ptp(m.energy) < 1e-13
     assert np.allclose(m.theta, m.inclinations[:, 2]) and np.allclose(np.linalg.norm(m.vertical, axis=1), 1)

@@ -73,7 +73,7 @@ def test_a_range_is_that_of_natural_units_and_says_so():
     ):
         with pytest.raises(
             ValueError,
-            match=rf"^{said} .* \((?:limits in )?natural units: sqrt\([Ra]/g\) is \S+ s of this body\)$",
+            match=rf"^{said} .* \((?:limits in )?natural units: sqrt\([Ra]/g\) is \S+ s for this body\)$",
         ):
             call()
 

@@ -36,7 +36,7 @@ _DOUBLE = np.dtype(np.float64)
 
 
 class Asked(NamedTuple):
-    """The checked arguments of `roll` for one motion, or for many, whose coefficients may be arrays."""
+    """The checked arguments of `roll`, for one motion or for many; for many, coefficients may be arrays."""
 
     times: Floats
     t0: float = 0.0
@@ -73,9 +73,9 @@ def options_for_core(
     aloft: Sequence[float] | None = None,
     circles: Sequence[Sequence[float]] = (),
 ) -> dict[str, Any]:
-    """The options of one motion or of many as keyword arguments of the core.
+    """Return the arguments of `roll`, for one motion or many, as keyword arguments of the compiled core.
 
-    Defaults are left out, since passing them can take longer than a short motion.
+    Arguments with default values are left out: passing them can take longer than a short motion.
     """
     options: dict[str, Any] = {"t0": asked.t0} if asked.t0 else {}
     contact, mu = asked.contact, asked.mu
@@ -187,7 +187,7 @@ def ask(
     else:
         first = times.item(0)
         if times.size == 1 and first != 0 and math.isfinite(first):
-            raise ValueError("t: for an array of one time give t0= as well, or give a number instead")
+            raise ValueError("t: an array of one time needs t0=, the time of the initial state, too")
         t0 = first if math.isfinite(first) else 0.0
     beyond = beyond if beyond is False else flag("beyond", beyond)
     word = isinstance(contact, str)
@@ -204,11 +204,9 @@ def ask(
         raise ValueError(f"step = {step!r} and tol = {tol!r}: give only one of them")
     if step is not None or tol is not None:
         if method == "exact":
-            raise ValueError(
-                "method = 'exact': leave out step= and tol=, which the exact method does not use"
-            )
+            raise ValueError("method = 'exact': leave out step= and tol=, which this method does not use")
         if method == "rk4" and step is None:
-            raise ValueError("method = 'rk4': give step= instead of tol=, which is for steps of eighth order")
+            raise ValueError("method = 'rk4': give step=, the fixed step of RK4; tol= is for another method")
         step = None if step is None else number("step", step)
         tol = None if tol is None else number("tol", tol)
     elif method == "rk4":
@@ -237,7 +235,7 @@ def ask(
 
 
 def on_table(asked: Asked, table: "Table") -> Asked:
-    """Return the arguments with a table; on a slope the pose is always computed, since phi matters."""
+    """Add the table to the arguments; on a slope also request the pose, since gravity acts along x."""
     from spincyl._table import Table
 
     table = instance_of("table", table, Table)
@@ -249,6 +247,6 @@ def on_table(asked: Asked, table: "Table") -> Asked:
         if value is not None:
             raise ValueError(
                 f"{name} = {value!r} cannot be combined with a table that is tilted or turns:"
-                " its motions are integrated with steps within tol="
+                " motions on it have variable steps; give tol= instead"
             )
     return asked._replace(table=table, want=asked.want | {"pose"})

@@ -1,4 +1,4 @@
-"""The body, its steady states and their stability."""
+"""The class `Body`: a body of revolution, its steady states and their stability."""
 
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self, overload
@@ -72,8 +72,8 @@ class Body(Laws, Outlines, Sized, HintingFamily):
         Size, mass and gravity. A body with a scale is a measured body (see `measured`): its motions are in
         SI. Fields, methods and every `State` stay in natural units, except methods named after a unit.
     rims : array_like, optional
-        (..., n, 3), the `circles` of a body that stands on several, as `profile` makes it; None for a body of
-        one circle or two equal rims. `ell`, `fillet` and `theta_end` are then those of the lowest circle.
+        Array (..., n, 3): the `circles` of a body that can stand on several, as `profile` makes it. `ell`,
+        `fillet` and `theta_end` are then those of the lowest circle. None for one circle or two equal rims.
 
     Raises
     ------
@@ -124,7 +124,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
             # the moments of a tube follow from its bore and must agree; values of a lazy array are not
             # computed
             if getattr(own, "chunks", None) is None and np.any(np.abs(own - value) > 1e-15 * own):
-                raise ValueError(f"{name} = {value!r}: expected {own!r} for a tube of this bore")
+                raise ValueError(f"{name} = {value!r}: expected {own!r} for a tube of this bore, or no bore")
         for name, value in zip(FIELDS, (given[0], *moments, *given[3:]), strict=True):
             object.__setattr__(self, name, read_only_copy(value))
 
@@ -204,7 +204,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
     @elementwise
     def hertz(self, at: Reals | State) -> Result:
-        """Precession rate in turns per second; needs a measured body.
+        """Precession rate of a state, in turns per second; needs a measured body.
 
         Parameters
         ----------
@@ -297,8 +297,8 @@ class Body(Laws, Outlines, Sized, HintingFamily):
 
         Parameters, order and shape are those of `inclinations`.
 
-        They are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical aspect,
-        where the rate determines the state better than theta does.
+        The states are more accurate than `steady(inclinations(rate))` near theta_limit and at the critical
+        aspect, where the rate determines the state better than theta does.
         """
         given = self._reduced(of, rate, hertz)
         if self.rims is not None:
@@ -311,7 +311,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
     def count(self, of: Reals = None, /, *, rate: Reals = None, hertz: Reals = None) -> Result:
         """Number of steady states with the centre at rest that have a rate; NaN for a rate out of range.
 
-        Parameters are those of `inclinations`, whose angles it counts.
+        Parameters are those of `inclinations`; the result is the number of its angles.
         """
         given = self._reduced(of, rate, hertz)
         if self.rims is not None:
@@ -403,7 +403,7 @@ class Body(Laws, Outlines, Sized, HintingFamily):
         return found
 
     def _reduced(self, of: Reals, rate: Reals, hertz: Reals) -> Reals:
-        """The reduced rate, from a reduced rate or from turns per second."""
+        """The reduced rate, as given by `of` or `rate`, or converted from turns per second in `hertz`."""
         if sum(x is not None for x in (of, rate, hertz)) != 1:
             raise TypeError("rate, hertz: give exactly one of them; hertz= needs a measured body")
         if hertz is None and (of is None or self.scale is None):

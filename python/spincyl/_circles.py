@@ -1,4 +1,4 @@
-"""The circles of a body: what a user reads of them, and the numbers of the circle that carries."""
+"""The circles on which a body of revolution can stand, and the numbers of the one that touches the table."""
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -24,7 +24,7 @@ from spincyl._input.numbers import (
 )
 
 _Six: TypeAlias = tuple[Reals, Reals, Reals, Reals, Reals, Reals]
-#: The numbers of a body, in the order of the core.
+#: The fields of a body as numbers, in the order in which the compiled core takes them.
 FIELDS = ("ell", "i1", "i3", "bore", "fillet", "theta_end")
 _MOMENTS = ("i1", "i3")
 _MOST_ROOTS = 5  # of a law on one circle
@@ -116,7 +116,7 @@ class Circles:
         """
         told = self._told()[1]
         if not len(told):
-            raise ValueError("k: the body stands on a single circle; an apex needs two")
+            raise ValueError(f"k = {k!r}: the body has a single circle; an apex needs two, k and k + 1")
         row = told[whole("k", k, 0, len(told) - 1)]
         if row[1] == 0:
             raise ValueError(f"k = {k}: circles {k} and {k + 1} meet smoothly; no body can lie on both")
@@ -127,7 +127,7 @@ class Circles:
         return tuple(np.flatnonzero(self._told()[1][:, 5]).tolist())
 
     def _told(self) -> tuple[Floats, Floats]:
-        """The circles and the borders of a single body, as rows of the core."""
+        """`circles` of a single body, (n, 3); border, span, the three of `Apex` and `rests`, (n - 1, 6)."""
         numbers = self._raw
         if np.ndim(self.rims) > 2 or any(np.ndim(x) for x in numbers):
             raise ValueError("body: expected a single body, not a family; `rims` has the circles of a family")
@@ -136,20 +136,20 @@ class Circles:
 
     @property
     def _raw(self) -> _Six:
-        """The six numbers of the core; those of the lowest circle, with its radius, if there are several."""
+        """The six numbers of `FIELDS`; for several circles those of the lowest, with bore = -(its radius)."""
         bore = self.bore if self.rims is None else -self.rims[..., 0, 0]
         return self.ell, self.i1, self.i3, bore, self.fillet, self.theta_end
 
     @property
     def _rows(self) -> list[list[float]]:
-        """The circles of a single body of several, for the core; else none."""
+        """The circles of a single body as a list of rows for the core; empty if the body has no `rims`."""
         return [] if self.rims is None else self.rims.tolist()
 
     @property
     def _numbers(self) -> _Six:
-        """The six numbers; of a body of several circles those of the lowest one, until the next one lands.
+        """The six numbers of `FIELDS`; for several circles those of the lowest, until the next circle lands.
 
-        A lowest circle with another radius than R raises ValueError.
+        If the outer radius of the lowest circle is not 1, ValueError is raised.
         """
         if self.rims is None:
             return self._raw
@@ -161,9 +161,10 @@ class Circles:
         return self.ell, self.i1, self.i3, np.nan, self.fillet, end[()]
 
     def _at(self, theta: Reals, *w: Reals, rim: Any = None) -> tuple[Any, ...]:
-        """A state, with w1, w2, w3 and a slip if given, and the numbers of the circle that carries.
+        """Return theta, `w` (w1, w2, w3 and slip, if given), and the six numbers of the circle on the table.
 
-        Both are seen from the end of the body that is nearer to the table; `rim` says which circle is meant.
+        All refer to the end of the body that is nearer to the table. `rim` is the index of the circle;
+        default: the circle that touches the table at theta.
         """
         if self.rims is None:
             return theta, *w, *self._raw
@@ -187,7 +188,7 @@ class Circles:
         return tuple(np.asarray(x)[()] for x in (seen, *turned, *numbers))
 
     def _several(self, law: Any, *inputs: Reals) -> Any:
-        """The inclinations that a law finds on each circle within its borders, ascending; NaN for others."""
+        """Inclinations that `law` finds on all circles, ascending; NaN where a circle is off the table."""
         if self.rims is None:
             return law(*numbered(self._most, *inputs, *self._raw))
         found: list[Floats] = []
@@ -207,12 +208,12 @@ class Circles:
         raise NotImplementedError
 
     def _sign(self, theta: Reals) -> Any:
-        """The sign that `_at` gives to vectors along e_h, e2 and e3, and to w2 and w3."""
+        """Sign that `_at` gives to components along e_h, e2, e3: -1 beyond pi/2 if `rims` is set, else 1."""
         return 1.0 if self.rims is None else np.where(floats(theta) > np.pi / 2, -1.0, 1.0)
 
 
 def rows_of(name: str, given: Iterable[Sequence[float]], *widths: int, metre: str = "") -> list[list[float]]:
-    """Return checked rows of numbers, of one of these widths; with a unit `metre`, texts are converted."""
+    """Return rows of numbers, each of a length in `widths`; texts such as "2cm" are converted to `metre`."""
     try:
         rows = [list(row) for row in given]
     except TypeError:
@@ -247,7 +248,7 @@ def set_rims(body: Any) -> None:
         own = np.nan if name == "bore" and rims is not None else of_circle
         value, unsaid = np.asarray(getattr(body, name)), 0.0 if name == "fillet" else np.nan
         if np.any((value != own) & ~np.isnan(value) & ~np.isnan(own) & (value != unsaid)):
-            why = "that of the lowest circle in `rims`; for a body without its circles give rims=None"
+            why = "that of the lowest circle in `rims`; to change it, change `rims` or give rims=None"
             raise ValueError(f"{name} = {getattr(body, name)!r}: expected {own!r}, {why}")
         object.__setattr__(body, name, read_only_copy(own if shape else float(own)))
     for name, value in (("rims", rims), ("_borders", borders)):
@@ -261,7 +262,7 @@ def borders_of(six: list[float], rows: list[list[float]]) -> Floats:
 
 
 def _family(given: Floats, moments: list[Floats], shape: tuple[int, ...]) -> Any:
-    """The numbers, the circles and the borders of bodies; NaN for impossible ones."""
+    """Fields, circles and borders of a family of bodies, as arrays; NaN for impossible bodies."""
     most = given.shape[-2]
     found, rims = np.full((*shape, len(FIELDS)), np.nan), np.full((*shape, most, 3), np.nan)
     borders, given = np.full((*shape, most - 1), np.nan), np.broadcast_to(given, rims.shape)
@@ -277,7 +278,7 @@ def _family(given: Floats, moments: list[Floats], shape: tuple[int, ...]) -> Any
 
 
 def columns_of_circles(bodies: Any) -> dict[str, Reals]:
-    """The circles of bodies that have several, as columns radius0, height0, fillet0, radius1 and so on."""
+    """Circles of bodies with `rims`, as a dict of columns radius0, height0, fillet0, radius1 and so on."""
     if bodies.rims is None:
         return {}
     rows = np.moveaxis(bodies.rims, (-2, -1), (0, 1))
@@ -290,13 +291,13 @@ def columns_of_circles(bodies: Any) -> dict[str, Reals]:
 
 
 def extent_of(rims: Floats) -> tuple[float, float]:
-    """Length and width of a single body with these circles."""
+    """Length and width, in R, of a single body with these circles (rows of radius, height and fillet)."""
     radius, height, fillet = rims.T
     return float((height + fillet).max() - (height - fillet).min()), float(2 * (radius + fillet).max())
 
 
 def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
-    """Radius and fillet of the circles of a single body that have the numbers `rim`."""
+    """Radius and fillet, in R, of those circles of a single body whose indices are in `rim`."""
     if body.rims is None:
         return 1.0 - floats(body.fillet), body.fillet
     radius, _, fillet = np.moveaxis(body.rims[rim], -1, 0)
@@ -304,7 +305,7 @@ def circle_of(body: Circles, rim: Any) -> tuple[Any, Any]:
 
 
 def circles_at(body: Any, theta: Floats) -> NDArray[np.uint8]:
-    """Numbers of the circles that carry a single body at these inclinations; 0 if it has no `rims`."""
+    """Index of the circle on which a single body stands at each inclination; 0 if the body has no `rims`."""
     found = np.zeros(theta.size, np.uint8)
     if getattr(body, "rims", None) is not None:
         found += (body._borders < theta[:, np.newaxis]).sum(-1).astype(np.uint8)
@@ -312,7 +313,7 @@ def circles_at(body: Any, theta: Floats) -> NDArray[np.uint8]:
 
 
 def lowest_point_of(body: Circles, theta: Floats, rim: Any) -> Any:
-    """The height of the lowest point of a body above that of one of its several circles; 0 or less."""
+    """Height, in R, of a body's lowest point above the lowest point of its circle `rim`; 0 or less."""
 
     def centre(circles: Any) -> Any:
         return _core.circle_height(theta, *np.moveaxis(body.rims[circles], -1, 0))

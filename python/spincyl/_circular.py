@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def circular(body: "Body", theta: Reals, precession: Reals, radius: Reals, w3: Reals) -> State:
-    """The steady state on a circle for one given argument: precession, radius or w3."""
+    """The steady state whose centre runs on a circle, from one of three arguments; see `Body.circular`."""
     given = {"precession": precession, "radius": radius, "w3": w3}
     chosen = [name for name, x in given.items() if x is not None]
     if len(chosen) != 1:

@@ -22,16 +22,16 @@ Contact: TypeAlias = Literal["rolling", "smooth"]
 #: How the table presses on a face.
 Face: TypeAlias = Literal["ring", "disc"]
 
-#: Names and codes of the enumerations of the core.
+#: Code of each name in each enumeration of the compiled core.
 CODES = {name: dict(values) for name, values in _core.codes()}
 #: Code of each kind of contact, including the laws of friction.
 TABLES = CODES["Table"]
-#: Code of each way in which the table presses on a face.
+#: Code of each value of `Face`.
 FACES = CODES["Face"]
 
 
 class _Law(Hinting):
-    """Base of the laws of friction: coefficients are numbers or arrays, compared by value."""
+    """Base class of the laws of friction, whose coefficients are numbers or arrays."""
 
     #: False for numbers in natural units; True, or the scale, if they were given in SI.
     _sized: ClassVar[Scale | bool] = False
@@ -39,12 +39,12 @@ class _Law(Hinting):
     _function: ClassVar[Any] = None
 
     def _known(self, of: Scale | bool = True) -> Self:
-        """Mark the numbers as ones in SI; a measured body with another scale refuses them."""
+        """Mark the coefficients as given in SI for the scale `of`; other scales are then refused."""
         object.__setattr__(self, "_sized", of)
         return self
 
     def _natural(self, scale: Scale | None) -> Self:
-        """The law in natural units, of a body with this scale."""
+        """The law with coefficients in the natural units of a body with this scale."""
         return self
 
     @property
@@ -74,14 +74,14 @@ class Coulomb(_Law):
         drills. For a measured body, make the law with `from_si`.
     face : {"ring", "disc"}
         How the table presses on a face on which the body stands, slides or spins. "ring": on its rim, as
-        under a tube, a can or a coin. "disc": on the whole face, as under a puck. The patch does not act
-        there.
+        under a tube, a can or a coin. "disc": on the whole face, as under a puck. The patch of contact does
+        not act on a face.
 
     Raises
     ------
     ValueError
         If a coefficient is negative or NaN, `mu` is infinite, `static` is less than `mu`, `patch` is 1 or
-        more, or `face` is another word.
+        more, or `face` is neither "ring" nor "disc".
     TypeError
         If a coefficient is not real-valued; the message names it.
 
@@ -189,7 +189,7 @@ class Viscous(_Law):
 
 #: A law of friction.
 Friction: TypeAlias = Coulomb | Viscous
-#: Where a law works that a user wrote.
+#: End of the message that refuses a law that the user wrote.
 WHERE_OWN_LAWS_WORK = "a law of your own works only in sc.roll and sc.sweep.roll"
 #: Every kind of contact.
 AnyContact: TypeAlias = Contact | Friction
@@ -204,7 +204,7 @@ def _coefficient(name: str, value: Reals) -> Reals:
     return read_only_copy(found)
 
 
-#: Contacts by other words; the last two only where laws of friction are possible.
+#: Words that a user may write for each contact; the laws of friction only where they are possible.
 _MEANT = {
     "'smooth'": ("smooth", "ice", "icy", "slippery", "slick", "frictionless", "free", "none", "no friction"),
     "'rolling'": ("rolling", "roll", "rough", "grip", "stick", "sticking", "static", "no slip", "no-slip"),
@@ -214,7 +214,7 @@ _MEANT = {
 
 
 def _meant(contact: str, rubs: bool) -> str:
-    """The contact that another word means, as a question; empty if it is not known."""
+    """Text such as "; did you mean 'smooth'?" for another word, such as "ice"; empty for an unknown word."""
     known = {word: means for means, words in _MEANT.items() if rubs or means[0] == "'" for word in words}
     near = get_close_matches(contact.strip().lower(), known, 1, 0.75)
     return f"; did you mean {known[near[0]]}?" if near else ""
@@ -244,7 +244,7 @@ def table_for_core(
 ) -> tuple[int, tuple[float, float, float]]:
     """Code and coefficients of a contact for the core; ValueError if the coefficients are arrays.
 
-    A law that the user wrote raises TypeError, unless `own`.
+    A law that the user wrote raises TypeError, unless `own` is true.
     """
     if isinstance(contact, str):
         return TABLES[contact], (mu, 0.0, 0.0)
@@ -287,7 +287,7 @@ def check_contact_scale(contact: AnyContact, scale: Scale | None) -> None:
 
 
 def has_patch(contact: object) -> bool:
-    """Whether a contact, or one of several contacts, has a patch."""
+    """Whether a contact has a patch of positive radius; of many contacts, whether one has, or may have."""
     if not isinstance(contact, Coulomb):
         return False
     patch = contact.patch
@@ -295,7 +295,7 @@ def has_patch(contact: object) -> bool:
 
 
 def code_of_friction(contact: Friction) -> int:
-    """The code of a law of friction."""
+    """Code by which the compiled core knows the kind of a law of friction."""
     return TABLES["coulomb" if isinstance(contact, Coulomb) else "viscous"]
 
 

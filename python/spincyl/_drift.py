@@ -164,7 +164,7 @@ class Drift(Hinting):
         return f"{what}shape {self._shape}>"
 
     def _asked(self, name: str, x: Reals, question: int) -> list[Result]:
-        """The five numbers that the core returns for each x: theta (code 0), time (1), or unused (2)."""
+        """Five numbers of the core for each `x`: an inclination (`question` 0), a time (1), or unused (2)."""
         if question == 1 and self.body.scale is not None:
             x = si(name, x, "second")
         if hasattr(x, "dims") or hasattr(x, "dask"):
@@ -329,7 +329,7 @@ _COLUMNS: tuple[str, ...] = (
 def _nan_unless_at_rest(
     body: Body, state: State, columns: dict[str, Floats], shape: tuple[int, ...]
 ) -> dict[str, Floats]:
-    """`columns` with theta = NaN, so no drift, where the state's centre does not rest to six digits."""
+    """Return `columns` with theta = NaN (no drift) where the state's centre is not at rest to six digits."""
     rests = np.broadcast_to(_core.rests(*state._numbers, *body._numbers) == 1, shape)
     if shape == () and not rests:
         own = body.steady(state.theta)

@@ -33,8 +33,8 @@ from spincyl._scale import Scale
 from spincyl._slip import rise_of_stone
 from spincyl._weights import weighted
 
-#: Least moments of a stone without an edge, in those of a uniform one. Lead in foam of a hundredth of its
-#: density has at least a quarter of them.
+#: Smallest ratio of the moments of a stone without an edge to those of a uniform ellipsoid. For lead in foam
+#: of a hundredth of its density the ratio is at least a quarter.
 _LEAST = 0.05
 
 
@@ -322,7 +322,7 @@ class Ellipsoid(StoneStarts):
         return np.all(self.rocking(spin, hertz=hertz).growth <= 0, axis=-1)
 
     def _measured(self, told: bool, mass: float | None) -> Self:
-        """The stone in metres, if its lengths had units or it has a mass."""
+        """Return a measured stone if lengths had units (`told`) or a mass is given, else the stone itself."""
         return self.in_metres(mass) if told or mass is not None else self
 
     def _radius(self) -> float:
@@ -333,7 +333,7 @@ class Ellipsoid(StoneStarts):
         if units.size != 1:
             raise ValueError(
                 f"radius: expected stones of one size, not of {units.size} sizes, since a family has one"
-                " scale; convert each stone by itself"
+                " scale; convert each stone separately"
             )
         return float(units[0])
 
@@ -385,7 +385,7 @@ class Ellipsoid(StoneStarts):
 
     @property
     def _numbers(self) -> list[float]:
-        """The numbers of a single stone, as the core takes them."""
+        """The 13 numbers of a single stone for the core: semi-axes, six of the inertia, offset, theta_end."""
         if self.shape:
             raise ValueError(f"body: expected a single stone, not a family of shape {self.shape}")
         inertia = np.asarray(self.inertia)
@@ -397,13 +397,13 @@ class Ellipsoid(StoneStarts):
         ]
 
     def _columns(self) -> list[Floats]:
-        """The thirteen numbers of a family, each an array of the family's shape or a single number."""
+        """The numbers of `_numbers` for a family of stones, each an array or, if common to all, a number."""
         inertia: Any = self.inertia
         moments = (inertia[..., i, j] for i, j in SIX)
         return [*components(self.semi_axes), *moments, *components(self.offset), self.theta_end]
 
     def _each(self, law: Callable[..., Any], width: int, *given: Floats) -> Floats:
-        """Apply a function of the core to each stone of a family; NaN, or the error of a single stone."""
+        """Apply a function of the core to each stone; where it fails, NaN, or the error of a single stone."""
         if not self.shape and all(x.ndim == 0 for x in given):
             return np.array(law(self._numbers, *(float(x) for x in given)))
         common_shape({"body": np.broadcast_to(0.0, self.shape), **dict(zip(("spin",), given, strict=False))})

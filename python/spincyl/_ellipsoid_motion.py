@@ -122,7 +122,7 @@ class EllipsoidMotion(Motion):
 
     @property
     def _doubt(self) -> str:
-        """The time up to which the motion is known, in words; empty if that is its end."""
+        """Text such as "known to 1 % up to t = 5"; empty if the motion is known up to its end."""
         if self.natural._known_until is None:  # type: ignore[attr-defined]
             return ""
         second = "" if self.scale is None else " s"
@@ -149,9 +149,9 @@ class EllipsoidMotion(Motion):
 
 
 def start_of_stone(state: Any, contact: AnyContact, step: object, method: object, restitution: object) -> Any:
-    """The state from which a stone starts, without a slip where no law of friction acts on the table.
+    """Return the initial state of a stone, without its `slip` if the contact has no law of friction.
 
-    An error names an argument that only bodies of revolution have.
+    Raises an error for `step` and `method`, which only bodies of revolution have.
     """
     instance_of("state", state, EllipsoidState)
     slides = has_friction(contact) or (restitution is not None and state.height is not None)

@@ -20,7 +20,7 @@ def six_of_tensor(inertia: Floats) -> list[float]:
 
 
 def with_whole_tensor(numbers: Floats) -> Floats:
-    """Replace the six independent numbers of a tensor in rows, the numbers 3 to 8, by all nine components."""
+    """In each row replace the numbers 3 to 8, the independent components of a tensor, by all nine."""
     return numbers[
         ..., [0, 1, 2, *(3 + i for i in (0, 5, 4, 5, 1, 3, 4, 3, 2)), *range(9, numbers.shape[-1])]
     ]
@@ -47,7 +47,7 @@ def by_blocks(law: Callable[..., Floats], signature: str, size: int, *arrays: Re
 
 @contextmanager
 def _named_as_in_python() -> Iterator[None]:
-    """Context in which errors of the core about the semi-axes begin with the name that they have here."""
+    """Context in which errors of the core about semi-axes begin with `semi_axes`, their name in Python."""
     try:
         yield
     except ValueError as e:
@@ -55,7 +55,7 @@ def _named_as_in_python() -> Iterator[None]:
 
 
 def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Floats) -> Floats:
-    """Rows (..., 18) of checked stones, each with its largest semi-axis and its `Ellipsoid::reach`."""
+    """Check stones; return rows (..., 18) of their numbers, then the largest semi-axis, then the `reach`."""
     each = axes, inertia.reshape(*inertia.shape[:-2], 9), offset, theta_end[..., None]
     shape = np.broadcast_shapes(*(x.shape[:-1] for x in each))
     given = np.concatenate([np.broadcast_to(x, (*shape, x.shape[-1])) for x in each], axis=-1)
@@ -69,10 +69,10 @@ def checked_rows(axes: Floats, inertia: Floats, offset: Floats, theta_end: Float
 def rows_by(
     *arrays: Floats, make: Callable[..., Any], names: tuple[str, ...], wide: dict[str, bool]
 ) -> Floats:
-    """Rows (..., 17) of stones that a constructor of the core makes, each with its largest semi-axis.
+    """Rows (..., 17) of stones that the constructor `make` makes; the last number is the largest semi-axis.
 
-    The arrays belong to the names in `wide`, which says whether the last axis of each has components. Names
-    that are not in `wide` are passed as None.
+    `wide` names the arguments that `arrays` contains, and tells whether the last axis of each has components.
+    `make` gets the arguments in the order of `names`, with None for names that are not in `wide`.
     """
     inputs = dict(zip(wide, arrays, strict=True))
     shape = np.broadcast_shapes(*(x.shape[:-1] if wide[name] else x.shape for name, x in inputs.items()))

@@ -142,7 +142,7 @@ class StoneStarts(Sized, Hinting):
             return replace(found, height=(high + 0.0 * rise)[()], lift=(rise + 0.0 * high)[()])
 
     def hertz(self, state: EllipsoidState) -> Result:
-        """Turns per second about the vertical in a state, or in each of an array; needs a measured stone."""
+        """Turns per second about the vertical in a state or an array of states; needs a measured stone."""
         scale = self._sized("hertz")
         return scale.turns(instance_of("state", state, EllipsoidState).spin)
 

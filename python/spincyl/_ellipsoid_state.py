@@ -195,7 +195,7 @@ class EllipsoidState(Hinting):
 
     @property
     def _aloft(self) -> tuple[Reals, Reals]:
-        """Height and lift; 0 on the table."""
+        """`height` and `lift` as a pair; both are 0 for a stone on the table."""
         return (0.0, 0.0) if self.height is None else (self.height, self.lift)
 
     @property

@@ -94,12 +94,12 @@ MESSAGES = {
     Ending.SLIP: ("rolling needs more friction than mu N", "slips"),
     Ending.PAINLEVE: ("no unique contact force (Painleve)", "jams"),
     Ending.STOPS: ("dry friction holds the whole body", "comes to rest"),
-    Ending.BOUNDED: ("the motion was given up", "goes on"),
+    Ending.BOUNDED: ("the motion was given up", "still moves"),
     Ending.LANDING: ("no unique landing on both rims", "lands on both rims"),
 }
 
 
-#: An estimated error beyond this is warned of.
+#: Estimated error, in natural units, above which `ErrorWarning` is issued.
 LARGE_ERROR = 0.1
 
 
@@ -107,8 +107,8 @@ class ErrorWarning(UserWarning):
     """The estimated error of a motion is too large.
 
     For a stone, the message gives the time at which the estimated error becomes too large. A body that hops
-    multiplies its errors in each impact; a motion to an earlier time has a smaller error, and
-    `Motion.known_until` says which.
+    multiplies its errors in each impact; a motion to an earlier time has a smaller error.
+    `Motion.known_until` is the latest time up to which the error is small enough.
     """
 
 
@@ -170,13 +170,13 @@ class Held(NamedTuple):
     lets_go: Literal["slips", "rolls", "tips"]
 
 
-#: The ways out of a rest, in the order of the core; and the postures on a face, on the side and on an edge.
+#: How a body at rest can begin to move, in the order of the core; and the core's code for each resting part.
 _WAYS_OUT: tuple[Literal["slips", "rolls", "tips"], ...] = ("slips", "rolls", "tips")
 _POSTURE_OF = {RestsOn.FACE: 0, RestsOn.OTHER_FACE: 0, RestsOn.SIDE: 2, RestsOn.EDGE: 3}
 
 
 def held(m: "Motion") -> Held | None:
-    """The share of friction that holds a body at the end of a motion; None if the body is not at rest."""
+    """The result of `Motion.held`: share of the dry friction that holds a body; None if it is not at rest."""
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     if m.status != Ending.STOPS or m.event is None or m.rests_on == RestsOn.NONE or own or m._asked.turning:
         return None

@@ -49,7 +49,7 @@ def columns(m: "Motion") -> dict[str, tuple[Any, str]]:
 
 
 def frame(m: "Motion") -> "pandas.DataFrame":
-    """A table of all outputs of a motion by time, with units."""
+    """All computed outputs of a motion as a pandas table indexed by time; `attrs["units"]` has the units."""
     lib: Any = optional_library("pandas", "sweep")
     told_ = columns(m)
     found: pandas.DataFrame = lib.DataFrame(
@@ -62,7 +62,7 @@ def frame(m: "Motion") -> "pandas.DataFrame":
 
 
 def labelled(m: "Motion") -> "xarray.Dataset":
-    """A dataset of all outputs of a motion, with units."""
+    """All computed outputs of a motion as an xarray Dataset with units."""
     lib: Any = optional_library("xarray", "sweep")
     data: dict[str, Any] = {}
     axes = m._axes

@@ -28,7 +28,7 @@ from spincyl._state import State, numbers, numbers_without_slip
 _ROLLS = "expected a state without slip, as dataclasses.replace(state, slip=None)"
 
 
-#: How a body is on a slope.
+#: Posture of a body on a slope: standing on its face, rolling, or lying without rolling.
 Posture: TypeAlias = Literal["standing", "rolling", "lying"]
 POSTURES: tuple[str, ...] = get_args(Posture)
 
@@ -70,7 +70,7 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
         return
     two = _core.two_rims(*body._numbers) == 1
     for place, standing, more in (
-        ("pi/2", two & (theta == np.pi / 2), ". launch_number(body, state) says whether one of them rises"),
+        ("pi/2", two & (theta == np.pi / 2), ". launch_number(body, state) says whether one rim rises"),
         ("0", (body.fillet < 1) & (theta == 0), ""),
     ):
         if np.any(np.isnan(kappa) & standing):
@@ -80,11 +80,11 @@ def _warn_if_not_steady(body: "Laws", state: State, kappa: Result) -> None:
 
 
 class Laws(Circles):
-    """Base of `Body`: its methods that evaluate one law each."""
+    """Base class of `Body`, with its methods that each evaluate one formula of the core."""
 
     @property
     def _leans(self) -> str:
-        """The range of theta, as written in messages of the core."""
+        """Text for the valid range of theta, such as "0 < theta <= pi/2", for messages."""
         raise NotImplementedError
 
     # Quantities of the shape alone.
@@ -201,8 +201,8 @@ class Laws(Circles):
     def topples(self, mu: Reals, theta: Reals = 0.0) -> Result:
         """Whether the body topples as it slides straight on its face.
 
-        It does if mu Z > a, with the height Z of the centre of mass and the radius a of the face. A body that
-        also spins may stay up.
+        The body topples if mu Z > a, with the height Z of the centre of mass and the radius a of the face. A
+        body that also spins may stay up.
 
         Parameters
         ----------
@@ -232,7 +232,7 @@ class Laws(Circles):
     def slip_slope(
         self, mu: Reals, posture: Posture = "rolling", *, phi: Reals = -np.pi / 2, theta: Reals = None
     ) -> Result:
-        """Slope of the table, in radians, beyond which the body slips, rolling or at rest.
+        """Slope of the table, in radians, beyond which a body that rolls or rests on it slips.
 
         Parameters
         ----------
@@ -240,13 +240,14 @@ class Laws(Circles):
             Coefficient of static friction, 0 or more.
         posture : {"rolling", "lying", "standing"}
             "rolling": on its side, or upright on one rim, and free to roll. "lying": the same, but rolling
-            resistance or a chock holds it from rolling. "standing": on its face.
+            resistance or a chock prevents rolling. "standing": on its face.
         phi : array_like, optional
-            Direction to which the axis leans, in radians from downhill. Default: the axis lies across, so
-            that the body rolls straight down; with 0 the axis of a body on its side points downhill.
+            Direction to which the axis leans, in radians from downhill. Default: the axis lies across the
+            slope, so that the body rolls straight down. With 0 the axis of a body on its side points
+            downhill.
         theta : array_like, optional
-            Of a body of several circles the inclination at which it rests: one of `borders`, 0 or pi.
-            Default: the first one at which it `rests` on two circles; 0 if it stands.
+            Inclination of a body of several circles: one of `borders`, 0 or pi. Default: the first of
+            `borders` at which the body `rests` on two circles; 0 for "standing".
 
         Returns
         -------
@@ -261,9 +262,9 @@ class Laws(Circles):
         Notes
         -----
         A body that rolls straight down slips if tan(slope) > mu (I3 + A^2)/I3, where A is the radius of the
-        circles on which it rolls; one that is held, or stands, if tan(slope) > mu. On its side at another
-        phi a body slips earlier, since its upper circle, which carries less, has to share the friction. Such
-        a body may tip first: see `tip_slope`.
+        circles on which it rolls. A body that lies without rolling, or stands, slips if tan(slope) > mu. A
+        body on its side at another phi slips earlier: its upper circle carries less load but must share the
+        friction. Such a body may tip first: see `tip_slope`.
 
         Examples
         --------
@@ -350,7 +351,7 @@ class Laws(Circles):
         return self._energy(state, contact)
 
     def _energy(self, state: State, contact: AnyContact, rim: Any = None) -> Result:
-        """The energy of a state that is told from a circle, by default from the one that carries."""
+        """Energy of a state that refers to the circle `rim`; default: the circle that touches the table."""
         if not isinstance(contact, Coulomb | Viscous) and not is_rolling(contact):
             why = "on a smooth table the centre moves only up and down; contact=sc.Coulomb(0.0) lets it slide"
             return _core.energy_smooth(*self._at(*numbers_without_slip(state, why), rim=rim))

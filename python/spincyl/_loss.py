@@ -30,10 +30,10 @@ from spincyl._state import State, numbers
 
 
 class LossRow(NamedTuple):
-    """A row of the core's table of loss laws."""
+    """What the compiled core knows of a loss law: its coefficient, its units, and where it acts."""
 
     parameter: str  #: the name of the coefficient
-    exponent: float | None  #: with which a thin disk comes to its end
+    exponent: float | None  #: n: theta of a thin disk falls as (remaining time)^n
     measures: str  #: what the unit of the coefficient measures, such as a length
     natural: str
     si: str
@@ -46,7 +46,7 @@ class LossRow(NamedTuple):
 #: The loss laws by the names of their coefficients, in the order of the core.
 LAWS = {row["parameter"]: LossRow(**row) for row in _core.loss_laws()}
 _MOST = 1e6
-#: In the representation of a law that does not act while the contact point slips.
+#: End of the repr of a law that does not act while the contact point slips.
 _ONLY_ROLLING = ", while_slipping=False"
 _Kind = TypeVar("_Kind", bound="Law")
 _EXPECTED = "expected a positive number: a loss takes energy"
@@ -67,7 +67,7 @@ class Loss(Hinting):
 
     @property
     def _built_in(self) -> "Loss | None":
-        """The laws of the library in the sum; None if there are none."""
+        """The sum without a law that the user wrote: the laws of the library; None if there are none."""
         return self
 
     @property
@@ -83,12 +83,12 @@ class Loss(Hinting):
         return laws is None or all(law._acts_in_slip for law in laws.laws)
 
     def _natural(self, scale: Scale | None) -> "Loss":
-        """The law in natural units, of a body with this scale."""
+        """The law with coefficients in the natural units of a body with this scale."""
         return self
 
     @elementwise
     def power(self, body: Body, state: State, normal: Reals = 1.0) -> Result:
-        """Power lost, in M g R sqrt(g/R).
+        """Power that the law takes from a body in a state, in M g R sqrt(g/R).
 
         With the couple m and the angular velocity w it is P = -m.w >= 0, and the energy falls as dE/dt = -P.
 
@@ -179,7 +179,7 @@ class Law(Loss):
 
     @property
     def _parameter(self) -> str:
-        """The name of the coefficient."""
+        """The name of the coefficient, such as "eps"."""
         return fields(self)[0].name  # type: ignore[arg-type]
 
     @property
@@ -223,7 +223,7 @@ class Law(Loss):
 
     @property
     def laws(self) -> "tuple[Law, ...]":
-        """A tuple of this law alone; for a sum the tuple has each of its laws."""
+        """The laws in this object as a tuple: only this law itself; for a sum each of its laws."""
         return (self,)
 
     def __repr__(self) -> str:
@@ -328,10 +328,10 @@ def divided_by_unit(value: Reals, unit: float) -> Reals:
 
 
 def arm_in_radii(name: str, value: Reals, scale: "Scale | Body") -> Reals:
-    """Convert an arm from metres to R; warn if it exceeds R/2, since millimetres were probably meant."""
+    """Convert the arm of a loss law from metres to R; warn above R/2: probably millimetres were meant."""
     found = divided_by_unit(positive_coefficient(name, value, "metre"), natural_units_in_si(scale)[0])
     if np.any(np.asarray(found) > 0.5):
-        told = f"{name}: more than half the radius of the body; give metres, or a text such as '0.1mm'"
+        told = f"{name}: the arm exceeds half the radius of the body; give metres, or a text such as '0.1mm'"
         warnings.warn(told, UserWarning, stacklevel=3)
     return found
 

@@ -11,8 +11,8 @@ from spincyl._input.reprs import is_lazy
 from spincyl._loss import Loss, checked_law
 
 _WHY = {
-    "step": "give tol=, the tolerance of the steps of eighth order",
-    "method": "without first integrals the motion is integrated with steps of eighth order; give tol=",
+    "step": "losses need an integrator of eighth order with variable steps: give tol=",
+    "method": "with losses there are no first integrals; an eighth-order integrator is used: give tol=",
 }
 
 
@@ -38,13 +38,13 @@ def losses_of_stone(losses: object, body: Any) -> Loss:
     """Return a loss law that acts on stones, or an error that names the law."""
     found = checked_law(losses, body)
     if found._function is not None:
-        why = "theta, e1, e2 and e3 of a couple of your own are those of a body of revolution"
+        why = "the axes e1, e2, e3 of your own law are those of a body of revolution"
         raise TypeError(f"losses = {losses!r}: {why}, and a stone has no axis")
     if not found._acts_in_slip:
         raise ValueError(f"losses = {losses!r}: while_slipping=False is for bodies of revolution, not stones")
     for law in found.laws:
         if law._parameter not in _core.stone_losses():
-            why = "acts along a rim, which a stone lacks; take air, rolling resistance or drilling"
+            why = "acts along a rim, which a stone lacks; give a law of air, rolling resistance or drilling"
             raise ValueError(f"losses = {law!r}: {why}")
     return found
 

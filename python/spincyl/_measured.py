@@ -172,14 +172,14 @@ def _in_seconds(scale: Scale, length: str) -> Iterator[None]:
         told = _TIME.sub(lambda found: f"{found[1]}{_seconds(found[1], found[2], second)} s", said)
         if _OUT_OF_RANGE.match(said):
             told, which = (told, "limits in natural units") if told != said else (said, "natural units")
-            told = f"{told} ({which}: sqrt({length}/g) is {second:.6g} s of this body)"
+            told = f"{told} ({which}: sqrt({length}/g) is {second:.6g} s for this body)"
         if told == said:
             raise
         raise ValueError(told) from None
 
 
 def _seconds(before: str, number: str, second: float) -> str:
-    """A time in seconds; a proposed step is rounded so that it does not become longer."""
+    """Text of a time in seconds, from a text in natural units; a step that is proposed is rounded down."""
     told = float(number) * second
     return f"{0.99 * told:.3g}" if before == "a step of " else f"{told:.12g}"
 
@@ -187,7 +187,7 @@ def _seconds(before: str, number: str, second: float) -> str:
 def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Motion":
     """Convert a motion to SI for a measured body; `seconds` and `step` are the times and the step as given.
 
-    `told` converts the outputs that are computed on access.
+    `Motion._told` converts the outputs that are computed on access.
     """
     scale = body.scale
     assert scale is not None
@@ -215,7 +215,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
 
 
 def _rows_in_si(rows: Floats | None, scale: Scale, *, impacts: bool = False) -> Floats | None:
-    """Phases or impacts in SI, as far as the mass is known."""
+    """Rows of phases or impacts in SI; without a mass, impulses and energies stay in natural units."""
     if rows is None:
         return None
     metre, second, joule, _ = scale._units

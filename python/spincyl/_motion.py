@@ -148,7 +148,7 @@ class Motion(Outputs, Showing):
 
     @property
     def _seen(self) -> State:
-        """The states; in the air slip, height and lift are those of the circle that `rim` names."""
+        """`states`, but in the air with slip, height and lift of the circle that `rim` names."""
         if self._natural is not None:
             return self._natural._seen
         slip = self._extra.get("slip")
@@ -218,10 +218,10 @@ class Motion(Outputs, Showing):
     def known_until(self) -> float:
         """Time until which the motion is known, in the unit of `t`.
 
-        Up to this time the estimated error is at most 0.1 in natural units, beyond which there is an
-        `ErrorWarning`: impacts multiply errors, and a body that hops forgets how it began. This is the end of
-        the motion if `error` is that small, and NaN if `error` is. Otherwise a dozen shorter motions give it
-        to 1 % of the time since the initial state.
+        Up to this time the estimated error is at most 0.1 in natural units; a larger one gives an
+        `ErrorWarning`. Impacts multiply errors. The time is the end of the motion if `error` is at most 0.1,
+        and NaN if `error` is NaN. Otherwise it is computed from a dozen shorter motions, to 1 % of the time
+        since the initial state.
         """
         if self._natural is not None and self.scale is not None:
             return float(self.scale.seconds(self._natural.known_until))
@@ -277,8 +277,8 @@ class Motion(Outputs, Showing):
     def phases(self) -> tuple[Phase, ...]:
         """Phases of the motion, each with the time, kind and state with which it begins.
 
-        Needs a law of friction or `restitution=`. There are none if the motion ends at its initial state: if
-        a body on its side stays lying, or lifts off.
+        Needs a law of friction or `restitution=`. The tuple is empty if the motion ends at its
+        initial state: if a body on its side stays lying, or lifts off.
         """
         if self._phases is None:
             raise missing_output(self, "phases", FRICTION)
@@ -287,7 +287,7 @@ class Motion(Outputs, Showing):
 
     @property
     def losses(self) -> "Loss | None":
-        """The `losses` given to `roll`, or None. They do not include sliding friction."""
+        """The `losses` given to `roll`, or None. Sliding friction is not one of these loss laws."""
         return self._asked.losses
 
     def to_xarray(self) -> "xarray.Dataset":
@@ -365,7 +365,7 @@ class Motion(Outputs, Showing):
     # Motions of other kinds of bodies override these.
 
     def _again(self, asked: Asked) -> "Motion":
-        """The motion computed again with these arguments."""
+        """Compute the motion of the same body from the same initial state with other arguments."""
         return rolled(self.body, self.start, asked)
 
     @property
@@ -375,11 +375,11 @@ class Motion(Outputs, Showing):
 
     @property
     def _doubt(self) -> str:
-        """The time up to which the motion is known, in words; empty if that is its end."""
+        """Text such as "known to 1 % up to t = 5"; empty if the motion is known up to its end."""
         return ""
 
     def _about(self) -> dict[str, Any]:
-        """The numbers of the body for a labelled result."""
+        """The fields ell, i1, i3 of the body, as attributes of a labelled result."""
         return {name: getattr(self.body, name) for name in ("ell", "i1", "i3")}
 
     def _repr_html_(self) -> str:
@@ -418,7 +418,7 @@ def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] |
 
 
 def fixed_step(found: dict[str, Any]) -> FixedStep | None:
-    """Take the numbers of a fixed step from the results of the core; None if the motion has other steps."""
+    """The `Motion.rk4` of a motion, from the results of the core; None for a motion without a fixed step."""
     numbers = FixedStep(found.pop("step_loss"), found.pop("advice"), found.pop("coarse"))
     return numbers if found["method"] == "rk4" else None
 

@@ -89,7 +89,7 @@ class Outlines:
             Radii of the lower and the upper end, and height, all in one unit or as texts such as "35mm". The
             body is in units of the larger radius R; `in_metres` takes numbers without a unit as metres.
         wall : float, optional
-            Thickness of the wall of a hollow frustum, measured across the axis; 0 is a thin wall.
+            Thickness of the wall of a hollow frustum, measured perpendicular to the axis; 0 is a thin wall.
 
         Examples
         --------
@@ -170,8 +170,8 @@ class Outlines:
         """Ball whose centre of mass lies `offset` radii above its centre; negative for a tippe top.
 
         `i1`, `i3`: transverse and axial moments of inertia about the centre of mass, in M R^2. The axis may
-        pass the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms. With
-        both, a moment may also be a text such as "3.2e-6 kg m^2".
+        pass through the vertical. A `diameter` in metres makes a measured body; its `mass` is in kilograms.
+        With both, a moment may also be a text such as "3.2e-6 kg m^2".
         """
         scale = None if diameter is None or mass is None else Scale(_half(diameter), mass)
         moments = [moment_as_number(name, x, scale) for name, x in (("i1", i1), ("i3", i3))]
@@ -182,7 +182,7 @@ class Outlines:
 
     @classmethod
     def _made(cls, numbers: Any, unit: float = np.nan, scale: Scale | None = None) -> Self:
-        """The body with the numbers and circles of the core; `unit` is R in the unit of its lengths."""
+        """Make a body from the result of the core; `unit` is R in the unit in which lengths were given."""
         (*six, fillet, theta_end), rims = numbers
         more = {"rims": rims} if rims else {"fillet": fillet, "theta_end": theta_end}
         body = cls(*six[: 3 if rims else 4], **more, scale=scale)
@@ -190,7 +190,7 @@ class Outlines:
         return body
 
     def _across(self, diameter: float | None, mass: float | None) -> Self:
-        """The body of one ball or two, measured if a diameter is given."""
+        """Return this body of one ball or two, as a measured body if a diameter is given."""
         if diameter is None:
             if mass is not None:
                 raise ValueError(f"mass = {mass!r}: give the diameter of the balls as well, in metres")
@@ -199,5 +199,5 @@ class Outlines:
 
 
 def _half(diameter: float) -> float:
-    """The radius in metres, of a diameter."""
+    """Half of a diameter, in metres; the diameter is a number in metres or a text with a unit."""
     return in_range("diameter", metres({"diameter": diameter})["diameter"], 2e-100, 2e100, "metres") / 2

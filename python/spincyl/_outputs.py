@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 POSE, FORCE, BOTH = '"pose"', '"force"', '("pose", "force")'
 FRICTION, PATCH, COUPLE, ALOFT, LOSSES = "friction", "patch", "couple", "restitution", "losses"
 FACE = "face"
-#: Settings of `roll` that another argument excludes.
+#: Settings of `roll` that cannot be combined with what each kind of output needs.
 _EXCLUDES = {
     FRICTION: ("step", "method", "mu", "beyond"),
     PATCH: ("step", "method", "mu", "beyond"),
@@ -59,7 +59,7 @@ def missing_output(m: "Motion", name: str, needs: str) -> AttributeError:
 
 def _how_to_get(m: "Motion", needs: str) -> str:
     if needs in (POSE, FORCE, BOTH):
-        return f"not computed; give want={needs} to roll, or take m.wanting({needs})"
+        return f"not computed; give want={needs} to roll, or call m.wanting({needs})"
     own = [law for law in (m.contact, m.losses) if getattr(law, "_function", None) is not None]
     measured, stone, more = m.scale is not None, not isinstance(m.body, Body), ""
     if needs == ALOFT:
@@ -70,7 +70,7 @@ def _how_to_get(m: "Motion", needs: str) -> str:
         made = "custom.Couple(function)" if own else f"loss.{made}"
         why, how = "losses=", f"losses=sc.{made}"
     elif needs == FACE:
-        return 'needs a body that stands on its face, as from sc.spun, a contact in sc.roll, and want="force"'
+        return 'needs a phase on the face: give roll a state of sc.spun, a law of friction and want="force"'
     elif needs == FRICTION:
         why, how = (
             f"a law of friction, not contact = {contact_in_words(m.contact)!r}",
@@ -208,8 +208,8 @@ class Outputs(Hinting):
         """Share of the largest dry friction that holds the body at rest; None unless it is at rest.
 
         The body is at rest if the motion ends with `Ending.STOPS`. The share is 0 on a level table, unless
-        dry losses hold the body on its edge away from its balance. It is None for a stone, for a law of your
-        own, and on a table that turns.
+        dry losses hold the body on its edge at another inclination than `theta_balance`. It is None for a
+        stone, for a law of your own, and on a table that turns.
         """
         found: Held | None = held(self.natural)  # type: ignore[attr-defined]
         return found

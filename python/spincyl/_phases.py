@@ -34,7 +34,7 @@ HITS: tuple[Hit, ...] = get_args(Hit)
 
 
 Rim: TypeAlias = Literal["first", "other", "third", "fourth", "fifth", "sixth", "seventh", "eighth"]
-#: Rim from which a state is seen, for each code in `Motion.rim`.
+#: Name of the rim to which theta refers, for each code in `Motion.rim`.
 RIMS: tuple[Rim, ...] = get_args(Rim)
 
 
@@ -101,8 +101,8 @@ class Impact(NamedTuple):
     stays : bool
         Whether the impact ends a sequence of ever smaller bounces, after which the rim stays on the table.
     couple : float
-        Impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R) or N m s; 0 at a
-        point.
+        Impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R) or N m s; 0 without
+        a patch.
     """
 
     time: float
@@ -179,8 +179,8 @@ def check_contact(state: State, contact: AnyContact, restitution: object, settin
 
 
 _WHY = {
-    "step": "give tol=, the tolerance of the steps of slipping",
-    "method": "slipping is integrated with steps of eighth order, and rolling is exact",
+    "step": "slipping is integrated with variable steps; give tol= instead",
+    "method": "slipping has steps of eighth order, and rolling is exact; leave it out",
     "mu": "give the coefficient to the contact, as in contact=sc.Coulomb(0.3)",
     "beyond": "the solution cannot continue past the end of such a motion",
 }
@@ -215,19 +215,19 @@ def phases_in_words(phases: Sequence[Phase], unit: str = "") -> str:
 
 
 def methods_in_words(phases: Sequence[Phase], within: float) -> str:
-    """The methods that computed the phases, in words."""
+    """The methods that computed the phases, in words, with the tolerance `within` of each step."""
     how = {
-        "slipping": f"slipping by steps within {within:g}",
+        "slipping": f"slipping in steps with tolerance {within:g}",
         "rolling": "rolling by first integrals",
         "flying": "flight in closed form",
-        "on its face": f"sliding on its face by steps within {within:g}",
+        "on its face": f"sliding on its face in steps with tolerance {within:g}",
     }
     kinds = {"slipping" if phase.kind in ("lying", "pivoting") else phase.kind for phase in phases}
     return ", ".join(text for kind, text in how.items() if kind in kinds)
 
 
 def slipping_time(phases: Sequence[Phase], end: float) -> float:
-    """Total time of slipping up to the time `end`."""
+    """Total duration of the phases of slipping, up to the time `end`."""
     begins = np.array([phase.time for phase in phases] + [end])
     slips = np.array([phase.kind in ("slipping", "lying", "pivoting") for phase in phases], bool)
     return float(np.abs(np.diff(begins))[slips].sum())
@@ -241,7 +241,7 @@ def has_two_rims(body: "Body") -> bool:
 def lowest_point_height(body: "Body", theta: Floats, rim: Floats, told: Any) -> Floats:
     """(n,) height of the lowest point of a body, from that of one rim; in flight another rim may be lower.
 
-    A height that is negative by rounding is 0; any other negative one is told as it is.
+    A height that is negative by rounding is 0; any other negative height is returned unchanged.
     """
     if body.rims is not None:
         lower = lowest_point_of(body, theta, told)

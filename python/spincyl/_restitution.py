@@ -1,4 +1,4 @@
-"""Laws of restitution of an impact, for comparison with programs that have another one than Stronge's."""
+"""Laws of restitution of an impact, for comparison with programs that use another law than Stronge's."""
 
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeAlias
@@ -13,7 +13,7 @@ class GainWarning(UserWarning):
 
 
 class _ImpactLaw:
-    """Base of the laws: all of their numbers are from 0 to 1."""
+    """Base class of the laws of restitution: checks that each coefficient is a number from 0 to 1."""
 
     e: float
 
@@ -65,8 +65,8 @@ class Newton(_ImpactLaw):
 class Poisson(_ImpactLaw):
     """Poisson's law, for `restitution=`: expansion returns e times the normal impulse of compression.
 
-    Compression ends where the normal velocity is zero; if friction presses the point down once more, at the
-    last zero. A motion under this law ends where a second circle or a face lands.
+    Compression ends where the normal velocity is zero; if friction presses the contact point down
+    once more, at the last such time. A motion under this law ends where a second circle or a face lands.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def check_restitution(restitution: object) -> None:
 
 
 def coefficient_of(restitution: Any) -> float:
-    """The coefficient of normal restitution."""
+    """The coefficient of normal restitution of a law, or of a number, which is the coefficient itself."""
     return float(restitution.e if isinstance(restitution, _ImpactLaw) else restitution)
 
 

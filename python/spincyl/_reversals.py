@@ -48,7 +48,7 @@ def reversal_times(m: "EllipsoidMotion") -> Floats:
 
 
 def _zero(m: "EllipsoidMotion", before: float, after: float, side: float) -> float:
-    """The zero of the spin between two times, to rounding: the last one that it has there."""
+    """Last time between two times at which the spin is zero, to rounding; `side` is its sign before."""
     while True:
         t = np.unique(before + (after - before) * _PARTS)[:: 1 if after > before else -1]
         if t.size < 3:

@@ -37,12 +37,12 @@ def rising_spin(
     -------
     float
         Initial spin about the vertical, in sqrt(g/a), with the centre at rest. The estimate is inf if no spin
-        makes the egg stable on an end, or if at every spin the egg is stable in between, on its way. The
-        result of a search is inf if ten times the estimate does not raise the egg within `t` with this
-        contact. Error of the estimate: a few roundings. Error of a search: 1e-3 of the least spin within `t`;
-        each motion is computed with smaller tolerances until its estimated error lets it decide. An egg that
-        leaves the table comes down again, without a bounce, and rises on. The search begins at half of the
-        estimate and finds no smaller spin.
+        makes the egg stable on an end, or if at every spin the egg is stable at an inclination between its
+        side and the end. The result of a search is inf if ten times the estimate does not raise the egg
+        within `t` with this contact. Error of the estimate: a few roundings. Error of a search: 1e-3 of the
+        least spin within `t`; each motion is computed with smaller tolerances until its estimated error is
+        small enough to decide. An egg that leaves the table comes down again, without a bounce, and rises on.
+        The search begins at half of the estimate and finds no smaller spin.
 
     Raises
     ------

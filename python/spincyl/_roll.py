@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from spincyl._table import Table
 
 
-#: An impact gains less by rounding errors, in M g R or J.
+#: Rounding errors add less energy than this in an impact, in M g R or J.
 _GAINED = 1e-12
 
 
@@ -200,8 +200,8 @@ def roll(
     ErrorWarning
         If the estimated error of a motion without `step` exceeds 0.1 in natural units; impacts multiply
         errors, and a body that hops often reaches this. `Motion.known_until` is the time until which the
-        motion is known. For a stone, if it becomes too large before the motion ends; the message gives this
-        time (`EllipsoidMotion.known_until`).
+        motion is known. For a stone, if the error becomes too large before the motion ends; the message
+        gives this time (`EllipsoidMotion.known_until`).
 
     Notes
     -----
@@ -288,7 +288,7 @@ def roll(
     if not stone and step is None and not given_up_too and not m.error <= LARGE_ERROR:
         why = f"{'impacts multiply errors, and ' if hops else ''}its last states are not known"
         told = f"the estimated error of the motion is {m.error:.2g}, in natural units: {why}"
-        warn(f"{told}; they are known up to the time known_until of the motion", ErrorWarning)
+        warn(f"{told}; Motion.known_until is the time up to which states are known", ErrorWarning)
     if scale is not None:
         step = None if step is None else number("step", si("step", given_step, "second"))
         m = in_si(m, one, times_of(seconds), step)

@@ -125,7 +125,7 @@ class Scale(Hinting):
 
     @property
     def _worst(self) -> float:
-        """The largest unit of states, slips and times: it converts a bound on all their errors."""
+        """Largest factor to SI of angles, rates, times and slips; it converts a bound on all their errors."""
         metre, second, *_ = self._units
         return max(1.0, 1 / second, second, metre / second)
 

@@ -1,4 +1,4 @@
-"""The methods by which a motion is seen and heard; the studio has the functions behind them."""
+"""Methods of `Motion` that draw it and write its sound and film; their code is in `spincyl.studio`."""
 
 from os import PathLike
 from pathlib import Path
@@ -78,7 +78,7 @@ class Showing:
         seconds : float, optional
             Longest duration of the film. Default: 10 s, with a warning if the film would be longer.
         sound : bool, optional
-            Whether the film has the sound of the motion, as slow as the pictures. Default: if there is any.
+            Whether the film has the sound of the motion, as slow as the pictures. Default: if there is one.
 
         Returns
         -------

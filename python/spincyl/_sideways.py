@@ -30,7 +30,7 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
     resonance : float or array
         Stability kappa over the squared precession. The drift is valid for small slopes while this is
         positive and away from 1: at 1, as for a uniform ball, the body runs downhill, and the drift is NaN or
-        of no meaning; below 0 it leaves the steady state.
+        meaningless; below 0 the body leaves the steady state.
 
     Raises
     ------
@@ -39,8 +39,9 @@ def slope_drift(body: Body, state: State) -> tuple[Result, Result]:
 
     Notes
     -----
-    The relative error is a few roundings of the largest term, and as a law of motion of the order of the
-    slope. See "Down the slope, and across it" in the documentation, and docs/physics.md.
+    The relative error is a few roundings of the largest term. That of the theory itself, which is of first
+    order in the slope, is of the order of the slope. See "Down the slope, and across it" in the
+    documentation, and docs/physics.md.
 
     Examples
     --------

@@ -13,7 +13,7 @@ from spincyl._scale import Scale, moment_in_natural
 
 
 class Sized:
-    """Base of bodies that may be measured: `scale` is None if the size is unknown."""
+    """Base class of bodies that may be measured: `scale` is None if the size is unknown."""
 
     scale: Scale | None
     #: The letter of the unit of length: R of a rim, or a, the largest semi-axis of a stone.
@@ -49,8 +49,8 @@ class Sized:
         gravity : float, optional
             Acceleration of gravity, in m/s^2. Default: the gravity that the body already has, else 9.80665.
         density : float or str, optional
-            Mean density in kg/m^3, in place of `mass`, or the name of a material as for `measured`: of a
-            ball, an egg or another whole ellipsoid, and a tube or cylinder, whose volume is known.
+            Mean density in kg/m^3, in place of `mass`, or the name of a material as for `measured`. Only
+            for a body of known volume: a ball, an egg or another whole ellipsoid, a tube, or a cylinder.
         i1, i3 : float, optional
             Measured transverse and axial moments of inertia about the centre of mass, in kg m^2, or texts
             such as "320 g mm^2": from a swing or from CAD, for a body of revolution whose mass is known. They
@@ -88,7 +88,7 @@ class Sized:
         """
         given = {name: x for name, x in (("i1", i1), ("i3", i3)) if x is not None}
         if given and self._length != "R":
-            raise TypeError("i1, i3: only for bodies of revolution; a stone has inertia=, in kg m^2 per mass")
+            raise TypeError("i1, i3: only for bodies of revolution; make a stone with inertia=, per mass")
         own = self.scale or Scale(1.0, math.nan)
         size = self._radius() if radius is None else number("radius", si("radius", radius, "metre"))
         weight = own.mass
@@ -109,7 +109,7 @@ class Sized:
         try:
             return self._with_scale(scale, **moments)
         except ValueError as e:
-            one = f"; M R^2 is {scale.mass * scale.radius**2:.4g} kg m^2 of this body" if moments else ""
+            one = f"; M R^2 is {scale.mass * scale.radius**2:.4g} kg m^2 for this body" if moments else ""
             raise ValueError(f"{e}{one}") from None
 
     def _volume(self) -> float:
@@ -139,7 +139,7 @@ class Sized:
         return self.scale
 
     def _check_scale(self) -> None:
-        """Raise TypeError for a scale of another type."""
+        """Raise TypeError if the field `scale` is neither a `Scale` nor None."""
         given: Any = self.scale
         if given is not None and not isinstance(given, Scale):
             raise TypeError(f"scale: expected a Scale, not {type(given).__name__}")

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def _numbers_of_rim(body: "Laws") -> tuple[Reals, ...]:
-    """Numbers of a body with the same rim: a velocity depends neither on the moments nor on the bore."""
+    """Six numbers of a body with the same rim; moments and bore are fixed, since velocities need neither."""
     return body.ell, 1.0, 1.0, np.nan, body.fillet, np.nan
 
 
 def _centre_moves(body: "Laws", state: State, slip: tuple[Reals, Reals]) -> tuple[Result, Result]:
-    """The horizontal velocity of the centre, along e_h and e2, with a slip."""
+    """Horizontal velocity of the centre, along e_h and e2, of a state with the given slip."""
     given = *numbers(state), *slip
     if body.rims is None:
         given = *given, *_numbers_of_rim(body)
@@ -30,20 +30,20 @@ def _centre_moves(body: "Laws", state: State, slip: tuple[Reals, Reals]) -> tupl
 
 
 def slip_of(body: "Laws", state: State, along: Reals, across: Reals) -> tuple[Result, Result]:
-    """The slip for a given horizontal velocity of the centre."""
+    """Slip, along e_h and e2, for a given horizontal velocity of the centre along the same vectors."""
     moves = _centre_moves(body, state, (0.0, 0.0))
     return along - moves[0], across - moves[1]
 
 
 def velocity_of(body: "Laws", state: State) -> tuple[Result, Result]:
-    """The horizontal velocity of the centre, along e_h and e2."""
+    """Horizontal velocity of the centre, along e_h and e2, of a state with its own slip, if any."""
     return _centre_moves(body, state, state._slip)
 
 
 def told_of_lowest(body: "Laws", state: State, rim: Any, flies: Any) -> State:
     """Convert states that refer to the circles `rim`, so that states in the air refer to the lowest circle.
 
-    From a state of `State`, the circle follows from its inclination alone.
+    The inclination alone determines the lowest circle, so a `State` needs no index of a circle.
     """
     four, level = numbers(state), (0.0, 0.0)
     sign, theta = body._sign(state.theta), np.asarray(state.theta)

@@ -41,7 +41,7 @@ def spun(
         measured body, or with `scale`, in rad/s.
     velocity : pair of array_like, optional
         Horizontal velocity of the centre, in sqrt(g R); for a measured body, or with `scale`, in m/s. The
-        components are along the first two axes of the laboratory, in which phi of the state is 0.
+        components are along x and y of the laboratory; phi of the state is 0.
     theta : array_like, optional
         0 if the body stands on its first face, pi if it stands on the other one.
     scale : Scale, optional

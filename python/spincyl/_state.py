@@ -198,7 +198,7 @@ def state_without_checks(
     height: Reals | None = None,
     lift: Reals | None = None,
 ) -> State:
-    """Make a state from numbers known to be valid; checks would take longer than computing many a motion."""
+    """Make a state from numbers known to be valid; checks would take longer than computing a short motion."""
     found = object.__new__(State)
     theta, w1, w2, w3 = four
     found.__dict__.update(theta=theta, w1=w1, w2=w2, w3=w3, slip=slip, height=height, lift=lift)
@@ -211,13 +211,13 @@ def numbers(state: object) -> tuple[Reals, Reals, Reals, Reals]:
 
 
 def refuse_state_in_air(state: Any, remedy: str) -> None:
-    """Raise ValueError with a remedy for a state in the air."""
+    """Raise ValueError for a state in the air; the message ends with `remedy`, which says what to do."""
     if state.height is not None:
         raise ValueError(f"state: the body is in the air, height = {repr_of_numbers(state.height)}: {remedy}")
 
 
 def numbers_without_slip(state: object, why: str) -> tuple[Reals, Reals, Reals, Reals]:
-    """The four numbers of a state without slip, or ValueError with the remedy `why`."""
+    """theta, w1, w2, w3 of a state on the table; for a state with slip a ValueError that ends with `why`."""
     found = numbers(state)
     if isinstance(state, State) and state._slips:
         raise ValueError(f"state: the body slips, slip = {repr_of_numbers(state._slip)}: {why}")

@@ -94,7 +94,7 @@ def swing(body: Body, state: State, contact: Contact = "rolling") -> Swing:
 
 
 def swing_on(body: Body, state: State, contact: Contact, rim: int | None = None) -> Swing:
-    """The nutation of a body of several circles on the circle `rim`, or else on the one that carries it."""
+    """The nutation of a body on its circle `rim`; default: the circle that touches the table."""
     of, start = numbers_of_one(body, state, several=True)
     numbers_without_slip(
         state, f"contact={contact!r} has no law of friction; take roll with contact=sc.Coulomb(mu)"

@@ -25,11 +25,11 @@ class Table(HintingFamily):
     turning : float
         Rate at which the table turns about its normal through x = y = 0, counterclockwise as seen from
         above, in sqrt(g/R); for `roll` only. The slip and the drilling are relative to the table; all other
-        numbers are relative to the room. The motion ends when a face or two rims touch this table.
+        numbers are relative to the laboratory. The motion ends when a face or two rims touch this table.
     phi0 : float
-        Direction to which the axis leans in the initial state, from x, in radians or as a text. In a sweep
-        it may be an array. A stone and its slip are rotated about z by this angle, from the directions that
-        `EllipsoidState` describes.
+        Direction to which the axis leans in the initial state, as an angle from x in radians, or a text. In a
+        sweep it may be an array. A stone and its slip are rotated about z by this angle, from the directions
+        that `EllipsoidState` describes.
     place : pair of float
         Initial contact point (x, y), in R.
 
@@ -40,13 +40,14 @@ class Table(HintingFamily):
 
     Notes
     -----
-    The motion on a slope is that on a level table with a horizontal pull tan(slope), in other units of time
-    (docs/slopes.md). On a slope a body of revolution rolls, slips, flies, bounces and slides on its face,
-    with every law of friction at a contact point and with all losses, except dry friction along the contour
-    together with drilling friction. A stone rolls and slips on a slope, with the same losses, but not on a
-    table that turns. On a table that turns, a loss along the contour excludes drilling friction and a patch
-    of contact; if that table is also tilted, drilling friction excludes rolling resistance. If friction holds
-    a ball at rest relative to a table that turns, the motion ends with `Ending.STOPS`.
+    The motion on a slope is that on a level table with a horizontal force M g tan(slope) on the centre, in
+    the time sqrt(cos(slope)) t (docs/slopes.md). On a slope a body of revolution rolls, slips, flies, bounces
+    and slides on its face, with every law of friction at a contact point and with all losses, except dry
+    friction along the contour together with drilling friction. A stone rolls and slips on a slope, with the
+    same losses, but not on a table that turns. On a table that turns, a loss along the contour excludes
+    drilling friction and a patch of contact; if that table is also tilted, drilling friction excludes rolling
+    resistance. If friction holds a ball at rest relative to a table that turns, the motion ends with
+    `Ending.STOPS`.
 
     Examples
     --------

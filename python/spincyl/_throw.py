@@ -114,8 +114,8 @@ def dropped(
         Height of the lowest point of the body above the table, 0 or more, in R; for a measured body, or with
         `scale`, in metres.
     theta : array_like
-        Inclination in radians, from 0 to pi. At 0 and pi, where the axis is vertical, `w1` must be 0. With w2
-        = 0, too, the body lands flat on its face: it bounces, slides and spins there.
+        Inclination in radians, from 0 to pi. At 0 and pi, where the axis is vertical, `w1` must be 0. If w2
+        is 0, too, the body lands flat on its face: it bounces, slides and spins there.
     w1, w2, w3 : array_like, optional
         Components of the angular velocity, as in `State`, in sqrt(g/R); for a measured body, or with `scale`,
         in rad/s.
@@ -301,7 +301,7 @@ def flicked(
         why = "give exactly one of hertz and w1, and exactly one of launch and spin_hertz"
         raise TypeError(f"hertz, w1, launch, spin_hertz: {why}")
     if scale is None and not (hertz is None and spin_hertz is None):
-        raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body, or scale=; w1= does not")
+        raise ValueError(f"{'spin_' * (hertz is None)}hertz: needs a measured body or scale=; w1= does not")
     refuse_bad_value("ell", body.ell, lambda x: x <= 0, "expected a body with two rims, ell > 0")
 
     def turns(name: str, value: Reals) -> Reals:

@@ -25,7 +25,7 @@ def message(m: "Motion") -> str:
         time = f"{m.event.time:.{_digits(m.event.time, m.error)}g}{_unit_of_times(m)}"
         why += f": the body {end_in_words(m)} at t = {time}"
         if m.status == Ending.SIDE and m.event.time == m._asked.t0 and m._asked.restitution is None:
-            why += "; with restitution=0.0 it goes on"
+            why += "; with restitution=0.0 the motion continues"
     pose = "" if np.isnan(m.pose_error) else f", of the pose {m.pose_error:.1e}"
     force = "" if np.isnan(m.force_error) else f", of the forces {m.force_error:.1e}"
     errors = f"error about {m.error:.1e}{pose}{force}"
@@ -40,14 +40,16 @@ def message(m: "Motion") -> str:
 
 
 def _near_toppling(m: "Motion") -> str:
-    """A remark on a tall body on its face; empty for others."""
+    """Text that a body on its face topples, or nearly topples, as it slides; empty for other bodies."""
     stands = m._phases is not None and any(phase.kind == "on its face" for phase in m.phases)
     if not stands or not isinstance(m.contact, Coulomb):
         return ""
     theta = next(phase.state.theta for phase in m.phases if phase.kind == "on its face")
+    ratio = "radius of the face over height of the centre"
     if m.body.topples(m.contact.mu, theta):
-        return "mu Z > a: without its spin the body topples, and a real one may chatter"
-    return "close to toppling: mu Z > 0.9 a" if m.body.topples(m.contact.mu / 0.9, theta) else ""
+        return f"mu exceeds {ratio}: without its spin the body topples, and a real one may chatter"
+    near = m.body.topples(m.contact.mu / 0.9, theta)
+    return f"close to toppling: mu exceeds 0.9 times {ratio}" if near else ""
 
 
 def given_up(m: "Motion") -> str:
@@ -81,19 +83,19 @@ def end_in_words(m: "Motion") -> str:
 
 
 def _unit_of_times(m: "Motion") -> str:
-    """The unit of the motion's times, to append to a number."""
+    """Text to append to a time of the motion: " s" for a measured body, else empty."""
     return "" if m.scale is None else " s"
 
 
 def _method_in_words(m: "Motion") -> str:
     if m._by_steps:
-        return f"found by steps within {m._setting:g}"
+        return f"found in steps with tolerance {m._setting:g}"
     if m._phases is not None:
         return methods_in_words(m.phases, m._setting)
     how = {
         "exact": "by first integrals",
         "rk4": f"by RK4, step {m._asked.step!r}{_unit_of_times(m)}",
-        "dop853": f"by steps of eighth order within {m._setting:g}",
+        "dop853": f"in steps of eighth order with tolerance {m._setting:g}",
     }[m.method]
     free = m._asked.step is None and m._asked.tol is None
     if free and m.method != "exact":

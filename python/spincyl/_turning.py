@@ -59,13 +59,13 @@ def turning_spin(
     Notes
     -----
     A force at the contact point does not change Jellett's number
-    J = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)). A top can turn over if with the same J it spins fast
-    enough to be stable upside down (J. H. Jellett 1872; S. Ebenfeld and F. Scheck, Ann. Phys. 243, 195
-    (1995)). With l = -ell:
+    J = I1 w1 sin(theta) + I3 w3 (ell + cos(theta)). A top can turn over if two conditions hold (J. H.
+    Jellett 1872; S. Ebenfeld and F. Scheck, Ann. Phys. 243, 195 (1995)). First, with the same J it spins fast
+    enough to be stable upside down. With l = -ell this needs at least
 
         w3 = (1 + l)^2/(1 - l) sqrt(l/(I3 (1 + l) - I1))
 
-    and if it is unstable upright, which needs at least w3 = (1 - l) sqrt(l/(I1 - I3 (1 - l))). The estimate
+    Second, it is unstable upright, which needs at least w3 = (1 - l) sqrt(l/(I1 - I3 (1 - l))). The estimate
     is the larger of the two.
 
     On a patch of contact the couple of drilling reduces J. A smaller patch does not help: it reduces J more

@@ -15,7 +15,7 @@ HOMES: dict[str, tuple[str, str]] = {}
 
 @cache
 def function_of_method(method: str) -> Callable[..., Any]:
-    """The function behind a method."""
+    """Return the function behind a method, whose name is a key of `HOMES`, such as "Motion.plot"."""
     module, name = HOMES[method]
     found: Callable[..., Any] = getattr(import_module(module), name)
     return found

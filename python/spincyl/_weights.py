@@ -39,7 +39,7 @@ def weighted(stone: _Stone, weights: Iterable[Any]) -> _Stone:
 
 
 def _moments_about_centre(r: Floats) -> Floats:
-    """The moments of a unit mass at r."""
+    """Tensor of inertia about the origin of a unit point mass at the vector `r`."""
     return np.asarray(r @ r * np.eye(3) - np.outer(r, r))
 
 
@@ -52,7 +52,7 @@ def _as_list(weights: Iterable[Any]) -> list[Any]:
 
 
 def _mass_and_place(i: int, given: Any, measured: bool) -> tuple[float, Floats]:
-    """The mass and the place of a weight."""
+    """Check the element `i` of the list `weights`; return its mass and its position."""
     name = f"weights[{i}]"
     if not isinstance(given, Sequence) or isinstance(given, str) or len(given) != 2:
         raise TypeError(f"{name}: expected (mass, (x, y, z)), not {given!r}")

@@ -48,7 +48,7 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _Own(Loss):
-    """What the laws of loss that are functions have in common: sums with laws of the library."""
+    """Base class of loss laws that are functions of the user; they can be added to laws of `sc.loss`."""
 
     function: Callable[..., Any]
     _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
@@ -99,8 +99,8 @@ class Couple(_Own):
         ``function(theta, w, normal)`` returns the couple on the body, in M g R: its three components along
         e1, e2, e3 of `State`. The arguments of the function are the inclination `theta` in radians, the
         angular velocity `w` in sqrt(g/R) (an array of its components along the same axes), and the normal
-        force `normal` in M g, 0 or more; in the air it is 0, and a body with two rims is seen from the
-        lower one. For a measured body the units are N m, rad/s and N. The power that the couple takes,
+        force `normal` in M g, 0 or more; in the air it is 0. `theta` and `w` of a body with two rims refer
+        to the lower rim. For a measured body the units are N m, rad/s and N. The power that the couple takes,
         ``-couple @ w``, must not be negative.
 
     Raises
@@ -207,7 +207,7 @@ class Moment:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Drive(_Own):
-    """Force and couple that drive a body, such as a motor, a wind or a finger. They may give energy.
+    """Force and couple that drive a body, such as a motor, a wind or a finger. They may add energy.
 
     Parameters
     ----------
@@ -228,12 +228,12 @@ class Drive(_Own):
 
     Notes
     -----
-    The drive is given as ``losses=``, alone or in a sum with laws of `sc.loss`: `Motion.work_lost` is what
-    these have taken less the work of the drive, so that the energy, the heat of friction and `work_lost`
-    have a constant sum. The motion ends where a face or a second rim lands and, without a restitution,
-    where the body leaves the table. A value that jumps, such as a motor that is switched on, costs short
-    steps. A pulse that is shorter than a hundredth of sqrt(R/g) while the body is at rest may be missed:
-    begin a new motion there.
+    The drive is given as ``losses=``, alone or in a sum with laws of `sc.loss`: `Motion.work_lost` is the
+    energy that these laws take minus the work of the drive. The sum of the energy, the heat of friction and
+    `work_lost` is then constant. The motion ends where a face or a second rim lands and, without a
+    restitution, where the body leaves the table. A value that jumps, such as a motor that is switched on,
+    costs short steps. A pulse that is shorter than a hundredth of sqrt(R/g) while the body is at rest may be
+    missed: begin a new motion at the pulse.
 
     Examples
     --------
@@ -281,7 +281,7 @@ class Drive(_Own):
                 (x, y), (m1, m2, m3) = found
                 return np.array([x, y, m1, m2, m3], dtype=float) / ([force] * 2 + [couple] * 3)
             except (TypeError, ValueError):
-                expected = "a force along x and y, and a couple along e1, e2, e3"
+                expected = "the function to return ((fx, fy), (m1, m2, m3)), force and couple"
                 raise TypeError(f"drive: expected {expected}, not {found!r}") from None
 
         return push
@@ -325,7 +325,7 @@ class Friction(Coulomb):
 
     Notes
     -----
-    Along the impact of a rim the coefficient is that of the current speed. Where both rims land at once, it
+    During the impact of a rim the coefficient is that of the current speed. Where both rims land at once, it
     is that of each rim's slip after the impact.
 
     Examples

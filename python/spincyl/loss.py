@@ -120,7 +120,7 @@ class ViscousContour(Law):
     """
 
     c: Reals
-    _example = "1e-3", "1e-6Nms", "the same, proportional to the speed of the contact point"
+    _example = "1e-3", "1e-6Nms", "viscous friction along the rim, proportional to the speed"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -153,7 +153,7 @@ class RollingResistance(Law):
     while_slipping : bool
         If false, the law acts only while the contact point does not slip, as in most programs for billiards.
         Such a motion needs ``contact=sc.Coulomb(mu)`` without a patch, or "rolling", and is that of a body of
-        revolution, not of a stone. It ends where the body lies on two rims (`Ending.SIDE`), and where
+        revolution, not of a stone. The motion ends where the body lies on two rims (`Ending.SIDE`), and where
         friction cannot hold the contact point of the rolling body, and could without the law
         (`Ending.PAINLEVE`); a start in such a state is an error. `power`, `couple` and a drift are those of
         a body that rolls.
@@ -244,7 +244,7 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
-    _example = "1e-5", "1e-9Nms2", "air resistance proportional to its square"
+    _example = "1e-5", "1e-9Nms2", "air resistance proportional to the square of the angular velocity"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:
@@ -349,7 +349,7 @@ KINDS: dict[str, type[Law]] = dict(zip(LAWS, map(globals().__getitem__, CODES["L
 
 
 def film_fills(viscosity: Reals, scale: Scale) -> Result:
-    """The inclination below which the film of `AirFilm` fills the gap, for a body of this scale and mass.
+    """Inclination, in radians, below which the film of `AirFilm` fills the gap, for a body of this scale.
 
     The gas has the density of air. NaN if the mass is unknown.
     """
@@ -359,6 +359,6 @@ def film_fills(viscosity: Reals, scale: Scale) -> Result:
 
 
 def _newton_metre_seconds(scale: Scale | Body) -> float:
-    """The unit of a couple over an angular velocity, M R sqrt(g R)."""
+    """The unit of a couple over an angular velocity, M R sqrt(g R), in N m s."""
     _, seconds, joules = natural_units_in_si(scale, weighed=True)
     return seconds * joules

@@ -40,7 +40,7 @@ def __dir__() -> list[str]:
 #: Codes of the forms, and the indices of heights among their numbers, from the lowest to the highest point.
 _SOLID, _BALL, _WALL, _SHELL, _RING = range(5)
 _HEIGHTS = {_SOLID: (4, 5), _BALL: (3, 2, 4), _WALL: (2, 3), _SHELL: (2, 1, 3), _RING: (1,)}
-#: Relative difference of radii and heights that touch.
+#: Largest relative difference of two radii or heights that count as equal.
 _TOUCH = 1e-9
 
 

@@ -1,6 +1,6 @@
-"""Whole files: each is written next to its target, and replaces it only when it is complete.
+"""Writing of whole files: a new file is written next to its target, which it replaces only when complete.
 
-Until then the old file stays, even if the program fails or is killed. The package writes all its files so.
+Until then the old file stays, even if the program fails or is killed. The package writes all files this way.
 """
 
 import os
@@ -92,7 +92,7 @@ def _is_open(path: Path) -> bool:
 
 
 def _move(part: Path, target: Path, there: os.stat_result | None) -> bool:
-    """Move the part to the target, with the owner and permissions of an older file. Returns success."""
+    """Move the complete file `part` to `target`, keeping an older file's owner and mode. Returns success."""
     try:
         if there is not None:
             made = part.stat()
@@ -106,7 +106,7 @@ def _move(part: Path, target: Path, there: os.stat_result | None) -> bool:
 
 
 def _error_about_path(path: Path, part: Path, error: OSError) -> OSError:
-    """Rewrite an error about the temporary file as one about the path."""
+    """Rewrite an error about the temporary file `part` as one about `path`, which the caller gave."""
     if error.errno is None:
         return OSError(f"{path}: {str(error).replace(str(part), str(path))}")
     if error.filename not in (None, part, str(part)):

@@ -1,4 +1,4 @@
-"""Unknown names: the error proposes known ones."""
+"""Errors about unknown arguments and attributes that propose similar known names."""
 
 import difflib
 import re
@@ -28,13 +28,13 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("mass", "radius", "diameter", "gravity"), _SIZE),
         **dict.fromkeys(("aspect", "half_length", "length"), "ell is the height of the centre of mass, in R"),
         **dict.fromkeys(("inertia", "moments", "I1", "I3"), "i1 and i3 are the moments, in M R^2"),
-        **dict.fromkeys(("kappa", "frequency"), "stability(theta) is kappa, nutation(theta) a frequency"),
+        **dict.fromkeys(("kappa", "frequency"), "stability(theta) is kappa, nutation(theta) sqrt(kappa)"),
     },
     "State": {
         **_STILL,
         **dict.fromkeys(("w", "omega"), "w1, w2, w3 are the angular velocity along e1, e2, e3"),
         **dict.fromkeys(("velocity", "v", "speed"), "body.centre_velocity(state) is that of the centre"),
-        **dict.fromkeys(("phi", "psi"), "a state has rates, precession (phi') and spin (psi'); see want="),
+        **dict.fromkeys(("phi", "psi"), "a state has only the rates precession (phi') and spin (psi')"),
     },
     "Motion": {
         **_STILL,
@@ -44,7 +44,7 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("velocity", "v", "speed"), "body.centre_velocity(m.states) is that of the centre"),
         **dict.fromkeys(
             ("position", "positions", "x", "path", "trajectory", "centre_of_mass", "center", "pose"),
-            'centre, contact_point and orientation are there with want="pose"',
+            'centre, contact_point and orientation need want="pose" in roll',
         ),
         **dict.fromkeys(("quaternion", "quaternions", "rotation", "attitude"), "orientation is a quaternion"),
         **dict.fromkeys(("angle", "tilt", "alpha", "inclination"), "theta is the inclination"),
@@ -52,18 +52,21 @@ _ATTRIBUTES: dict[str, dict[str, str]] = {
         **dict.fromkeys(("precession", "gamma"), "states has it: m.states.precession"),
         "spin": "states has it: m.states.spin; psi is the angle of the spin",
         **dict.fromkeys(("events", "end", "ending", "stops_at"), "event has the time and state of the end"),
-        **dict.fromkeys(("heat", "lost", "energy_lost"), "dissipated, work_lost and lost_in_impacts"),
-        **dict.fromkeys(("force", "forces", "normal_force"), 'normal, friction, with want="force"'),
+        **dict.fromkeys(
+            ("heat", "lost", "energy_lost"), "dissipated, work_lost and lost_in_impacts are the lost energies"
+        ),
+        **dict.fromkeys(("force", "forces", "normal_force"), 'normal and friction need want="force" in roll'),
         **dict.fromkeys(("animate", "animation", "video", "movie", "gif"), "sc.view(m).save('film.mp4')"),
         **dict.fromkeys(("view", "show", "display", "page", "html"), "sc.view(m) shows it"),
         **dict.fromkeys(("save", "to_csv", "csv"), "to_dataframe().to_csv(path), or sc.view(m).save(path)"),
         **dict.fromkeys(("df", "dataframe", "to_pandas", "table"), "to_dataframe() is a table"),
-        **dict.fromkeys(("bounces", "hits", "collisions"), "impacts, with restitution="),
-        **dict.fromkeys(("steps", "step"), "nfev counts evaluations, rk4 judges a fixed step"),
+        **dict.fromkeys(("bounces", "hits", "collisions"), "impacts has them, if roll gets restitution="),
+        **dict.fromkeys(("steps", "step"), "nfev counts evaluations; rk4 is about a fixed step"),
     },
     "EllipsoidMotion": {
         **dict.fromkeys(
-            ("velocity", "v", "speed"), 'slip is that of the contact point; centre is there with want="pose"'
+            ("velocity", "v", "speed"),
+            'slip is that of the contact point; centre needs want="pose"',
         ),
         **dict.fromkeys(("precession", "phi", "psi"), "spin is the angular velocity about the vertical"),
     },
@@ -98,10 +101,12 @@ _INSTEAD = {
     **dict.fromkeys(("ring", "hoop"), "sc.Body.tube(ell, bore), or sc.measured(...) in metres"),
     "slow": "sc.view(m, slow=1).save('film.mp4') shows a motion at its own speed, slow=10 ten times slower",
     **dict.fromkeys(("Stronge", "stronge"), "restitution= takes the number of Stronge's law, as in 0.5"),
-    **dict.fromkeys(("Garwin", "garwin", "superball"), "sc.Walton(e, tangential) also turns a slip back"),
+    **dict.fromkeys(("Garwin", "garwin", "superball"), "sc.Walton(e, tangential) also reverses the slip"),
     "sphere": "sc.Body.ball(...), or sc.parts.ball in sc.assembled([...])",
     **dict.fromkeys(("ellipsoid", "stone", "egg", "rattleback"), "sc.Ellipsoid is a class of its own"),
-    **dict.fromkeys(("cube", "box", "top"), "bodies of revolution and ellipsoids are modelled, see sc.parts"),
+    **dict.fromkeys(
+        ("cube", "box", "top"), "only bodies of revolution and ellipsoids are modelled; see sc.parts"
+    ),
 }
 
 
@@ -173,7 +178,7 @@ class Hinting:
 
 
 def _instead_of_attribute(thing: object, name: str) -> str:
-    """What an object has in place of an attribute, after a colon: the near names, else all of them."""
+    """Text that proposes attributes similar to a missing one, or else lists all attributes of the object."""
     for base in type(thing).__mro__:
         if name in _ATTRIBUTES.get(base.__name__, {}):
             return f": {_ATTRIBUTES[base.__name__][name]}"

@@ -9,7 +9,7 @@ from spincyl._input.numbers import number, si
 #: where the table has a range, the middle of it. For three plastics, the maker's data sheet of the grade.
 #: For woods, Forest Products Laboratory, Wood Handbook, FPL-GTR-190 (2010), Table 5-3a: the specific
 #: gravity G of dry wood by its volume at 12 % moisture, and with its water the density 1120 G (chapter 4).
-#: Callister has such numbers G of two woods among his densities, 12 % too light.
+#: Callister lists G as the density of two woods, which makes them 12 % too light.
 MATERIALS = {
     "steel": (7850.0, "plain carbon steel, such as A36 or 1020"),
     "stainless steel": (8000.0, "304 or 316"),

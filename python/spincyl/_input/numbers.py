@@ -48,7 +48,7 @@ def reals(name: str, value: Reals) -> Reals:
 
 
 def radians(name: str, value: Reals, expected: str | None = None, likely: float = math.pi) -> Reals:
-    """Return an angle in radians. Beyond pi, probably degrees: ValueError, in an array NaN and a warning.
+    """Return an angle in radians; above pi (probably degrees) ValueError, in an array NaN and a warning.
 
     Between `likely` and pi there is only a warning. The values of a lazy array are not computed.
     """
@@ -147,14 +147,14 @@ def lengths_in_metres(name: str, value: Any) -> tuple[Any, bool]:
 
 
 def vector_in(unit: str, name: str, value: Reals) -> Reals:
-    """A vector in the unit of SI; each component of a list or a tuple may be a text or a quantity."""
+    """Return a vector in the SI unit `unit`; each component in a list may be a text or a quantity."""
     if isinstance(value, list | tuple):
         return [vector_in(unit, f"{name}[{i}]", x) for i, x in enumerate(value)]
     return radians_per_second(name, value) if unit == "radian/second" else si(name, value, unit)
 
 
 def refuse_mixed_units(measures: dict[str, Any]) -> None:
-    """ValueError if some measures are texts with a unit and others bare numbers, whose unit is uncertain."""
+    """Raise ValueError if some lengths are texts with a unit and others bare numbers of unknown unit."""
     bare = [(name, x) for name, x in measures.items() if isinstance(x, Real) and x != 0]
     if bare and any(isinstance(x, str) for x in measures.values()):
         name, x = bare[0]
@@ -181,7 +181,7 @@ def radians_per_second(name: str, value: Reals) -> Reals:
 
 
 def _read(name: str, text: str, unit: str) -> float:
-    """Read a text such as "120mm" like the command line; an error names the argument."""
+    """Convert a text such as "120mm" to a number in the SI unit `unit`; an error names the argument."""
     from argparse import ArgumentTypeError
 
     from spincyl._input import units
@@ -310,7 +310,7 @@ def common_shape(named: dict[str, Reals]) -> tuple[int, ...]:
 
 
 def elementwise(law: Callable[_Given, _Found]) -> Callable[_Given, _Found]:
-    """Decorator of functions with broadcast arguments: names shapes that do not fit, silences NumPy.
+    """Decorator for functions that broadcast their arguments: an error about shapes names the arguments.
 
     Overflow gives inf and invalid operations give NaN, without warnings, as in the core.
     """
@@ -349,7 +349,7 @@ def with_common_shape(*values: Any) -> Reals:
 
 
 def refuse_bad_value(name: str, value: Reals, bad: Callable[[Any], Any], expected: str) -> None:
-    """ValueError that names the first bad value; the values of a lazy array are not computed."""
+    """Raise ValueError that names the first value for which `bad` is true; lazy arrays are not computed."""
     if getattr(value, "chunks", None) is not None:
         return
     numbers = np.asarray(value, np.float64)

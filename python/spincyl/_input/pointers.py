@@ -16,7 +16,7 @@ class Pointer(NamedTuple):
 
 
 def pointer(function: object, told: str) -> Pointer | None:
-    """The C function of a numba, ctypes or SciPy object, or None; TypeError for a signature not `told`."""
+    """C function of a numba, ctypes or SciPy object, or None; TypeError if the signature is not `told`."""
     import ctypes
 
     void, number, several = None, ctypes.c_double, ctypes.POINTER(ctypes.c_double)
@@ -52,5 +52,5 @@ def pointer(function: object, told: str) -> Pointer | None:
 
 
 def _types(told: str) -> str:
-    """A signature in C without names, spaces and const."""
+    """The types in a C signature: the text without names of arguments, spaces and `const`."""
     return re.sub(r"const|\s|(?<=[*e ])(?:args|couple|speed)\b", "", told)

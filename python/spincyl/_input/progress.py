@@ -1,4 +1,4 @@
-"""How far long work is: a bar of tqdm on a terminal or in a notebook, or a function of the caller's."""
+"""Progress of long computations: a tqdm bar on a terminal or in a notebook, or a function of the caller."""
 
 import sys
 import threading
@@ -16,7 +16,7 @@ _shows_bars = True  # False while something else tells how far the work is
 
 
 class _Bar:
-    """A bar that appears on standard error when the work takes longer than a few seconds."""
+    """A progress bar that appears on standard error when the work takes longer than a few seconds."""
 
     def __init__(self, what: str, patience: float) -> None:
         self._what, self._patience, self._begun = what, patience, time.monotonic()
@@ -47,7 +47,7 @@ class _Bar:
 def reporting_progress(
     progress: Progress | bool | None, what: str, *, by_default: bool = True
 ) -> Iterator[Progress | None]:
-    """The function that a computation calls with its finished share, from `progress`; None without a report.
+    """Context with the function that a computation calls with its finished share, 0 to 1, or with None.
 
     `progress` is a function, or True for a bar at once, or False for none. By default a bar is shown after
     two seconds if somebody can see it.

@@ -107,7 +107,7 @@ def _is_quantity(word: str) -> bool:
 
 
 def _parts(text: str) -> tuple[str, str]:
-    """The number and the unit."""
+    """Split a text such as "85 deg" into the texts of its number and its unit, which may be empty."""
     found = _NUMBER.match(text.strip())
     if found is None:
         raise ArgumentTypeError(f"{text!r}: expected a number")
@@ -188,7 +188,7 @@ _KINDS = {
 }
 
 
-#: A text with a unit for each of these.
+#: An example of a text with a unit for each unit in `_KINDS`.
 _EXAMPLES = {
     "metre": "16mm",
     "kilogram": "30g",
@@ -230,7 +230,7 @@ def _natural_or(kind: str, si: type[float]) -> Callable[[str], float]:
 
 #: A time in sqrt(R/g), or Seconds if it has a unit.
 time = _natural_or("duration", Seconds)
-#: A length in outer radii, or Metres if it has a unit.
+#: A length of a part of the body in outer radii, or Metres if it has a unit.
 part = _natural_or("length", Metres)
 #: An impulse in M sqrt(g R), or NewtonSeconds if it has a unit.
 impulse = _natural_or("impulse", NewtonSeconds)

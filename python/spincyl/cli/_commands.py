@@ -39,14 +39,14 @@ _TUBE = "ell", "bore", "i1", "i3", "inner", "length", "fillet"
 
 
 def _refuse_options(args: Namespace, kind: str, names: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that exclude a kind of body, naming the first of them."""
+    """Raise ValueError if an option of `names` is given, which the options of this `kind` of body exclude."""
     for name in names:
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} cannot be combined with {kind}: {why}")
 
 
 def _ball_of(args: Namespace) -> Body:
-    """One ball or two, from the options."""
+    """Make the body that --ball or --balls describes."""
     if args.balls is not None:
         _refuse_options(
             args, "--balls", (*_TUBE, "ball"), "two balls are given by the distance of their centres"
@@ -75,14 +75,14 @@ def _errors_name_option(name: str, option: str) -> Iterator[None]:
 
 
 def _measured(args: Namespace) -> Body:
-    """A tube from its measures in metres."""
+    """Make the tube that --outer, --length and the other lengths in metres describe."""
     if args.outer is None or args.length is None:
         raise ValueError("a tube measured in metres needs both --outer and --length")
     bore = args.bore if isinstance(args.bore, Metres) else None
     told = args.ell, None if bore is not None else args.bore, args.i1, args.i3, args.radius
     if any(x is not None for x in told):
         raise ValueError(
-            "--outer and --length give the tube: leave out --ell, --radius, --i1, --i3, --bore without unit"
+            "with --outer and --length leave out --ell, --radius, --i1, --i3, and --bore without a unit"
         )
     if sum(x is not None for x in (bore, args.inner, args.wall)) > 1:
         raise ValueError("give only one of --inner, --bore and --wall")
@@ -104,7 +104,7 @@ def _measured(args: Namespace) -> Body:
 
 
 def _body_from_numbers(args: Namespace) -> Body:
-    """A body from its numbers in natural units."""
+    """Make the body that --ell and the other numbers in natural units describe."""
     if args.ell is None:
         raise ValueError("no body: give --ell, or --balls, or --ball, or --outer and --length")
     fillet = 0.0 if args.fillet is None else args.fillet
@@ -150,7 +150,7 @@ def body_of(args: Namespace) -> tuple[Body, Scale | None]:
 
 
 def steady(args: Namespace) -> None:
-    """Print steady states as a table."""
+    """Print the steady states that the options ask for, as a table or as JSON."""
     body, scale = body_of(args)
     if args.hertz and scale is None:
         raise ValueError("--hertz needs --radius, or --outer and --length in metres")
@@ -233,7 +233,7 @@ def _draw_map(data: Any, args: Namespace) -> None:
 
 
 def figures(args: Namespace) -> None:
-    """Draw the figures of a lecture."""
+    """Draw the figures of a lecture as files in a folder, and print their paths."""
     optional_library("matplotlib", "plot").use("agg")
     from spincyl import plot
 
@@ -298,7 +298,7 @@ def natural(name: str, time: float | None, scale: Scale | None) -> float | None:
 
 
 def roll_(args: Namespace) -> None:
-    """Compute a motion; print a summary, or write a file."""
+    """Compute a motion from an initial state; print a summary, and write a file if -o is given."""
     body, scale = body_of(args)
     if args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -336,7 +336,7 @@ def delivered(
     rows: Iterable[Row] = (),
     numbers: dict[str, Any] | None = None,
 ) -> None:
-    """Print or write a motion, below the further rows and numbers of the command."""
+    """Print a motion below the `rows` of the command, or as JSON with `numbers`; with `-o -` also as CSV."""
     piped = args.output == "-"
     if args.json:
         told = motion_numbers(m, scale) | (numbers or {})

@@ -26,9 +26,8 @@ TEXT = f"""\
 Compute how a body that loses energy slowly drifts through steady states, and when and where it stops.
 
 There are two kinds of drift. With --centre rest, slip keeps the centre at rest, and the body passes through
-the steady states with the centre at rest, the landscape of Jackson et al. 2019. With --centre rolling, the
-body never slips, and its centre moves on growing circles; the table gives the coefficient of friction that
-this needs.
+the steady states of Jackson et al. 2019, whose centre is at rest. With --centre rolling, the body never
+slips, and its centre moves on growing circles; the table gives the coefficient of friction that this needs.
 
 {LAWS}
 
@@ -51,7 +50,7 @@ def drift_options(sub: ArgumentParser) -> None:
         "--centre",
         choices=("rest", "rolling"),
         default="rest",
-        help="the centre is kept at rest (default), or the body rolls without slip",
+        help="slip keeps the centre at rest (default), or the body rolls without slip",
     )
     how.add_argument(
         "--points", type=whole_text, help=f"number of rows (default {_PRINTED_ROWS}, in a file 401)"
@@ -65,7 +64,7 @@ def drift_options(sub: ArgumentParser) -> None:
 
 
 def drift(args: Namespace) -> None:
-    """Compute a drift; print a summary, or write a file."""
+    """Compute a drift; print a summary, and write a file if -o is given."""
     body, scale = body_of(args)
     if args.points is not None and args.points < 2:
         raise ValueError(f"--points {args.points}: expected at least 2")
@@ -121,7 +120,7 @@ def _suffix_of_output(output: str | None) -> str | None:
 
 
 def _columns(found: Any, theta: float, scale: Scale | None, count: int) -> dict[str, Floats]:
-    """Columns at equal steps of inclination from the initial state to the end."""
+    """Columns of a drift: `count` rows at equal steps of inclination, from the initial state to the end."""
     tilt = np.linspace(theta, float(found.ends_at_theta), count)
     t = np.append(found.time(tilt[:-1]), float(found.stops_at))  # inf if the end is only a limit
     rate = np.asarray(found.precession(t), np.float64)

@@ -58,7 +58,7 @@ def _write_csv(m: Motion, scale: Scale | None, path: Path) -> None:
 
 
 def write_csv(told: dict[str, Any], file: Path | TextIO) -> None:
-    """Write columns with seventeen digits, so that reading gives the same numbers."""
+    """Write columns with seventeen digits, so that reading them back gives the same numbers."""
     table = np.column_stack([np.ravel(x) for x in told.values()])
     how: dict[str, Any] = {"fmt": "%.17g", "delimiter": ",", "header": ",".join(told), "comments": ""}
     if not isinstance(file, Path):

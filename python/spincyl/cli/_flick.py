@@ -38,7 +38,7 @@ The launch is one of
   --impulse 60mNs --angle 75deg           push of a finger that presses one end down and slides off:
                                           impulse, and angle from the top of the rim
 By default the centre moves across the axis with -I1 w1/l, the velocity that a finger gives it; --centre
-sets another velocity. Positive spin is backspin with respect to that. With --loss the tube also loses
+sets another velocity. Positive spin is backspin relative to this motion. With --loss the tube also loses
 energy while it rolls, and sinks back to its side.
 
 {LAWS}
@@ -58,7 +58,7 @@ def flick_options(sub: ArgumentParser) -> None:
     launch = sub.add_argument_group("the launch")
     hertz: dict[str, Any] = {"type": quantity("frequency"), "metavar": "HERTZ"}
     launch.add_argument("--precession", **hertz, help="turns per second about the vertical")
-    launch.add_argument("--w1", type=float, help="the same as angular velocity in sqrt(g/R)")
+    launch.add_argument("--w1", type=float, help="angular velocity about the vertical, in sqrt(g/R)")
     launch.add_argument("--spin", **hertz, help="turns per second about the axis; positive is backspin")
     launch.add_argument(
         "--launch-number", type=float, metavar="X", help="I3 w1 w3/(M g l), instead of --spin"
@@ -68,7 +68,7 @@ def flick_options(sub: ArgumentParser) -> None:
         type=speed,
         metavar="SPEED",
         help="velocity of the centre of mass across the axis, in sqrt(g R), or as in 1.5m/s (default:"
-        " -I1 w1/l, as a finger leaves it)",
+        " -I1 w1/l, as after a press by a finger)",
     )
     push = sub.add_argument_group("the push, instead of the launch")
     push.add_argument(
@@ -104,13 +104,13 @@ def flick_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--points", type=whole_text, default=2001, help="number of times, from 0 on (default 2001)"
     )
-    how.add_argument("--tol", type=float, help="tolerance of each step of slipping (default 1e-14)")
+    how.add_argument("--tol", type=float, help="tolerance of each step while the body slips (default 1e-14)")
     how.add_argument(
         "--restitution",
         type=float,
         metavar="BOUNCE",
         help="coefficient of restitution, 0 to 1: the motion continues after lift-off and after a landing of"
-        " the other rim (default: it ends there)",
+        " the other rim (default: the motion ends there)",
     )
     option(how, "--loss")
 
@@ -139,7 +139,7 @@ def flick(args: Namespace) -> None:
         if args.output is not None and m.event is not None and m.event.time == 0:
             number = launch_numbers(body, start)["number"]
             raise ValueError(
-                f"launch number {number:.6g}: the motion ends at once, nothing to write; {m.message}"
+                f"launch number {number:.6g}: the motion ends at once and is not written; {m.message}"
             )
         if writer is not None:
             writer(m, scale, Path(args.output))
@@ -147,7 +147,7 @@ def flick(args: Namespace) -> None:
 
 
 def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
-    """The state of a launch given by speeds."""
+    """The initial state from the rates of rotation in the options of the launch."""
     for name in ("angle", "finger", "table"):
         if getattr(args, name) is not None:
             raise ValueError(f"--{name} needs --impulse; it has no effect on a launch given by speeds")
@@ -170,7 +170,7 @@ def _launched(args: Namespace, body: Body, scale: Scale | None) -> State:
 
 
 def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
-    """The state of a launch by the impulse of a finger."""
+    """The initial state from the impulse and the angle of a finger."""
     for name in ("precession", "w1", "spin", "launch_number", "centre"):
         if getattr(args, name) is not None:
             raise ValueError(
@@ -191,13 +191,13 @@ def _pushed(args: Namespace, body: Body, scale: Scale | None) -> State:
 
 
 def launch_numbers(body: Body, state: State) -> dict[str, Any]:
-    """Properties of a launch, as numbers for JSON."""
+    """Properties of the state just after a launch, as numbers for JSON."""
     number = float(launch_number(body, state))
     return {"number": number, "rises": number > 1, "centre": float(body.centre_velocity(state)[1])}
 
 
 def launch_rows(body: Body, state: State, scale: Scale | None) -> Iterator[Row]:
-    """Properties of a launch, as rows of a table."""
+    """Properties of the state just after a launch, as rows of a table."""
     n = launch_numbers(body, state)
     turns = "" if scale is None else f"{scale.turns(state.w1):.6g}, {scale.turns(state.w3):.6g} turns/s"
     yield "launch w1, w3", f"{state.w1:.9g}, {state.w3:.9g}", turns

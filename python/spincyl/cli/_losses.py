@@ -1,4 +1,4 @@
-"""Options for loss laws: dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
+"""Options for loss laws, such as dry-contour=5e-3, rolling-resistance=0.2mm, air-film=18uPas."""
 
 from argparse import ArgumentTypeError, Namespace
 from functools import partial
@@ -14,7 +14,7 @@ _NAMES = {command_line_name(law): coefficient for coefficient, law in KINDS.item
 
 
 def _help_line(name: str, coefficient: str) -> str:
-    """A line of help: coefficients in natural units and in SI, and the law in words."""
+    """A line of help on a loss law: its name, an example in natural units, one in SI, and what it is."""
     natural, in_si, words = KINDS[coefficient]._example
     return f"  {name + '=' + natural:<24} or {in_si:<9} {words}"
 
@@ -42,7 +42,7 @@ class Given(NamedTuple):
 
 
 def law(text: str) -> Given:
-    """Read a law and its coefficient."""
+    """Read a loss law and its coefficient from a text such as "dry-contour=5e-3"."""
     name, equals, number = text.partition("=")
     if name not in _NAMES or not equals:
         raise ArgumentTypeError(
@@ -73,7 +73,7 @@ def losses_of(args: Namespace, scale: Scale | None) -> Loss | None:
 
 
 def _law_of_given(given: Given, scale: Scale | None, *, weighed: bool) -> Law:
-    """A law in natural units."""
+    """Make the loss law in natural units; `weighed` is true if the mass is known."""
     made: Any = KINDS[given.coefficient]
     if given.si:
         if scale is None:

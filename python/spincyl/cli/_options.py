@@ -61,8 +61,8 @@ or any state, given by --w1, --w2 and --w3. With --contact coulomb or viscous th
 are in sqrt(R/g), or in seconds as in 2s or 20ms if the radius is known. Without --step and --tol rolling
 and frictionless motion are exact (first integrals). The file contains t, theta, w1, w2, w3, energy, the
 angles phi and psi, the contact point and the centre, the normal force and the friction coefficient; with
-friction also slip, heat and phase (1 slipping, 0 rolling), with losses the work lost. It ends with the
-motion.
+friction also slip, heat and phase (1 slipping, 0 rolling), with losses the work lost. Its last row is at
+the end of the motion or before.
 
 {_BODY}
 
@@ -128,13 +128,13 @@ def parser() -> ArgumentParser:
     _shape_options(steady)
     asked = steady.add_argument_group("the steady states (one or more values for each option)")
     asked.add_argument("--theta", type=angle, nargs="+", default=[], metavar="ANGLE", help="inclinations")
-    asked.add_argument("--rate", type=float, nargs="+", default=[], help="reduced rates")
+    asked.add_argument("--rate", type=float, nargs="+", default=[], help="reduced rates Omega sqrt(I3)")
     asked.add_argument(
         "--hertz",
         type=quantity("frequency"),
         nargs="+",
         default=[],
-        help="turns per second (needs a radius)",
+        help="precession in turns per second (needs a radius)",
     )
     _scale_options(steady)
     _json_option(steady, "print JSON instead of a table")
@@ -164,7 +164,9 @@ def parser() -> ArgumentParser:
     portrait.add_argument(
         "--points", type=whole_text, default=1000, help="points along each axis (default 1000)"
     )
-    portrait.add_argument("--contact", choices=("smooth", "rolling"), help="criterion (default: both)")
+    portrait.add_argument(
+        "--contact", choices=("smooth", "rolling"), help="criterion of stability (default: both)"
+    )
     slides: dict[str, Any] = {"action": "store_true", "help": "draw in 16:9; PNG has 1920 x 1080 pixels"}
     portrait.add_argument("--slides", **slides)
     _json_option(portrait, "with -o -, print JSON instead of CSV")
@@ -260,14 +262,16 @@ def _shape_options(sub: ArgumentParser) -> None:
     shape.add_argument(
         "--wall", type=_length, metavar="LENGTH", help="thickness of the wall, instead of --inner"
     )
-    shape.add_argument("--length", type=_length, metavar="LENGTH", help="length")
+    shape.add_argument("--length", type=_length, metavar="LENGTH", help="length of the tube")
 
 
 def _roll_options(sub: ArgumentParser) -> None:
     """Add the options that define a motion and its output."""
     start = sub.add_argument_group("the initial state")
-    start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="inclination")
-    start.add_argument("--kick", type=float, default=0.0, help="theta' added to the state (default 0)")
+    start.add_argument("--theta", type=angle, required=True, metavar="ANGLE", help="initial inclination")
+    start.add_argument(
+        "--kick", type=float, default=0.0, help="number added to the initial theta' (default 0)"
+    )
     for name in ("w1", "w2", "w3"):
         start.add_argument(
             f"--{name}",
@@ -316,14 +320,14 @@ def _roll_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--face",
         choices=tuple(FACES),
-        help="coulomb: pressure on a face on which the body stands, on its rim or all of it (default ring)",
+        help="coulomb: where a face on which the body stands presses: its rim (default) or all of it",
     )
     how.add_argument(
         "--viscosity", type=float, metavar="C", help="viscous: friction is C times normal force times slip"
     )
     _losses.option(how, "--loss")
     how.add_argument(
-        "--beyond", action="store_true", help="continue the solution past lift-off, slip or the side"
+        "--beyond", action="store_true", help="continue the solution past lift-off, slip or a landing"
     )
     _output_option(sub)
 

@@ -1,4 +1,4 @@
-"""The command `play`: the live page as one file."""
+"""The command `play`: an interactive page that computes motions, as one file."""
 
 import math
 import sys
@@ -41,7 +41,7 @@ def play_options(sub: ArgumentParser) -> None:
     how.add_argument(
         "--theta", type=angle, metavar="ANGLE", help="inclination (default 1.3, for the default tube 89.5deg)"
     )
-    how.add_argument("--kick", type=float, default=0.0, help="theta' added to the state (default 0)")
+    how.add_argument("--kick", type=float, default=0.0, help="number added to the initial theta' (default 0)")
     tables = ("rolling", "smooth", "coulomb", "viscous")
     how.add_argument(
         "--contact", choices=tables, default="rolling", help="contact with the table (default: rolling)"
@@ -72,17 +72,19 @@ def play_options(sub: ArgumentParser) -> None:
         "--slow",
         type=float,
         default=20.0,
-        help="factor of slow motion (default 20; for a body without a size, R = 1 cm)",
+        help="factor of slow motion (default 20; a body without a size has R = 1 cm)",
     )
     sub.add_argument("-o", "--output", required=True, metavar="FILE", help="output file (.html)")
     sub.add_argument(
-        "--lean", action="store_true", help="smaller page without friction and losses, only rubber and ice"
+        "--lean",
+        action="store_true",
+        help="smaller page without friction and losses: rolling or a smooth table",
     )
     sub.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def run(args: Namespace) -> None:
-    """Write the live page."""
+    """Write the interactive page to a file, and open it in the browser if --open is given."""
     told = args.ell, args.balls, args.ball, args.outer, args.inner, args.length, args.bore, args.fillet
     body, scale = (None, None) if all(x is None for x in told) else body_of(args)
     if body is not None and scale is not None:

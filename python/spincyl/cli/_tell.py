@@ -1,4 +1,4 @@
-"""Output of bodies, states and motions: numbers for JSON, and rows of a table."""
+"""Output of bodies, states and motions on the command line: numbers for JSON, and rows of a table."""
 
 import json
 import math
@@ -18,7 +18,7 @@ Numbers: TypeAlias = dict[str, Any]
 
 
 def table(rows: Iterator[Row], file: TextIO | None = None) -> None:
-    """Print rows in three columns."""
+    """Print rows in three columns: a name, a value in natural units, and the value in SI or degrees."""
     for name, natural, si in rows:
         print(f"  {name:<22} {natural:<34} {si}".rstrip(), file=file)
 
@@ -118,7 +118,7 @@ def state_rows(body: Body, state: State, scale: Scale | None, *, weighed: bool =
 def _stability_in_words(
     body: Body, state: State, contact: Contact, kappa: float, scale: Scale | None
 ) -> tuple[str, str]:
-    """Whether a state is stable, and its nutation or growth rate."""
+    """Text whether a state is stable, with its nutation or growth rate; and a text of this rate in SI."""
     if kappa > 0:
         nutation = body.nutation(state, contact)
         turns = "" if scale is None else f"{scale.turns(nutation):.6g} turns/s"
@@ -189,7 +189,7 @@ def motion_rows(m: Motion, scale: Scale | None, *, weighed: bool = False) -> Ite
 
 
 def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Row]:
-    """The nutation of a motion without phases, as rows."""
+    """Turning points, period, and turn and drift per period of a motion without phases, as rows."""
     found = swing(m.body, m.start, contact)
     ends = (found.theta_min, found.theta_max)
     yield "turning points", " to ".join(f"{x:.9g}" for x in ends) + " rad", ""
@@ -212,7 +212,7 @@ def _swing_rows(m: Motion, contact: Contact, scale: Scale | None) -> Iterator[Ro
 
 
 def _energy(m: Motion, lost: float, scale: Scale | None) -> tuple[str, str]:
-    """Energy that a motion has lost, and its share."""
+    """Text of the energy that a motion has lost, in M g R; and text of its share, with joules if known."""
     first = float(m.energy[0])
     first += float(m.dissipated[0]) if has_friction(m.contact) else 0.0
     first += 0.0 if m.losses is None else float(m.work_lost[0])
@@ -256,7 +256,7 @@ _MOST_PHASES = 6
 
 
 def _most_friction(m: Motion) -> float:
-    """The largest coefficient of friction on the table; in the air there is none."""
+    """The largest coefficient of friction of a motion, apart from the times when the body is in the air."""
     needs = m.friction_coefficient
     return float((needs if m.natural._impacts is None else needs[m.normal > 0]).max(initial=0.0))
 

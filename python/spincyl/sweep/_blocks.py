@@ -14,7 +14,7 @@ from spincyl.sweep import _records
 if TYPE_CHECKING:
     import xarray
 
-#: Least share of a sample's time that counts as that of its motions; the rest is the fixed cost of a block.
+#: Least share of a sample's time that is ascribed to its motions, rather than to the fixed cost of a block.
 OWN = 0.25
 
 
@@ -115,7 +115,7 @@ def _cost(found: Any, enough: float) -> float:
 
 
 def _part(x: Any, of: slice) -> Any:
-    """The same slice of a sample along each of its axes."""
+    """The part of an array of the sample with the slice `of` along each of its axes."""
     if hasattr(x, "isel"):
         return x.isel({axis: of for axis in x.dims})
     return x[(of,) * np.ndim(x)] if np.ndim(x) else x

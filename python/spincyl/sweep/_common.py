@@ -12,7 +12,7 @@ import numpy as np
 from spincyl._input.numbers import Floats
 from spincyl._scale import Scale, si_factor
 
-#: Begin of the hash of an array, or of another input, in the record of a sweep.
+#: Text before the hash of an array, or of another input, in the record of a sweep.
 CONTENT = "content "
 
 
@@ -99,7 +99,7 @@ def sizes(scale: Scale) -> dict[str, float]:
 
 
 def signature(job: str, inputs: dict[str, object], **parameters: object) -> dict[str, str]:
-    """The inputs that determine the numbers of a lazy result: `save` resumes only a sweep with equal ones."""
+    """Inputs that determine the numbers of a lazy result: `save` resumes only a sweep with equal inputs."""
     from dask.base import tokenize
 
     told = {"spincyl": version("spincyl"), "job": job}

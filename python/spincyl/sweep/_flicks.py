@@ -56,8 +56,9 @@ _OUTCOMES[[Status.DONE, Status.SIDE, Status.LIFT_OFF]] = (
     Outcome.LIES_DOWN,
     Outcome.LIFTS_OFF,
 )
-#: Outcome of a motion with a restitution, by its last phase, without and with a time in the air.
+#: Kinds of the last phase that count as on one rim, and those that count as on the side.
 _ON_RIM, _ON_SIDE = KINDS[:2], KINDS[3:]
+#: Outcome of a motion with a restitution, by its last phase, without and with a time in the air.
 _GOES_ON = np.array(
     [
         [
@@ -165,7 +166,7 @@ def flicks(
 
 
 def _axis_of_flicks(lib: Any, name: str, value: Reals) -> Any:
-    """A number, or an array with a dimension of this name."""
+    """Return a number as it is, and an array as a DataArray of xarray with a dimension `name`."""
     given = reals(name, value)
     given = float(given) if is_scalar(given) else given
     if is_scalar(given) or hasattr(given, "dims"):

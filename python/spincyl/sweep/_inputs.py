@@ -42,7 +42,7 @@ _UNITS = (
 
 
 def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, Reals]:
-    """The fields of bodies, of states and of losses, by the names of their coordinates.
+    """The fields of bodies, states and losses, by the names of the coordinates that a result has for them.
 
     The moments of a tube follow from its bore and are left out, unless the bores are lazy and may be NaN.
     """
@@ -61,7 +61,7 @@ def kept_bodies(bodies: Body, states: State, losses: Loss | None) -> dict[str, R
 
 
 def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Reals]:
-    """The numbers of stones and of their states, by the names of their coordinates."""
+    """The numbers of stones and their states, by the names of the coordinates that a result has for them."""
     found = dict(zip((f"body_{name}" for name in _AXES), stones._columns(), strict=True))
     found |= zip((f"start_{name}" for name in _NORMAL), components(states.vertical), strict=True)
     found |= zip((f"start_{name}" for name in _W), components(states.w), strict=True)
@@ -73,7 +73,7 @@ def kept_stones(stones: "Ellipsoid", states: "EllipsoidState") -> dict[str, Real
 
 
 def kept_contact(contact: AnyContact) -> dict[str, Reals]:
-    """The coefficients of a law of friction, by the names of their coordinates."""
+    """The coefficients of friction, by the names of the coordinates that a result has for them."""
     if isinstance(contact, Viscous):
         return {"contact_c": contact.c}
     if not isinstance(contact, Coulomb) or contact._function is not None:
@@ -90,7 +90,7 @@ def checked_table(table: Table | None) -> Table | None:
 
 
 def kept_table(table: Table | None) -> dict[str, Reals]:
-    """The slope and the heading of a table, by the names of their coordinates."""
+    """`slope` and `phi0` of a table, by the names of the coordinates that a result has for them."""
     return {} if table is None else {"table_slope": table.slope, "table_phi0": table.phi0}
 
 
@@ -168,7 +168,8 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
     -----
     The arguments are stored in the coordinates ``body_*``, ``start_*``, ``contact_*`` and ``loss_*``. The
     names end with the names of the fields of `Body`, `State`, `Coulomb`, `Viscous` and the laws of
-    `spincyl.loss`; for an `Ellipsoid` they end with a1, i11, i23, d1 and so on. These coordinates are in
+    `spincyl.loss`; for an `Ellipsoid` they end with a1 (semi-axis), i11 and i23 (inertia),
+    d1 (offset) and so on. These coordinates are in
     natural units, also for measured bodies.
 
     Examples
@@ -220,7 +221,7 @@ def inputs(rows: "xarray.Dataset") -> dict[str, Any]:
 
 
 def _input(array: Any) -> Any:
-    """A number, or an array with the coordinates of its dimensions only."""
+    """Return an array without dimensions as a number, any other with no coordinates but its dimensions."""
     return float(array) if array.ndim == 0 else array.reset_coords(drop=True)
 
 

@@ -67,7 +67,7 @@ def flags(codes: type[IntEnum]) -> dict[str, object]:
 
 
 def given_up(status: np.ndarray) -> None:
-    """Warn if the core has given up motions."""
+    """Warn of motions whose computation was given up at a limit (`Status.BOUNDED`)."""
     count = int(np.count_nonzero(status == Status.BOUNDED))
     if count:
         told = f"{count} of {status.size} motions were given up (Status.BOUNDED) and are NaN"
@@ -189,8 +189,8 @@ def applied(
 def dataset(data: dict[str, Any], coords: dict[str, Any], attrs: dict[str, object]) -> Any:
     """A Dataset of variables and coordinates along common dimensions of the right lengths.
 
-    The public constructor compares and copies all of them, which takes longer than a small sweep. xarray's
-    own methods avoid that with a constructor that is not public; without it we take the public one.
+    The public constructor of xarray compares and copies all arrays, which takes longer than a small sweep.
+    A private constructor avoids this; it is used if xarray has it.
     """
     lib: Any = optional_library("xarray", "sweep")
     axes = [name for name, x in coords.items() if x.dims == (name,)]

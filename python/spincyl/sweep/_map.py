@@ -363,7 +363,7 @@ def _grid(
     shape: tuple[int, ...],
     given: dict[str, Any],
 ) -> list[np.ndarray]:
-    """The wanted arrays, of this shape. At most one dimension of each axis is longer than one."""
+    """Compute the wanted arrays of a map, of this shape. Each axis varies along at most one dimension."""
     arrays = {name: target(name, shape, np.uint8 if name == "region" else cell, given[name]) for name in want}
     columns = _grid_of_tubes(theta, np.ravel(ell), np.ravel(bore), np.ravel(fillet))
     apart(arrays, columns)
@@ -372,14 +372,14 @@ def _grid(
 
 
 def _block_of_map(*axes: Floats, want: tuple[str, ...], **kinds: Any) -> Any:
-    """One block of a lazy map, for dask."""
+    """Compute one block of a lazy map; dask calls this function."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in axes))
     found = _grid(*axes, want=want, shape=shape, given=dict.fromkeys(want), **kinds)
     return found[0] if len(found) == 1 else tuple(found)
 
 
 def _flat(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The arrays of a map, flattened, as the compiled function fills them."""
+    """The arrays of a map, flattened, since the compiled function fills flat arrays."""
     return {name: array.reshape(-1) for name, array in arrays.items()}
 
 

@@ -42,7 +42,7 @@ class Store(NamedTuple):
 
 
 def place(path: str | os.PathLike[str]) -> Store:
-    """The store at a path, or an error that names the argument."""
+    """The folder of a saved sweep at a path, or an error that names the argument."""
     found = path_of("path", path)
     if found.name in ("", ".."):
         raise ValueError(f"path = {os.fspath(path)!r}: expected a folder by its own name, as in 'sweep.zarr'")
@@ -62,7 +62,7 @@ def naming(store: Store) -> Iterator[None]:
 
 
 def sealed(record: Record) -> bytes:
-    """The text of a record's file, with a checksum."""
+    """Content of the file of a record: the record as text, with a checksum."""
     text = json.dumps(record)
     return json.dumps(record | {"checksum": zlib.crc32(text.encode())}, indent=1).encode()
 
@@ -105,7 +105,7 @@ def recorded(store: Store) -> list[Record]:
 
 
 def same(store: Store, record: Record) -> Record | None:
-    """The record of this sweep in a store, None in an empty store; ValueError for another sweep's."""
+    """The record of this sweep in a store; None for an empty store, ValueError if it has another sweep."""
     found = recorded(store)
     for there in found:
         if _differs(there, record) is None:
@@ -169,7 +169,7 @@ def _differs(there: Record, here: Record) -> str | None:
 def in_the_way(store: Store, record: Record, files: dict[str, bytes]) -> str | None:
     """The name of the first file of another origin that `lay_out` or a block would overwrite.
 
-    A file whose bytes are those that `lay_out` writes may lack its record: nothing of it would be lost.
+    A file whose bytes are those that `lay_out` writes may lack its record: overwriting it loses nothing.
     """
     known = record.get("layout", {})
     ours = [name for name in record["variables"] if _is_of(store.folder / name / RECORD, record)]

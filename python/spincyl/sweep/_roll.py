@@ -306,7 +306,9 @@ def roll(
     )
     odd = asked.step is not None or asked.beyond or asked.times[-1] < 0
     if checked_table(table) is not None and odd:
-        raise ValueError("step, beyond, t < 0: cannot be combined with table=")
+        raise ValueError(
+            "step, beyond, t < 0: cannot be combined with table=, with which motions are integrated forward"
+        )
     if restitution is None:
         refuse_state_in_air(states, "give restitution=, the coefficient of restitution, 0 to 1")
     if not has_friction(contact) and (restitution is None or states.height is None):
@@ -368,12 +370,12 @@ def _checked(asked: Asked, losses: Loss | None) -> Asked:
             )
         if step is not None or asked.beyond or (has_friction(contact) and asked.mu != np.inf):
             given = f"contact={contact!r}, losses={losses!r}, restitution={asked.restitution!r}"
-            raise ValueError(f"step, mu, beyond: cannot be combined with {given}")
+            raise ValueError(f"step, mu, beyond: cannot be combined with {given}; leave them out")
     return asked._replace(step=None if step is None else number("step", step))
 
 
 def _fields(bodies: Body, states: State, contact: AnyContact, losses: Loss | None) -> dict[str, Any]:
-    """The columns of all motions, by the names that the core uses."""
+    """The inputs of all motions as columns, by the names that the compiled core uses."""
     fields: dict[str, Any] = {
         name: getattr(bodies, name) for name in ("ell", "i1", "i3", "fillet", "theta_end")
     }
@@ -441,7 +443,7 @@ def _fill(
     threads: int,
     progress: Progress | None,
 ) -> None:
-    """Fill the columns of a block of motions."""
+    """Compute a block of motions from its columns; write the results into the arrays of `out`."""
     _core.ensemble(columns, times, asked, out, (threads, has_large_stack()), progress)
     given_up(out["status"])
     refused(columns, asked, out["status"])

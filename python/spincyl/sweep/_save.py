@@ -75,8 +75,8 @@ def save(
     -----
     UserWarning
         If completed blocks, coordinates or metadata are missing or damaged; there is one warning, and they
-        are computed again. It names the attributes of this sweep that had another value. If files cannot be
-        locked; two processes could then save to one store unnoticed.
+        are computed again. The warning names the attributes of this sweep that had another value. If files
+        cannot be locked; two processes could then save to one store unnoticed.
 
     Notes
     -----
@@ -116,7 +116,7 @@ def save(
 
 
 def _stored(result: "xarray.Dataset", path: str | os.PathLike[str], progress: Progress | None) -> Any:
-    """The store, after the blocks that it lacked are computed."""
+    """Compute the blocks that the store at `path` lacks, and return this `Store`."""
     dask = optional_library("dask", "sweep")
     store = _records.place(path)
     record = _record(result)
@@ -145,7 +145,7 @@ def _stored(result: "xarray.Dataset", path: str | os.PathLike[str], progress: Pr
 
 
 def _pass(ask: Any) -> int:
-    """Number of blocks in one request: eight for each thread that computes them."""
+    """Number of blocks in one request to dask: eight for each thread that computes them."""
     client: Any = getattr(ask, "__self__", None)
     threads = sum(client.nthreads().values()) if hasattr(client, "nthreads") else os.cpu_count() or 1
     return 8 * max(1, threads)
@@ -388,7 +388,7 @@ def _write(
 ) -> np.ndarray:
     """Write a computed block, and then the mark that it is complete.
 
-    The first arrays are the indices of the block along each dimension.
+    The first of `arrays` are the indices of the block, one for each chunked dimension, and then results.
     """
     import zarr
 

@@ -108,7 +108,7 @@ def fill(
     threads: int,
     progress: Progress | None,
 ) -> None:
-    """Fill the columns of a block of stones."""
+    """Compute the motions of a block of stones; write the results into the arrays of `out`."""
     # the core computes `known_until` only together with `end`
     all_of = {"end": np.empty(out["status"].size)} | out
     _core.stones(columns, times, asked, all_of, threads, progress)

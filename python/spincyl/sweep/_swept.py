@@ -1,4 +1,4 @@
-"""Sweeps of motions: columns in, a Dataset out, at once or block by block for arrays of dask."""
+"""Computation of a sweep: a Dataset from columns of inputs, at once or in blocks for arrays of dask."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -50,7 +50,7 @@ def swept(
     progress: Progress | bool | None,
     length: str = "R",
 ) -> "xarray.Dataset":
-    """The Dataset of a sweep. `law` fills the columns of a block; `labels` has their units and meanings."""
+    """The Dataset of many motions. `law` fills columns of a block; `labels` has their units and meanings."""
     lib: Any = optional_library("xarray", "sweep")
     fields, names, spread, asked, want, scale, seconds, kept = question
     lazy, at = is_lazy(*fields.values()), asked.times
@@ -116,7 +116,7 @@ def swept(
 
 
 def _about(name: str, labels: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
-    """The attributes of an output, in natural units."""
+    """The attributes of an output of a sweep: its natural unit and its meaning."""
     unit, meaning = labels[name]
     return {"units": unit, "long_name": meaning} | (flags(Status) if name == "status" else {})
 
@@ -132,7 +132,7 @@ def _block_of_motions(
     threads: int,
     progress: Progress | None,
 ) -> tuple[np.ndarray, ...]:
-    """The arrays of one block of motions."""
+    """Compute one block of motions; dask calls this function for each block of lazy inputs."""
     shape = np.broadcast_shapes(*(np.shape(x) for x in fields))
     shapes = {name: (*shape, times.size) if name in spread else shape for name in names}
     types = {name: np.float64 if name in WRITTEN else _dtype(name) for name in names}
