@@ -143,10 +143,13 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
         (({"O": tracks["O"]}, TUBE), r"expected two tracks, not one \('O'\)"),
         (({}, TUBE), "expected two tracks, not none"),
         (({"a": 1, "b": 2, "c": 3}, TUBE), "'a', 'b', 'c'.*ends="),
-        (({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE), r"expected a column 'x' \(or 'X'\); there are 't'"),
+        (
+            ({"O": {"t": [0, 1]}, "X": tracks["X"]}, TUBE),
+            r"expected a column 'x' \(or 'X'\); the table has 't'",
+        ),
         (
             ({n: {"t": c["t"], "x (px)": c["x"], "y": c["y"]} for n, c in tracks.items()}, TUBE),
-            "unit 'px' of x",
+            "unit 'px' of the column x",
         ),
         ((changed(tracks, lambda v: 100 * v), TUBE), "times as long as the tube; are x and y in cm"),
         ((changed(tracks, lambda v: v / 0.3048), TUBE), "are x and y in ft"),

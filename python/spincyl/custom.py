@@ -48,7 +48,7 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _Own(Loss):
-    """What the laws of loss that are functions have in common: sums with laws of the library."""
+    """Base of loss laws that are functions, which can be added to laws of the library."""
 
     function: Callable[..., Any]
     _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
@@ -99,8 +99,8 @@ class Couple(_Own):
         ``function(theta, w, normal)`` returns the couple on the body, in M g R: its three components along
         e1, e2, e3 of `State`. The arguments of the function are the inclination `theta` in radians, the
         angular velocity `w` in sqrt(g/R) (an array of its components along the same axes), and the normal
-        force `normal` in M g, 0 or more; in the air it is 0, and a body with two rims is seen from the
-        lower one. For a measured body the units are N m, rad/s and N. The power that the couple takes,
+        force `normal` in M g, 0 or more; in the air it is 0, and for a body with two rims all of them refer
+        to the lower rim. For a measured body the units are N m, rad/s and N. The power that the couple takes,
         ``-couple @ w``, must not be negative.
 
     Raises
@@ -173,7 +173,7 @@ class Moment:
     time : float
         Time, in sqrt(R/g), or in s for a measured body.
     theta : float
-        Inclination of the axis, in radians; for a body with two rims that of the lower one.
+        Inclination of the axis, in radians; for a body with two rims, that of the lower rim.
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray
@@ -325,8 +325,8 @@ class Friction(Coulomb):
 
     Notes
     -----
-    Along the impact of a rim the coefficient is that of the current speed. Where both rims land at once, it
-    is that of each rim's slip after the impact.
+    During the impact of a rim the coefficient follows the slip as it changes. Where both rims land at once,
+    each rim has the coefficient for its slip after the impact.
 
     Examples
     --------

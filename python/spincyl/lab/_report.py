@@ -36,7 +36,7 @@ def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
 
 
 def with_error(value: float, error: float, joint: str = "+-") -> str:
-    """A number with the decimals that its standard error leaves, and the error with two digits."""
+    """A number with as many decimals as its standard error, and the error with two digits."""
     if not (error > 0 and math.isfinite(error)):
         return f"{value:.6g} {joint} {error:.2g}"
     digits = max(0, 1 - math.floor(math.log10(error)))

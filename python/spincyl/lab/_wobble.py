@@ -172,7 +172,7 @@ def _range(between: object) -> tuple[float, float]:
 
 
 def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats, float, float]:
-    """The sound without its mean, its first time, and its sampling rate; an error names a wrong argument."""
+    """The sound without its mean, its first time, and its sampling rate; errors name the argument."""
     time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
     if x.ndim != 1 or time.shape != x.shape:
         raise ValueError(f"t and sound: expected equal shapes (n,), not {time.shape} and {x.shape}")
@@ -192,7 +192,8 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
         raise ValueError("t: expected evenly spaced times")
     if step * high > 0.05:
         raise ValueError(
-            f"t: {1 / step:.3g} samples a second are too few; expected at least 20 times {high:g}"
+            f"t: {1 / step:.3g} samples a second are too few; expected at least {20 * high:g}, twenty times"
+            " the greatest frequency in between="
         )
     loudest = np.abs(x).max()
     x = x - x.mean()
@@ -364,7 +365,7 @@ def _smooth_cubic(at: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _separate_windows(heard: np.ndarray) -> np.ndarray:
-    """Windows that do not overlap, several in a row, each of which and both neighbours are audible.
+    """Which windows to keep: several in a row without overlap, if they and both neighbours are audible.
 
     A sound that begins or ends during the recording does so within a turn: windows with that turn are left
     out.

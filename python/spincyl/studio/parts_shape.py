@@ -1,4 +1,4 @@
-"""The drawn shape of a body put together from parts: each as it is, and two stripes that show its spin."""
+"""The drawn shape of a body put together from parts: its parts, and two stripes that show the spin."""
 
 import math
 from collections.abc import Iterator

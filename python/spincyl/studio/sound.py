@@ -122,11 +122,11 @@ class Sources(NamedTuple):
 
 
 def sources(m: "Motion", first: float, unit: float, lasting: float, listener: float = math.pi) -> Sources:
-    """The sources of the sound of a motion from a time on; `unit` converts times to seconds.
+    """The sources of the sound of a motion after the time `first`; `unit` converts times to seconds.
 
-    `listener` is the azimuth at which the contact point is nearest to the one who hears it.
+    `listener` is the azimuth at which the contact point is nearest to the listener.
 
-    Raises `Silent` if that is nothing.
+    Raises `Silent` if there is nothing to hear.
     """
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_POSES_PER_SECOND * lasting)))
     begin, end = sorted(span(m))
