@@ -282,7 +282,7 @@ class Drive(_Own):
                 return np.array([x, y, m1, m2, m3], dtype=float) / ([force] * 2 + [couple] * 3)
             except (TypeError, ValueError):
                 expected = "a force along x and y, and a couple along e1, e2, e3"
-                raise TypeError(f"drive: expected {expected}, not {found!r}") from None
+                raise TypeError(f"drive: its function has to return {expected}, not {found!r}") from None
 
         return push
 

@@ -202,7 +202,7 @@ def _warning_of_aliases(films: Readings, t: Floats, degrees: float) -> str:
             " the sense of rotation is not clear; film with more frames per second"
         )
     rates = " or ".join(f"{other.hertz:.5g}" for other in others)
-    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady there"
+    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady"
     if len(others) < len(films.possible):  # the slowest is possible
         return f"also {alike}: film with more frames per second" if others else ""
     near = slow.inclinations
@@ -264,7 +264,7 @@ def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
 
 
 def _both_ends(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Any, int]:
-    """Ascending times, positions x + iy of both ends, (n, 2), and the number of rows without an end."""
+    """Ascending times, positions x + iy of both ends, (n, 2), and number of rows in which one is missing."""
     (t, one), (s, two) = (_in_order_of_time(*track) for track in (first, second))
     # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)

@@ -49,7 +49,7 @@ class Fit(NamedTuple):
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """Fitted ratio, its error, common factor, its error; errors are from the scatter unless `known`."""
+        """Fitted ratio, its error, common factor, its error, from the scatter unless errors are `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)

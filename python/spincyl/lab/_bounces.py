@@ -381,7 +381,7 @@ def _followed(times: Floats, row: list[tuple[int, int]], way: int) -> list[tuple
 
 
 def _logarithms(at: Floats, n: Numbers) -> tuple[Floats, Floats]:
-    """Numbers and logarithms of intervals; with a missed bounce, of the part before the first missed one."""
+    """Numbers of the intervals, and logarithms; a gap with missed bounces counts by its first interval."""
     gap, y = np.diff(n), np.log(np.diff(at))
     start, first, e = n[:-1].astype(np.float64), y, 1.0
     for _ in range(20 if (gap > 1).any() else 0):

@@ -175,7 +175,7 @@ class Picked(NamedTuple):
 
     @property
     def in_si(self) -> Floats:
-        """The numbers in SI."""
+        """The numbers of the column, converted to SI."""
         return self.values * self.factor
 
 

@@ -186,7 +186,7 @@ def fit_losses(
 
 
 class _RawFit(NamedTuple):
-    """A fit by odrpack: parameters, and their covariance in units of the errors."""
+    """Result of a fit by odrpack: parameters, and their covariance if the given errors are true."""
 
     data: SpinDown
     curve: Curve

@@ -62,7 +62,7 @@ def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] |
 
 
 def _decoded(raw: bytes, name: str, encoding: str | None) -> str:
-    """The text of a project in the given, marked or declared encoding; if that fails, as of any text file."""
+    """The text of a project in the given, marked or declared encoding, or else decoded like any text file."""
     declared = _DECLARED.match(raw[:400])
     if encoding is not None:
         return as_told(raw, name, encoding)

@@ -234,7 +234,7 @@ def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | N
 def _trials(
     theta: Floats, theta_err: Floats, times: Floats, where: list[str], names: Sequence[str] | None
 ) -> _Trials:
-    """Trials without missing times."""
+    """Make trials from arrays of equal length, without missing times."""
     named = _checked_names(names, times.size) if names is not None else [""] * times.size
     seen = np.isfinite(times)
     kept = np.flatnonzero(seen).tolist()

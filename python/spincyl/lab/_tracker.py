@@ -227,7 +227,7 @@ def _column_of_texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str
 
 
 class _Garbled(ValueError):
-    """The reason why a line cannot be a line of names, in any format."""
+    """Error: a line cannot be the line of column names in any format; the message gives the reason."""
 
 
 def _tracks_in_format(

@@ -148,7 +148,7 @@ def _left_out(
 
 
 def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
-    """The reason why no wobble was detected: too few audible turns, or none."""
+    """Message that says why no whirr was detected: too few audible turns, or none."""
     needed = _FEWEST_WINDOWS * _TURNS_PER_WINDOW
     if turns < needed and heard.size and heard.mean() > 0.5:
         return f"sound: too short: {int(turns)} turns, at least {needed} needed"
@@ -223,7 +223,7 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
 
 
 def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
-    """A spectrum without the harmonics of the mains, whose beats are as regular as a wobble."""
+    """A spectrum without the harmonics of the mains frequency, whose beats are as regular as a whirr."""
     power = np.abs(spectrum) ** 2
     for mains in _MAINS:
         lines = [
@@ -342,7 +342,7 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
 
 
 def _scatter_of_neighbours(scatter: Floats) -> Floats:
-    """The mean scatter of each window and its neighbours without common turns; outliers are limited."""
+    """The mean scatter of each window and of neighbours that share no turns with it, limited for outliers."""
     reach = np.arange(-3, 4) * _TURNS_PER_WINDOW
     at = np.arange(scatter.size)[:, None] + reach
     near = np.where((at >= 0) & (at < scatter.size), scatter[np.clip(at, 0, scatter.size - 1)], np.nan)

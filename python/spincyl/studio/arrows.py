@@ -51,7 +51,7 @@ class Vectors(NamedTuple):
 
 
 def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
-    """The vectors at the times `t` that are drawn as arrows or that define the axis."""
+    """The vectors at the times `t` that are drawn as arrows or that define the instantaneous axis."""
     first, last = sorted(span(m))
     t = np.clip(t, first, last)
     (w,) = seen(m, t, "w")

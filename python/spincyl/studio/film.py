@@ -44,7 +44,7 @@ def reel(
     size: tuple[int, int] | None,
     seconds: float | None = None,
 ) -> Reel:
-    """The settings of the film of a page for a kind of file; errors name the argument at fault."""
+    """The settings of a view's film, for a file with this suffix; errors name the argument at fault."""
     gif = suffix == ".gif"
     fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
     if gif and 100 % fps:

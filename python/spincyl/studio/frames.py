@@ -167,7 +167,7 @@ class _Stage:
             self.still = self.canvas.copy_from_bbox(self.figure.bbox)
 
     def picture(self, k: int) -> np.ndarray:
-        """Frame number k."""
+        """The picture of frame number `k`, (height, width, 3) of 8 bits."""
         self.canvas.restore_region(self.still)
         for index in range(len(self.panels)):
             self.draw(index, k)
@@ -386,7 +386,7 @@ class _Stage:
         return f"spin {told} {self.what.rates}"
 
     def _note(self, index: int, t: float) -> tuple[str, float] | None:
-        """The note about a motion before its first time, or from its end on, and the time to show."""
+        """Before the first time or after the end: a note that says so, and the time to show; else None."""
         before, after = (self.what.edges[index][name] for name in ("before", "after"))
         if t > after["at"] or (after["event"] and t >= after["at"]):
             return after["said"], after["t"]

@@ -249,7 +249,7 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
 
 
 def friction_needed(m: Motion, t0: float) -> float:
-    """The coefficient of friction that rolling needs, at 4001 sampled times."""
+    """The largest coefficient of friction that rolling needs, of 4001 sampled times."""
     t = np.linspace(t0, float(m.t[-1]), 4001)
     return float(m.wanting("force", t=t).friction_coefficient.max(initial=0.0))
 
@@ -257,7 +257,7 @@ def friction_needed(m: Motion, t0: float) -> float:
 def _known_answer(
     m: Motion, metre: float, second: float, joule: float, *, w: Floats, v: Floats, t0: float
 ) -> dict[str, Any]:
-    """The known answer; NaN where the contact has no single point or force."""
+    """The known motion in SI, as for JSON; NaN where the contact has no single point or force."""
     weight, extra = joule / metre, m._extra
     phase = extra.get("phase", np.zeros(m.t.size, int))
     stands = phase == KINDS.index("on its face")

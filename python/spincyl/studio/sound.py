@@ -162,7 +162,7 @@ def pressure(of: Sequence[Sources], count: int, rate: int, compression: float = 
 
 
 def _gain(level: Floats, most: float, compression: float) -> Floats:
-    """Factors that compress levels below the loudest; what has no level stays silent."""
+    """Factors that compress levels below the loudest; 0 where the level is 0."""
     share = np.divide(level, most, out=np.zeros(level.size), where=level > 0)
     return np.power(share, 1 / compression - 1, out=np.zeros(level.size), where=share > 0)
 

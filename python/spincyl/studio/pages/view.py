@@ -258,7 +258,7 @@ class View:
 
     @property
     def _slips(self) -> bool:
-        """Whether the page has forces, and a camera that may follow."""
+        """Whether the page shows forces, and has a camera that may follow the body."""
         wanted = self.look.follow or "force" in (self.look.drawn or ())
         return bool(wanted) or any(map(slips_or_flies, self.motions))
 

@@ -345,7 +345,7 @@ def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
-    """Inclinations, half lengths, regions, bore and fillet from `sweep.portrait`; an error for other data."""
+    """Inclinations, aspect ratios, regions, bore and fillet from `sweep.portrait`; else an error."""
     if not hasattr(data, "data_vars"):
         raise TypeError(f"data: expected a Dataset of sweep.portrait, not {type(data).__name__}")
     region = data.get("region")
