@@ -158,7 +158,7 @@ def test_what_is_no_film_of_both_ends_is_refused_with_what_would_be_right():
             "times as long as the tube; is the scale of length right",
         ),
         ((changed(tracks, lambda v: 5e4 * v), TUBE), "in pixels"),
-        ((changed(tracks, lambda v: 1e-3 * v), TUBE), "is the tube in metres"),
+        ((changed(tracks, lambda v: 1e-3 * v), TUBE), "is the size of the tube in metres"),
         ((twice, TUBE), "two positions at t = 0"),
         (({"O": tracks["O"], "X": tracks["O"]}, TUBE), "the same place"),
         ((filmed(hertz=TURNS * 2.01, noise=1e-3), TUBE), "film with more frames per second"),

@@ -120,7 +120,7 @@ class ViscousContour(Law):
     """
 
     c: Reals
-    _example = "1e-3", "1e-6Nms", "the same, proportional to the speed of the contact point"
+    _example = "1e-3", "1e-6Nms", "friction along the rim, proportional to the speed of the contact point"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:
@@ -244,7 +244,7 @@ class AirQuadratic(Law):
     """
 
     b2: Reals
-    _example = "1e-5", "1e-9Nms2", "air resistance proportional to its square"
+    _example = "1e-5", "1e-9Nms2", "air resistance proportional to the square of the angular velocity"
 
     @classmethod
     def from_si(cls, b2: Reals, *, scale: Scale | Body) -> Self:

@@ -272,7 +272,8 @@ def _doubts(found: Bounces, bends: bool, shape: "_Line") -> list[str]:
     if bends:
         last = float(found.bounce[-1])
         ends = [math.exp(shape.at(x)[0] - shape.at(x - 1)[0]) for x in (0.0, last - 1)]
-        told = f"the ratio of the intervals changes, from {ends[0]:.4g} at the first impact to {ends[1]:.4g}"
+        told = f"t: the ratio of the intervals changes, from {ends[0]:.4g} at the first impact"
+        told += f" to {ends[1]:.4g} at the end"
         said.append(f"{told}; the restitution depends on the speed, or the air slows the ball")
     if found.extra.size > _LOST * (found.extra.size + found.t.size):
         said.append(f"t: {found.extra.size} of {found.extra.size + found.t.size} clicks are no bounces")

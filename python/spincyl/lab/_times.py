@@ -124,7 +124,8 @@ def _doubt_of_units(times: Floats, group: Any) -> str:
     for k in range(group.max() + 1):
         own = times[group == k]
         if own.max() > _MIXED_RATIO * own.min():
-            return f"the times range from {own.min():.4g} to {own.max():.4g} s: are all of them in seconds?"
+            ends = f"{own.min():.4g} to {own.max():.4g} s"
+            return f"from the same inclination, the times range from {ends}: are all in seconds?"
     return ""
 
 

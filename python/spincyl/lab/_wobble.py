@@ -157,7 +157,7 @@ def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> st
     if row >= 2 * _TURNS_PER_WINDOW:  # noise has short rows of audible windows
         many = row + _TURNS_PER_WINDOW - 1
         return f"sound: too short: {many} turns in a row are audible, at least {needed + 2} needed"
-    return f"sound: no wobble between {low:g} and {high:g} turns a second stands out from the noise"
+    return f"sound: no whirr of {low:g} to {high:g} turns a second stands out from the noise"
 
 
 def _range(between: object) -> tuple[float, float]:

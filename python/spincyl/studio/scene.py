@@ -301,7 +301,7 @@ class Scene:
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         reach = metre * float(np.linalg.norm(m.centre[0]))
         if away[0] > _FARTHEST * reach:
-            told = f"position: {away[0]:.2g} m from the known one at t = {t[0]:.4g} s, which is {reach:.2g} m"
+            told = f"position: {away[0]:.2g} m from the known place at t = {t[0]:.4g} s, itself {reach:.2g} m"
             warn(f"{told} from the origin; are the positions in millimetres?")
         theta = inclination(q[:n]) - inclination(m.orientation)
         return Deviation(t[:n], away, angle, theta, off * metre, turned)
