@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 class Shot(NamedTuple):
-    """A shot until the ball is at rest, in SI."""
+    """The motion of a shot until the ball is at rest, and the times of its stages, in SI."""
 
     motion: sc.Motion
     slides: float  # time when the slip is as fast as the rim of the patch, k = 1
@@ -46,7 +46,7 @@ def speed(motion: sc.Motion) -> Floats:
 
 
 def creep() -> float:
-    """Slip over the speed of the rim of the patch while the ball creeps, k.
+    """The number k: slip over the speed of the rim of the patch, while the ball creeps.
 
     Rolling resistance needs the force (5/7) (DELTA/R) M g, and a slow slip of the patch
     gives (3 pi/8) k MU M g.
@@ -55,7 +55,7 @@ def creep() -> float:
 
 
 def lasts(spin: float, patch: float) -> float:
-    """Time in which drilling alone stops a spin, by a couple (3 pi/16) MU N eps."""
+    """Time in s in which drilling friction alone stops a spin, by the couple (3 pi/16) MU N eps."""
     couple = 3 * np.pi / 16 * MU * scale.gravity * patch
     return 0.4 * scale.radius**2 * spin / couple
 

@@ -22,7 +22,7 @@ import spincyl as sc
 
 
 def scenes(seconds: float) -> dict[str, sc.Scene]:
-    """The scenes by name."""
+    """The eight scenes by name, each with its known motion of this many seconds."""
 
     def made(
         body: Any,
@@ -96,7 +96,7 @@ def finer(model: mujoco.MjModel, times: int) -> None:
 
 
 def mujoco_run(scene: sc.Scene, times: int) -> tuple[sc.Deviation, float, int, float]:
-    """Deviation, processor seconds, steps, and the time reached; with MuJoCo's defaults if `times` is 0."""
+    """Run MuJoCo: deviation, processor seconds, steps, time reached; with its defaults if `times` is 0."""
     model = mujoco.MjModel.from_xml_string(scene.mjcf)
     if times:
         finer(model, times)

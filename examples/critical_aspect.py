@@ -13,7 +13,7 @@ LEAST: dict[Literal["rolling", "smooth"], float] = {
 
 
 def turning(rate: float) -> sc.State:
-    """Balanced at theta0, and turning at a reduced rate."""
+    """Steady state in which the cylinder is balanced at theta0 and turns at a reduced rate."""
     w1 = float(body.angular_rate(rate)) * np.sin(float(body.theta_balance))
     return sc.State(float(body.theta_balance), w1, 0.0, float(body.ell) * w1)
 

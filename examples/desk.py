@@ -37,7 +37,7 @@ def side_by_side(view: sc.View, path: Path, times: list[float]) -> None:
 
 
 def main() -> None:
-    """Draw the pictures again."""
+    """Draw all pictures of docs/desk.md, and replace their files."""
     page = (DOCS / "desk.md").read_text("utf-8")
     for path, code in re.findall(
         r"\((figures/desk/\w+\.png)\)\n\n```python\n(.*?)```", page, re.S

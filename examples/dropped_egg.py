@@ -24,7 +24,7 @@ COLOURS = {0: "#009E73", 1: "#D55E00", 2: "#0072B2"}
 
 
 def fallen(restitution: float) -> sc.EllipsoidMotion:
-    """The motion until the egg is at rest."""
+    """Motion of the dropped egg with this coefficient of restitution, until it is at rest."""
     return sc.roll(
         body,
         start,
@@ -37,7 +37,7 @@ def fallen(restitution: float) -> sc.EllipsoidMotion:
 
 
 def stays(motion: sc.EllipsoidMotion) -> float:
-    """The time from which the egg stays on the table."""
+    """The time after which the egg no longer leaves the table."""
     last = max(i for i, p in enumerate(motion.phases) if p.kind == "flying")
     return float(motion.phases[last + 1].time)
 

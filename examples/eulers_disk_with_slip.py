@@ -6,7 +6,7 @@ import spincyl as sc
 
 
 def turned(theta: float, rate: float) -> sc.State:
-    """Tilted, turning as a whole about the vertical at `rate` (in sqrt(g/R)), its centre at rest."""
+    """Initial state: inclined by theta, turning about the vertical at `rate` (sqrt(g/R)), centre at rest."""
     held = sc.State(theta, rate * np.sin(theta), 0.0, rate * np.cos(theta))
     return body.with_centre_velocity(held, 0.0, 0.0)
 

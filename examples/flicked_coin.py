@@ -6,7 +6,7 @@ import spincyl as sc
 
 
 def flicked(turns: float) -> sc.State:
-    """Upright, spinning about its vertical diameter so many times a second, as a finger leaves it.
+    """Initial state: upright, spinning about its vertical diameter, `turns` a second, as a finger leaves it.
 
     The finger strikes across the coin, 0.9 R beside the diameter: I1 w1 = 0.9 v. The velocity v of the
     centre points to where the friction that it meets lifts the coin off the other rim.

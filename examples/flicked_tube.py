@@ -15,7 +15,7 @@ def pushed(impulse: float, angle: float = 80.0, finger: float = 0.3) -> sc.State
 
 
 def outcome(motion: sc.Motion) -> str:
-    """Outcome of a flick: the tube settles if it rolls for the last half of it."""
+    """Outcome of a flick: the tube settles if it rolls for the last half of the motion."""
     if motion.event:
         words = {sc.Ending.SIDE: "lies down again", sc.Ending.LIFT_OFF: "hops"}
         return (
@@ -55,7 +55,7 @@ t = np.linspace(0.0, 200.0, 4001)
 
 
 def picture() -> None:
-    """Draw the way of the contact point and the speed of the centre."""
+    """Draw the path of the contact point and the speed of the centre."""
     motion = sc.roll(
         body, start, np.linspace(0.0, 60.0, 6001), contact=table, want="pose"
     )

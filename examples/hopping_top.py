@@ -19,18 +19,18 @@ NEAR = 1.5, 1.6
 
 
 def spun(turns: float) -> sc.State:
-    """Spun about its nearly upright axis, its centre at rest."""
+    """Initial state: spun at so many turns a second about the nearly upright axis, centre at rest."""
     w3 = 2 * np.pi * turns * float(scale.seconds(1.0))
     return body.with_centre_velocity(sc.State(0.1, 0.0, 0.0, w3), 0.0, 0.0)
 
 
 def turned(turns: float, restitution: float = RESTITUTION) -> sc.Motion:
-    """The motion of a top that is spun so fast."""
+    """Motion of a top that is spun at so many turns a second."""
     return sc.roll(body, spun(turns), t, contact=table, restitution=restitution)
 
 
 def hops(motion: sc.Motion) -> int:
-    """The number of hops; a hop with its bounces is a row of flights."""
+    """The number of hops; successive flights, a hop with its bounces, count as one."""
     kinds = (phase.kind for phase in motion.phases)
     return sum(kind == "flying" for kind, _ in groupby(kinds))
 
@@ -41,7 +41,7 @@ def over(motion: sc.Motion) -> float:
 
 
 def picture() -> None:
-    """Draw how far it has turned over, and the height of its lowest point."""
+    """Draw how far the top has turned over, and the height of its lowest point."""
     fast = turned(TURNS)
     fig = plt.figure()
     grid = fig.add_gridspec(2, 2, height_ratios=(1.2, 1), width_ratios=(1.6, 1))

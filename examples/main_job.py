@@ -46,7 +46,7 @@ BODIES = [
 
 
 def verdict(body: sc.Body, state: sc.State) -> str:
-    """Both answers about stability, with the nutation frequency or the growth rate."""
+    """Text: stable or not on a smooth table and rolling, with the nutation frequency or growth rate."""
     answers = []
     contacts: tuple[Literal["rolling", "smooth"], ...] = ("rolling", "smooth")
     for contact in contacts:

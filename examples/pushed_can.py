@@ -14,13 +14,13 @@ t = np.linspace(0.0, 1.6 / second, 3201)
 
 
 def pushed(speed: float, turns: float = 0.0, contact: sc.Coulomb = table) -> sc.Motion:
-    """Its motion after a push in m/s and turns per second."""
+    """Motion of the can after a push, with a speed in m/s and a spin in turns per second."""
     start = sc.spun(body, 2 * np.pi * turns * second, (speed * second / metre, 0.0))
     return sc.roll(body, start, t, contact=contact, restitution=0.0, want="pose")
 
 
 def picture() -> None:
-    """Draw its inclination after pushes without a spin, and with one."""
+    """Draw the inclination of the can after pushes without a spin, and with one."""
     _, axes = plt.subplots(1, 2, sharey=True)
     cases = [(0.6, 0.0), (1.0, 0.0), (1.4, 0.0)], [(1.0, 0.0), (1.0, 2.0), (1.0, 5.0)]
     for ax, pushes in zip(axes, cases, strict=True):

@@ -26,13 +26,13 @@ def race(name: str, degrees: float, mu: float) -> sc.Motion:
 
 
 def arrival(motion: sc.Motion, length: float = 1.0) -> float:
-    """The time after which it has gone this many metres, in seconds."""
+    """The time in seconds after which a runner has gone `length` metres."""
     gone = (motion.centre[:, 0] - motion.centre[0, 0]) * metre
     return float(np.interp(length, gone, motion.t * second))
 
 
 def picture() -> None:
-    """Draw the ways on a slope, and the time for a metre on many."""
+    """Draw the distances over time on one slope, and the time for a metre against the slope."""
     _, (left, right) = plt.subplots(1, 2)
     slopes = np.linspace(5, 60, 23)
     for name in runners:

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 class Law(NamedTuple):
-    """The rocking that grows at a spin, from the eigenvalues, in SI."""
+    """The rocking that grows at a spin, from the eigenvalues of the linear equations, in SI."""
 
     axis: int  # of the stone, which it tilts
     growth: float  # per second
@@ -31,7 +31,7 @@ def law(spin: float) -> Law:
 
 
 def spun(spin: float) -> sc.EllipsoidState:
-    """Upright, except for a push of a fiftieth of a degree about both axes."""
+    """Initial state: spinning, tilted by a fiftieth of a degree about both axes."""
     push = np.radians(0.02)
     return body.spinning(spin * second, pitch=push, roll=push)
 
@@ -44,7 +44,7 @@ def swings(motion: sc.EllipsoidMotion, axis: int) -> tuple[Floats, Floats]:
 
 
 def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
-    """Growth of its swings, from 0.3 s until a thousandth of the spin is lost."""
+    """Growth rate of the swings of an axis, from 0.3 s until a thousandth of the spin is lost."""
     times, angle = swings(motion, axis)
     early = (times > 0.3) & (
         times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)]

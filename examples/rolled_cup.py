@@ -18,19 +18,19 @@ t = np.linspace(0.0, 400.0, 8001)
 
 
 def pushed(rate: float) -> sc.State:
-    """It rolls on both rims, round the apex: it turns about its line of contact."""
+    """Initial state: the cup rolls on both rims round the apex, at `rate` in sqrt(g/R)."""
     w1 = rate * np.sin(lies)
     return sc.State(lies, w1, 0.0, -w1 * np.tan(lies))
 
 
 def rate_of(speed: float) -> float:
-    """The rate at which the centre has this speed, in metres per second."""
+    """The rate, in sqrt(g/R), at which the centre has a speed given in m/s."""
     circle = scale.metres(body.apex().radius)
     return float(speed / circle * scale.seconds(1.0))
 
 
 def law(rate: float) -> tuple[float, float]:
-    """Until it rests: the time, and the number of rounds.
+    """Time in sqrt(R/g) until the cup rests, and number of rounds of its circle.
 
     With the moment J about the line of contact, J tan(theta) rate' = -length.
     """
@@ -43,7 +43,7 @@ def law(rate: float) -> tuple[float, float]:
 
 
 def contacts(motion: sc.Motion) -> tuple[Floats, Floats]:
-    """The points of the bottom and of the brim on the table, in cm from the apex."""
+    """Contact points of the bottom and of the brim on the table, in cm from the apex."""
     way = np.column_stack([np.cos(motion.phi), np.sin(motion.phi)])
     apex = motion.contact_point[0] + body.circles[0, 0] / np.cos(lies) * way[0]
     bottom = motion.contact_point - apex
@@ -56,7 +56,7 @@ start = pushed(rate_of(START))
 
 
 def picture() -> None:
-    """Draw the ways of bottom and brim from above, and the forces that carry both."""
+    """Draw the paths of bottom and brim from above, and the forces that carry both."""
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     motion = sc.roll(
         body,

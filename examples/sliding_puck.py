@@ -21,7 +21,7 @@ SPINS = (0.0, 2.0, 5.0, 10.0)  # turns per second
 
 
 def pushed(turns: float, table: sc.Coulomb) -> sc.Motion:
-    """Its motion to rest, from a push at SPEED with a spin."""
+    """Motion of the puck until it rests, from a push at SPEED with a spin in turns a second."""
     spin = 2 * np.pi * turns * second
     start = sc.spun(body, spin, (SPEED * second / metre, 0.0))
     end = sc.roll(body, start, 1e3, contact=table).event
@@ -32,13 +32,13 @@ def pushed(turns: float, table: sc.Coulomb) -> sc.Motion:
 
 
 def cm(motion: sc.Motion) -> Floats:
-    """The way of its centre."""
+    """Path of the centre, x and y in cm from the start."""
     way: Floats = 100 * metre * (motion.centre[:, :2] - motion.centre[0, :2])
     return way
 
 
 def picture() -> None:
-    """Draw the path of its centre, and its slide against its spin."""
+    """Draw the path of the centre, and its speed against the speed of the rim."""
     _, (paths, above, below) = plt.subplots(1, 3, width_ratios=(1.3, 1, 1))
     for table, (words, contact) in enumerate(TABLES.items()):
         ax = (above, below)[table]

@@ -10,7 +10,7 @@ t = np.linspace(0.0, 250.0, 2501)
 
 
 def departure(kick: float) -> tuple[float, bool]:
-    """Time at which the inclination is off by a degree, and true if it grows."""
+    """Time at which the inclination differs by a degree from its first value, and whether it grows."""
     motion = sc.roll(body, body.steady(np.radians(20)).kicked(kick), t)
     off = np.degrees(motion.theta) - 20
     first = int(np.argmax(np.abs(off) > 1))

@@ -23,7 +23,7 @@ def jellett(motion: sc.Motion) -> Floats:
 
 
 def kept(motion: sc.Motion, last: int) -> str:
-    """Jellett's number over time."""
+    """Text with Jellett's number at the first time and in row `last`."""
     number = jellett(motion)
     return f"{number[0]:.6f}, then {number[last]:.6f}"
 

@@ -16,7 +16,7 @@ t = np.linspace(0.0, 120.0, 24001)
 
 
 def tipped(bounces: float = RESTITUTION) -> sc.Motion:
-    """Its motion to rest."""
+    """Motion of the bottle until it rests, with this coefficient of restitution."""
     return sc.roll(
         body,
         start,
@@ -29,7 +29,7 @@ def tipped(bounces: float = RESTITUTION) -> sc.Motion:
 
 
 def picture() -> None:
-    """Draw its inclination as it tips and rocks, and its path from above."""
+    """Draw the inclination as the bottle tips and rocks, and its path from above."""
     motion = tipped()
     seconds, border = scale.seconds(motion.t), np.degrees(body.borders[0])
     lean = np.degrees(motion.theta)

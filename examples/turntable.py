@@ -15,7 +15,7 @@ t = np.linspace(0.0, 12.6 / second, 3001)
 
 
 def rolled(ball: sc.Body, speed: float, slope: float = 0.0) -> sc.Motion:
-    """Its motion after a throw in m/s, 10 cm from the middle of the table."""
+    """Motion of the ball after a throw at `speed` (m/s), 10 cm from the middle of the table."""
     table = sc.Table(slope, turning=rate, phi0=0.0, place=(0.1 / metre, 0.0))
     # over the table, which moves there with 0.35 m/s
     slip = (0.0, speed * second / metre - rate * 0.1 / metre)
@@ -24,7 +24,7 @@ def rolled(ball: sc.Body, speed: float, slope: float = 0.0) -> sc.Motion:
 
 
 def once_round(motion: sc.Motion) -> float:
-    """The time for one circle while it rolls, in seconds."""
+    """The time in seconds for one circle of the rolling ball."""
     x, y = (motion.centre[:, :2] * metre).T
     way = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))
     rolls = motion.t > motion.phases[-1].time + 1.0

@@ -146,7 +146,10 @@ def test_the_fall_itself_gives_the_height_where_the_first_impact_differs():
         ({"t": [0.0, math.inf, 1.0, 2.0, 3.0]}, "^t: expected finite"),
         ({"t": [0.0, 1.0, 1.9, 2.7, 3.42], "error": -1.0}, "^error = -1.0: expected a positive time"),
         ({"t": [0.0, 1.0, 1.9, 2.7, 3.42], "gravity": 0.0}, "^gravity = 0.0: expected a positive"),
-        ({"t": [0.0, 1.0, 1.9, 2.7, 3.42], "released": 1.0}, "^released = 1.0: expected a time before"),
+        (
+            {"t": [0.0, 1.0, 1.9, 2.7, 3.42], "released": 1.0},
+            "^released = 1.0: expected a time up to 100 s before",
+        ),
         ({"t": np.arange(4000) / 8000, "sound": np.zeros(4000)}, "^sound: the recording is silent"),
         ({"t": np.arange(400) / 800, "sound": np.ones(400)}, "^t: expected evenly spaced times"),
         ({"t": np.arange(400) / 8000, "sound": np.ones(40)}, "^t and sound: expected equal shapes"),

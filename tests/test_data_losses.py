@@ -231,7 +231,7 @@ def test_what_cannot_be_a_spin_down_is_refused_by_name():
         ({"theta": theta[:5]}, r"theta: expected the shape of t, \(40,\)"),
         ({"t": t[:, None]}, r"t: expected shape \(n,\)"),
         ({"t": t[::-1]}, "t: expected times in ascending order"),
-        ({"theta": theta[::-1]}, "theta: rises, but .* drifts down"),
+        ({"theta": theta[::-1]}, "theta: rises, but .* drifts to smaller inclinations"),
         ({"theta": None, "precession": 1e-3 * precession}, "precession: no drift of this body has"),
         (
             {"theta": rng.uniform(0.1, 0.3, 40)},

@@ -232,7 +232,7 @@ def test_a_bound_holds_and_a_number_that_is_not_free_stays():
             {"measured": {"t": [0.0, 0.1], "z": [1.0, np.nan]}},
             "^measured: 1 values cannot determine 2 numbers",
         ),
-        ({"errors": {"x": 0.1}}, "^errors: 'x' is not a column"),
+        ({"errors": {"x": 0.1}}, "^errors: 'x' is not among the measured outputs"),
         ({"errors": {"z": -0.1}}, "^errors\\['z'\\]: expected positive numbers"),
         ({"loss": "square"}, "^loss = 'square': expected"),
     ],

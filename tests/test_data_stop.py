@@ -225,7 +225,7 @@ def test_a_time_may_have_its_unit_and_a_missed_one_is_left_out():
 def test_minutes_that_were_typed_for_seconds_are_warned_of():
     with pytest.warns(UserWarning, match="the body turns only 1.8 times before it stops.* in seconds"):
         sc.data.fit_stop(COIN, sc.loss.DryContour, START, [0.117, 0.121])
-    with pytest.warns(UserWarning, match="the times range from 0.12 to 7.1 s: are all of them in seconds"):
+    with pytest.warns(UserWarning, match="the times range from 0.12 to 7.1 s: are all in seconds"):
         sc.data.fit_stop(COIN, sc.loss.DryContour, START, [0.12, 7.1], error=0.2)
 
 

@@ -121,7 +121,7 @@ def test_the_unit_is_that_of_the_scale_of_length(tmp_path, unit, told):
 def test_a_film_without_a_scale_of_length_is_in_pixels_and_no_film_of_a_tube(tmp_path):
     text = put(xscale=1.0, yscale=1.0)
     assert read(tmp_path, text)["O"].units == {"t": "s", "x": "px", "y": "px"}
-    with pytest.raises(ValueError, match="unit 'px' of x"):
+    with pytest.raises(ValueError, match="unit 'px' of the column x"):
         sc.data.from_above(tmp_path / "film.trk", sc.measured(outer_diameter=0.01, length=0.1))
 
 

@@ -347,15 +347,15 @@ def test_a_table_that_is_no_trajectory_is_refused_with_the_columns_that_it_has()
         (
             {k: v for k, v in table.items() if k != "z"},
             ValueError,
-            "^time: .* 'z' .or 'p_z', .*; there are 't', 'x', 'y', 'qx'",
+            "^time: .* 'z' .or 'p_z', .*; the table has 't', 'x', 'y', 'qx'",
         ),
-        ({"T": t} | table, ValueError, "^time: the table: 'T' and 't' are the same column"),
+        ({"T": t} | table, ValueError, "^time: the table: 'T' and 't' are names of the same column"),
         (table | {"qw": q[:1, 3]}, ValueError, "^time: .* equal length; qw has"),
         (table | {"t": t[:1]}, ValueError, "^time: .* equal length, not 1 times, 2 positions"),
         (
             {"t (h)": t} | columns(t, x, q, "a x y z qx qy qz qw"),
             ValueError,
-            "^time: .* unit 'h' of t: expected one of s",
+            "^time: .* unit 'h' of the column t: expected one of s",
         ),
         (table | {"x": [0.0, np.nan]}, ValueError, "^position: row 1 has NaN"),
         (table | {"qx": q[:, 0] + 2}, ValueError, "^orientation: expected unit quaternions"),
@@ -364,7 +364,7 @@ def test_a_table_that_is_no_trajectory_is_refused_with_the_columns_that_it_has()
     ):
         with pytest.raises(error, match=said):
             scene.compare(wrong)
-    with pytest.raises(ValueError, match="^scalar_first: leave it out; the columns"):
+    with pytest.raises(ValueError, match="^scalar_first: leave it out, since the names of the columns"):
         scene.compare(table, scalar_first=True)
     with pytest.raises(TypeError, match="^position, orientation: give both"):
         scene.compare(t, x)

@@ -41,7 +41,7 @@ def test_a_column_is_found_by_its_name_and_by_what_the_file_calls_it(tmp_path):
     assert list(found) == ["t", "x"] and found.units == {"t": "s", "x": "cm"}
     assert found["x"] is found["x [cm]"] is found.get("x") and "x [cm]" in found and "y" not in found
     assert found.get("y") is None
-    with pytest.raises(KeyError, match="'y': expected one of 't', 'x'"):
+    with pytest.raises(KeyError, match="'y': no such column; expected one of 't', 'x'"):
         found["y"]
 
 

@@ -48,7 +48,7 @@ def _called(name: str, function: object, arguments: str) -> None:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _Own(Loss):
-    """Base class of loss laws that are functions of the user; they can be added to laws of `sc.loss`."""
+    """Base of loss laws that are functions, which can be added to laws of the library."""
 
     function: Callable[..., Any]
     _others: ClassVar[Loss | None] = None  # the laws of the library in a sum
@@ -99,7 +99,7 @@ class Couple(_Own):
         ``function(theta, w, normal)`` returns the couple on the body, in M g R: its three components along
         e1, e2, e3 of `State`. The arguments of the function are the inclination `theta` in radians, the
         angular velocity `w` in sqrt(g/R) (an array of its components along the same axes), and the normal
-        force `normal` in M g, 0 or more; in the air it is 0. `theta` and `w` of a body with two rims refer
+        force `normal` in M g, 0 or more; in the air it is 0, and for a body with two rims all of them refer
         to the lower rim. For a measured body the units are N m, rad/s and N. The power that the couple takes,
         ``-couple @ w``, must not be negative.
 
@@ -173,7 +173,7 @@ class Moment:
     time : float
         Time, in sqrt(R/g), or in s for a measured body.
     theta : float
-        Inclination of the axis, in radians; for a body with two rims that of the lower one.
+        Inclination of the axis, in radians; for a body with two rims, that of the lower rim.
     w : ndarray
         Angular velocity along e1, e2, e3 of `State`, in sqrt(g/R), or in rad/s.
     slip : ndarray
@@ -281,8 +281,8 @@ class Drive(_Own):
                 (x, y), (m1, m2, m3) = found
                 return np.array([x, y, m1, m2, m3], dtype=float) / ([force] * 2 + [couple] * 3)
             except (TypeError, ValueError):
-                expected = "the function to return ((fx, fy), (m1, m2, m3)), force and couple"
-                raise TypeError(f"drive: expected {expected}, not {found!r}") from None
+                expected = "a force along x and y, and a couple along e1, e2, e3"
+                raise TypeError(f"drive: its function has to return {expected}, not {found!r}") from None
 
         return push
 
@@ -325,8 +325,8 @@ class Friction(Coulomb):
 
     Notes
     -----
-    During the impact of a rim the coefficient is that of the current speed. Where both rims land at once, it
-    is that of each rim's slip after the impact.
+    During the impact of a rim the coefficient follows the slip as it changes. Where both rims land at once,
+    each rim has the coefficient for its slip after the impact.
 
     Examples
     --------

@@ -120,7 +120,7 @@ class ViscousContour(Law):
     """
 
     c: Reals
-    _example = "1e-3", "1e-6Nms", "viscous friction along the rim, proportional to the speed"
+    _example = "1e-3", "1e-6Nms", "friction along the rim, proportional to the speed of the contact point"
 
     @classmethod
     def from_si(cls, c: Reals, *, scale: Scale | Body) -> Self:

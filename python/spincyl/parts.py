@@ -102,7 +102,7 @@ class Part:
         return inner, outer
 
     def _carries(self, other: "Part") -> bool:
-        """Whether this part has matter under the lowest points of another one, at the same height."""
+        """Whether this part has matter at the lowest points of another part, and so carries that part."""
         z = other.numbers[_HEIGHTS[other.form][0]]
         near = _TOUCH * (self.top + other.top)
         if not self.numbers[_HEIGHTS[self.form][0]] - near <= z <= self.top + near:
@@ -363,5 +363,5 @@ def _part(
         amount = number("density", density) if form not in (_SOLID, _BALL) else density_in_si(density)
     low = None if at is None else _metres("at", at)
     if low is not None and not math.isfinite(low):
-        raise ValueError(f"at = {low}: expected a finite height")
+        raise ValueError(f"at = {low}: expected a finite height, in metres")
     return Part(name, form, numbers, amount, mass is None, low)

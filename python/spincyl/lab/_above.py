@@ -76,15 +76,15 @@ def from_above(
     -------
     Filmed
         ``.report()`` summarises the measurement, ``.plot()`` draws it; `compare` takes ``theta``, ``rate``
-        and their errors, or the whole film beside a motion.
+        and their errors, or the whole film for comparison with a motion.
 
     Raises
     ------
     ValueError
-        If there are fewer than three frames, a track or column is missing, or an end has two positions at
-        one time. If the line is much longer or very much shorter than the tube. If the tube turns by about
-        half a turn from frame to frame, and the inclination does not tell in which sense. If the size of the
-        tube is unknown.
+        If there are fewer than three frames, a track or column is missing, or an end has two positions at one
+        time. If the line between the ends is much longer or very much shorter than the tube. If the tube
+        turns by about half a turn from frame to frame, and the inclination does not decide in which sense. If
+        the size of the tube is unknown.
     TypeError
         If an argument is of the wrong type; the message names it.
     OSError
@@ -93,21 +93,21 @@ def from_above(
     Warns
     -----
     UserWarning
-        If the line is a little longer than the tube; the inclination is then near 90 degrees but not known
-        exactly. If the direction does not turn evenly. If the inclination is more than four of its errors
-        from every steady state at the slowest rate that the frames may show; the message names faster rates
-        that look the same and are steady. If several rates are possible (`Filmed.aliases`).
+        If the line between the ends is a little longer than the tube; the inclination is then near 90 degrees
+        but not known exactly. If the line does not turn evenly. If the inclination is more than four of its
+        errors from every steady state at the slowest rate that the frames may show; the message names faster
+        rates that look the same and are steady. If several rates are possible (`Filmed.aliases`).
 
     Notes
     -----
-    The rate is the slope of the direction over time, by least squares. Its error follows from the scatter,
-    and is larger if the errors of neighbouring frames are correlated. The inclination follows from the median
-    length of the line. If the tube turns by more than half a turn from frame to frame, it looks like a slow
-    rotation, often backwards: at 30 frames a second 20 turns a second look like 10. Of the rates that look
-    the same (up to two and a half turns from frame to frame, and 10 m/s at the ends of the tube), the slowest
-    is taken if the measured inclination is steady there. If it is not, and is steady at just one faster rate,
-    this rate is taken, with a warning. Uneven times of the frames also exclude rates. The inclination can
-    decide only as well as its error is known: give `ruler`.
+    The rate is the slope of the direction of the line over time, by least squares. Its error follows from the
+    scatter, and is larger if the errors of neighbouring frames are correlated. The inclination follows from
+    the median length of the line. If the tube turns by more than half a turn from frame to frame, it looks
+    like a slow rotation, often backwards: at 30 frames a second 20 turns a second look like 10. Of the rates
+    that look the same (up to two and a half turns from frame to frame, and 10 m/s at the ends of the tube),
+    the slowest is taken if the measured inclination is steady there. If it is not, and is steady at just one
+    faster rate, this rate is taken, with a warning. Uneven times of the frames also exclude rates. The
+    inclination can decide only as well as its error is known: give `ruler`.
 
     The camera is taken to be far away. At a distance D from the table, a mark at the height z seems to be
     farther from the middle of the picture by the factor 1 / (1 - z / D), which is not corrected.
@@ -178,7 +178,7 @@ def from_above(
 
 
 def _warning_of_uneven_turning(taken: Reading) -> str:
-    """A warning if the direction does not turn evenly."""
+    """Text of a warning if the line between the ends of the tube turns unevenly; else ""."""
     if taken.scatter <= _LARGEST_WANDER:
         return ""
     return (
@@ -188,10 +188,10 @@ def _warning_of_uneven_turning(taken: Reading) -> str:
 
 
 def _warning_of_aliases(films: Readings, t: Floats, degrees: float) -> str:
-    """A warning if the inclination is not steady at the slowest rate, or if other rates are possible as well.
+    """Text of a warning if the inclination is not steady at the slowest rate, or other rates are possible.
 
     Raises ValueError if the tube turns by almost half a turn from frame to frame, so that two rates are close
-    together, and the inclination does not tell which is right.
+    together, and the inclination does not decide which is right.
     """
     slow, taken, others = films.slowest, films.taken, [x for x in films.possible if x is not films.slowest]
     most = abs(slow.slope) * float(np.median(np.diff(t)))
@@ -202,7 +202,7 @@ def _warning_of_aliases(films: Readings, t: Floats, degrees: float) -> str:
             " the sense of rotation is not clear; film with more frames per second"
         )
     rates = " or ".join(f"{other.hertz:.5g}" for other in others)
-    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady there"
+    alike = f"{rates} turns a second look the same at {films.fps:.4g} frames a second, and are steady"
     if len(others) < len(films.possible):  # the slowest is possible
         return f"also {alike}: film with more frames per second" if others else ""
     near = slow.inclinations
@@ -248,7 +248,7 @@ def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
     for wanted, units in (("t", SECONDS), ("x", METRES), ("y", METRES)):
         one = picked(told, columns, (wanted, wanted.upper(), *_ALSO.get(wanted, ())), units)
         if np.any(np.abs(one.values[np.isfinite(one.values)]) > _FARTHEST):
-            raise ValueError(f"{told}: expected numbers up to {_FARTHEST:g} in {one.key}")
+            raise ValueError(f"{told}: expected numbers up to {_FARTHEST:g} in the column {one.key}")
         if found and one.values.shape != found[0].shape:
             raise ValueError(f"{told}: expected columns of equal length; {one.key} has {one.values.shape}")
         found.append(one.in_si)
@@ -256,7 +256,7 @@ def _positions(tracks: Mapping[str, Any], name: str) -> tuple[Floats, Floats]:
 
 
 def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
-    """Axes and scale of a project, in pixels per metre; None for other tracks."""
+    """Axes and scale of a Tracker project, in pixels per metre; None if the tracks are from a table."""
     columns = tracks[name]
     if not isinstance(columns, Columns) or columns.camera is None:
         return None
@@ -264,7 +264,7 @@ def _camera(tracks: Mapping[str, Any], name: str) -> Camera | None:
 
 
 def _both_ends(first: tuple[Floats, Floats], second: tuple[Floats, Floats]) -> tuple[Floats, Any, int]:
-    """Ascending times, positions x + iy of both ends, (n, 2), and the number of rows that lack one."""
+    """Ascending times, positions x + iy of both ends, (n, 2), and number of rows in which one is missing."""
     (t, one), (s, two) = (_in_order_of_time(*track) for track in (first, second))
     # two files of one film have the same times to the written digits
     fine = 1e-6 + 1e-3 * (float(np.median(np.diff(t))) if t.size > 1 else 0.0)
@@ -314,8 +314,8 @@ def _sine_of_inclination(shares: Floats, ruler: float) -> tuple[float, float]:
         raise ValueError(f"tracks: the line between the ends is {share:.4g} times as long as the tube{hint}")
     if share < _SHORTEST_LINE:
         raise ValueError(
-            f"tracks: the line between the ends has only {share:.2g} of the tube's length; is the tube in"
-            " metres?"
+            f"tracks: the line between the ends is only {share:.2g} times as long as the tube; is the size of"
+            " the tube in metres?"
         )
     if share > 1:
         warnings.warn(
@@ -328,7 +328,7 @@ def _sine_of_inclination(shares: Floats, ruler: float) -> tuple[float, float]:
 
 
 def _unwrapped(t: Floats, between: Floats) -> Floats:
-    """The direction, unwrapped across gaps for the slowest rotation that the frames may show."""
+    """Directions of the line between the ends, in radians, unwrapped for the slowest possible rotation."""
     gaps, steps = np.diff(t), between[1:] * between[:-1].conj()
     close = gaps < 1.5 * np.median(gaps)
     # the mean of directions, not of angles, which jump where the tube makes half a turn between two frames

@@ -41,7 +41,7 @@ class Reading(NamedTuple):
 
 
 class Readings(NamedTuple):
-    """Rates that the frames of a film allow: the slowest, the one that is taken, and all possible ones."""
+    """Rates that agree with the frames of a film: the slowest, the chosen one, and all likely ones."""
 
     slowest: Reading
     taken: Reading
@@ -65,10 +65,11 @@ def uniform(t: Floats, direction: Floats) -> tuple[float, float, float]:
 def read(
     t: Floats, direction: Floats, body: Body, *, one: float, line: float, sine: float, sine_err: float
 ) -> Readings:
-    """All rates that are consistent with the directions in the frames; `one` is the unit of rates in hertz.
+    """Find the rates that agree with the directions of the tube in the frames of a film.
 
-    `line` is the distance of the ends of the tube as seen from above, in metres. Another rate is taken if it
-    alone is possible, and the slowest is far from every steady inclination.
+    `one` is the unit of reduced rates in turns per second, `line` the distance of the ends of the tube as
+    seen from above, in metres, and `sine` that of the inclination. The slowest rate is taken, unless its
+    steady inclinations are all far from the measured one and exactly one other rate is possible.
     """
     gaps = np.diff(t)
     frame = np.r_[0.0, np.cumsum(np.maximum(np.round(gaps / np.median(gaps)), 1.0))]

@@ -4,8 +4,9 @@
 theta''(theta, rate / factor; I1/I3) = 0
 ```
 The body is as built, with a sharp or rounded rim, or a ball. The implicit curve allows for errors of both
-variables, for forbidden bands and for folds (Boggs and Donaldson 1989, odrpack). The torque is linear in the
-ratio, also beyond the range of real bodies. A factor known with some error adds a point, (factor - 1)/error.
+variables, for forbidden bands and for folds (Boggs and Donaldson 1989, odrpack). The torque is linear in
+I1/I3, also beyond the range of real bodies. A factor known with some error adds the residual
+(factor - 1)/error.
 """
 
 import math
@@ -48,7 +49,7 @@ class Fit(NamedTuple):
         return float(self.covariance[0, 1] / math.sqrt(self.covariance[0, 0] * self.covariance[1, 1]))
 
     def told(self, known: bool) -> tuple[float, float, float, float]:
-        """Fitted ratio, its error, common factor, its error; errors are from the scatter unless `known`."""
+        """Fitted ratio, its error, common factor, its error, from the scatter unless errors are `known`."""
         errors = np.sqrt(np.diag(self.covariance) * (1.0 if known else max(self.chi2, _LEAST_SCATTER**2)))
         found = {name: (value, 0.0) for name, value in self.fixed.items()}
         pairs = zip(self.values.tolist(), errors.tolist(), strict=True)
@@ -62,7 +63,7 @@ def with_ratio(body: Body, ratio: float) -> Body:
 
 
 class Balance:
-    """Measured inclinations and rates with errors, and their fits by steady states, which have no torque."""
+    """Measured inclinations and rates with their errors, and fits of steady states to them."""
 
     def __init__(self, body: Body, theta: Floats, rate: Floats, theta_err: Floats, rate_err: Floats) -> None:
         self.odrpack = optional_library("odrpack", "lab")
@@ -86,7 +87,7 @@ class Balance:
         self.guess = float(np.median(shares)) if shares.size else 1.0
 
     def off(self, place: Floats, ratio: float, factor: float) -> Floats:
-        """Unbalanced torque (theta'' times moment of inertia about e2) at points divided by their errors."""
+        """Unbalanced torque, theta'' times the moment of inertia, at points in units of their errors."""
         inclination, rate = place * self.sigma
         # an inclination beyond the pole is the same state as one with theta - 2 pi
         inclination = np.where(np.abs(inclination) > np.pi, inclination - 2 * np.pi, inclination)
@@ -100,7 +101,7 @@ class Balance:
         return found
 
     def _resting(self, theta: Floats, precession: Floats) -> tuple[Floats, Floats, float, Floats]:
-        """Numbers of the rolling state whose centre is at rest, steady or not, whatever the moments."""
+        """theta, w1, w2 and w3 of rolling with the centre at rest, whether or not such a state is steady."""
         body, w1 = self.bodies[0]._numbers, precession * np.sin(theta)
         # for rolling contact the velocity of the centre along e2 is linear in w1 and w3
         by_w1, by_w3 = (
@@ -109,7 +110,7 @@ class Balance:
         return theta, w1, 0.0, -w1 * by_w1 / by_w3
 
     def tells(self, names: tuple[str, ...]) -> bool:
-        """Whether the points determine each of the variables, and can distinguish two of them."""
+        """Whether the points determine each of the named variables, and can distinguish two of them."""
         if self.places.shape[1] < len(names) + 2 - (len(names) < 2):
             return False
         changes = self._changes(names, self.own)
@@ -122,7 +123,7 @@ class Balance:
         )
 
     def _changes(self, names: tuple[str, ...], there: dict[str, float]) -> list[Floats]:
-        """Shifts of the points, in errors, per unit relative change of each variable."""
+        """Shifts of the points, in units of their errors, per relative change of each variable."""
         found = []
         for name in names:
             step = 1e-4 * self.own[name]
@@ -133,7 +134,7 @@ class Balance:
         return found
 
     def fit(self, names: tuple[str, ...], common: float = math.inf) -> Fit:
-        """Fit the named variables; `common` is the standard error of the factor, about 1."""
+        """Fit the named variables; `common` is the standard error of the factor, expected to be 1."""
         begin = np.array([self.guess if name == "factor" else self.own[name] for name in names])
         if math.isfinite(common):
             begin[names.index("factor")] = 1.0
@@ -179,7 +180,7 @@ class Balance:
 def doubts_of_ratio(
     found: Fit, alone: Fit, both: Fit | None, own: float, known: bool, *, fitted: bool
 ) -> str:
-    """Warning about a fit that no ratio explains, or a common factor just as well; "" without one."""
+    """Text of a warning if no I1/I3 explains the points, or a common factor of the rates does; else ""."""
     one, one_err = alone.told(known)[2:]
     off = f"{abs(one - 1):.1%} too {'large' if one > 1 else 'small'}"
     if one > 1.5 or one < 0.7:
@@ -211,5 +212,5 @@ def doubts_of_ratio(
 
 
 def _equivalent_standard_errors(errors: float, freedom: int, known: bool) -> float:
-    """Number of standard errors that is as unlikely as `errors` normal deviates: larger for few points."""
+    """Number of standard errors as unlikely as `errors` normal ones: larger if few points estimate them."""
     return errors if known else student(errors, freedom)

@@ -1,4 +1,4 @@
-"""A film beside a motion: inclination, precession and centre in each frame, in units of their errors.
+"""Comparison of a film with a motion: inclination, precession and centre in each frame.
 
 The film knows neither the axes of the motion nor the side from which it was seen. The path of the motion is
 therefore turned by phi0 and moved to a place, both by least squares, and reflected if the film turns in the
@@ -110,7 +110,7 @@ class FilmComparison(NamedTuple):
 
 
 def beside(motion: Motion, film: Filmed) -> FilmComparison:
-    """Compare a film with a motion, for `compare`; errors name the arguments as there, `body` and `theta`."""
+    """Compare a motion with a film, for `compare`, which calls these arguments `body` and `theta`."""
     if type(motion) is not Motion or getattr(motion.body, "rims", None) is not None:
         raise TypeError("body: expected the motion of a body of revolution with a circular rim")
     if motion._asked.slope or motion._asked.turning:
@@ -128,7 +128,7 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
     if seen.size < 3:
         raise ValueError(
             f"body: the motion ends ({m.status}) after {seen.size} of the {film.t.size} frames;"
-            " expected at least three"
+            " expected at least three of them"
         )
     turned = float(np.sum(np.diff(phi[seen]))) * float(film.direction[seen[-1]] - film.direction[seen[0]])
     mirrored = turned < 0
@@ -159,7 +159,7 @@ def beside(motion: Motion, film: Filmed) -> FilmComparison:
 
 
 class At(NamedTuple):
-    """A motion at times of a film, NaN before its start and after its end."""
+    """Values of a motion at times of a film; NaN before the motion starts and after it ends."""
 
     motion: Motion  #: in natural units
     theta: Floats
@@ -174,7 +174,7 @@ def begin_of(motion: Motion, film: Filmed) -> float:
 
 
 def motion_at(motion: Motion, film: Filmed, seconds: Floats) -> At:
-    """A motion, evaluated at ascending times of a film, along the axes and from the origin of the motion."""
+    """Compute a motion at ascending times of a film, in seconds, in the coordinates of the motion."""
     scale = motion.scale or film.scale
     source = motion if "pose" in motion.natural._asked.want else motion.wanting("pose")
     natural, begin = seconds / float(scale.seconds(1.0)), source.natural._asked.t0
@@ -191,7 +191,7 @@ def motion_at(motion: Motion, film: Filmed, seconds: Floats) -> At:
 
 
 def in_film(found: FilmComparison, seconds: Floats) -> At:
-    """The compared motion at other times, turned and moved into the film."""
+    """Compute the motion of a comparison at any times, in seconds, in the coordinates of the film."""
     at = motion_at(found.motion, found.film, seconds)
     if found.mirrored:
         at = at._replace(phi=-at.phi, path=at.path.conj())
@@ -200,7 +200,7 @@ def in_film(found: FilmComparison, seconds: Floats) -> At:
 
 
 def _placed(film: Filmed, phi: Floats, path: Any, error: Floats) -> tuple[float, complex]:
-    """The angle and the place that bring a path into the film.
+    """Angle and place (x + iy) by which a computed path is turned and moved to fit that in a film.
 
     The direction leaves open which end of the tube is the upper one. Of the two angles, the one that brings
     the path of the centre nearer to that of the film is taken.

@@ -47,8 +47,8 @@ class Bounces(NamedTuple):
     restitution_err : float
         Standard error of `restitution`.
     height : float
-        Height of the drop, in metres, if the first click in `t` is the first impact. It assumes that this
-        impact had the same restitution as the others, or that of their trend.
+        Height of the drop, in metres, if the first click in `t` is the first impact. The height assumes that
+        this impact had the same restitution as the others, or followed their trend.
     height_err : float
         Standard error of `height`.
     rebound : float
@@ -182,14 +182,15 @@ def fit_bounces(
     -----
     UserWarning
         If the ratio of the intervals changes along the bounces, as it does for a ball that air slows down.
-        If more than a third of the clicks are no bounces, or of the bounces are missed, or at over 100 m.
+        If more than a third of the clicks are no bounces, or more than a third of the bounces are missed.
+        If the height of the drop exceeds 100 m.
 
     Notes
     -----
     The intervals of successive bounces give the restitution, and together with gravity the height after each
     bounce. The sound of the first impact does not tell how far the ball had fallen: `height` extrapolates the
-    intervals to the one before, and usually is a little too small, since faster impacts lose more. Neither
-    the radius of the ball nor its spin matters; the air and a table that gives way do.
+    intervals to one before the first impact, and usually is a little too small, since faster impacts lose
+    more. Neither the radius of the ball nor its spin matters; the air and a table that gives way do.
 
     Clicks that do not fit are left out, and missed ones are counted: of all rows of clicks that are off by
     less than 12 % of their intervals, with at most two missed ones in a row, the likeliest is taken. The
@@ -226,7 +227,7 @@ def fit_bounces(
     bent = _fitted(at, number_, 2, one) if at.size > _LEAST else None
     e = math.exp(line.beta[1])
     if not e < 1:
-        raise ValueError(f"t: the intervals shrink by a factor of {e:.4g}: expected less than 1")
+        raise ValueError(f"t: each interval is {e:.4g} times the one before: expected less than 1")
     e_err = e * math.sqrt(line.covariance[1, 1])
     trend, trend_err = math.nan, math.nan
     if bent is not None:
@@ -265,18 +266,19 @@ def fit_bounces(
 
 
 def _doubts(found: Bounces, bends: bool, shape: "_Line") -> list[str]:
-    """Warnings about bounces."""
+    """Texts of warnings: too high a drop, a ratio of intervals that changes, many wrong or missed clicks."""
     high = found.height > _HIGHEST
     said = [f"t: such bounces follow a drop from {found.height:.3g} m; are these milliseconds?"] * high
     if bends:
         last = float(found.bounce[-1])
         ends = [math.exp(shape.at(x)[0] - shape.at(x - 1)[0]) for x in (0.0, last - 1)]
-        told = f"the ratio of the intervals changes, from {ends[0]:.4g} at the first impact to {ends[1]:.4g}"
+        told = f"t: the ratio of the intervals changes, from {ends[0]:.4g} at the first impact"
+        told += f" to {ends[1]:.4g} at the end"
         said.append(f"{told}; the restitution depends on the speed, or the air slows the ball")
     if found.extra.size > _LOST * (found.extra.size + found.t.size):
-        said.append(f"{found.extra.size} of {found.extra.size + found.t.size} clicks are no bounces")
+        said.append(f"t: {found.extra.size} of {found.extra.size + found.t.size} clicks are no bounces")
     if found.missed.size > _LOST * (found.bounce[-1] + 1):
-        said.append(f"{found.missed.size} of {found.bounce[-1] + 1} bounces were not heard")
+        said.append(f"t: {found.missed.size} of {found.bounce[-1] + 1} bounces were not heard")
     return said
 
 
@@ -285,7 +287,7 @@ def _click_times(t: Reals) -> Floats:
     if times.ndim != 1:
         raise ValueError(f"t: expected a list of times, not shape {times.shape}")
     if np.isinf(times).any():
-        raise ValueError("t: expected finite times")
+        raise ValueError("t: expected finite times, or NaN for missing ones")
     return np.unique(times[np.isfinite(times)])
 
 
@@ -298,7 +300,9 @@ def _fall(
     begun = number("released", si("released", released, "second"))
     lasts = first - begun
     if not 0 < lasts < 100:
-        raise ValueError(f"released = {begun!r}: expected a time before the first bounce, at {first:.6g} s")
+        raise ValueError(
+            f"released = {begun!r}: expected a time up to 100 s before the first bounce, at {first:.6g} s"
+        )
     # both ends of the fall are clicks, or known as well as these
     share = math.sqrt(2) * errors[1] / lasts
     e = math.exp(after) / (2 * lasts)
@@ -334,7 +338,7 @@ def _doubt(times: Floats, row: list[tuple[int, int]]) -> float:
 
 
 def _without_strangers(times: Floats, row: list[tuple[int, int]], error: float) -> list[tuple[int, int]]:
-    """A row without a click at one of its ends that the others do not expect there, such as a knock."""
+    """A row of bounces without its first or last click if this does not fit the others, such as a knock."""
     for end in (0, -1):
         rest = row[1:] if end == 0 else row[:-1]
         if len(rest) < _LEAST + 1 or abs(row[end][0] - rest[end][0]) > 1:
@@ -349,7 +353,7 @@ def _without_strangers(times: Floats, row: list[tuple[int, int]], error: float) 
 
 
 def _followed(times: Floats, row: list[tuple[int, int]], way: int) -> list[tuple[int, int]]:
-    """A row of bounces with those after it, or before it."""
+    """Extend a row of bounces by the clicks after it (`way` is 1) or before it (`way` is -1)."""
     row = list(row)
     skipped = 0
     while skipped <= _SKIPPED:
@@ -378,7 +382,7 @@ def _followed(times: Floats, row: list[tuple[int, int]], way: int) -> list[tuple
 
 
 def _logarithms(at: Floats, n: Numbers) -> tuple[Floats, Floats]:
-    """Numbers and logarithms of the intervals; one over missed bounces gives its first part."""
+    """Numbers of the intervals, and logarithms; a gap with missed bounces counts by its first interval."""
     gap, y = np.diff(n), np.log(np.diff(at))
     start, first, e = n[:-1].astype(np.float64), y, 1.0
     for _ in range(20 if (gap > 1).any() else 0):
@@ -388,7 +392,7 @@ def _logarithms(at: Floats, n: Numbers) -> tuple[Floats, Floats]:
 
 
 def _slope(x: Floats, y: Floats) -> float:
-    """Slope of the line through points; 0 for a single one."""
+    """Slope of the straight line that fits points best; 0 for a single point."""
     off = x - x.mean()
     return float(off @ y / (off @ off)) if x.size > 1 else 0.0
 
@@ -409,10 +413,11 @@ class _Line(NamedTuple):
 
 
 def _fitted(at: Floats, n: Numbers, degree: int, error: float) -> "_Line":
-    """The polynomial by generalised least squares; it needs an interval more than coefficients.
+    """Fit the polynomial by generalised least squares, to at least one interval more than coefficients.
 
-    The weight of each ratio of the two scatters is its restricted likelihood. Without a known error of the
-    clicks, the restitution scatters by at least 0.3 % for each millisecond of theirs.
+    The result is a mean over ratios of the two scatters, of the clicks and of the restitution, weighted by
+    restricted likelihood. Without a known error of the clicks, the restitution is taken to scatter by at
+    least 0.3 % for each millisecond by which the clicks scatter.
     """
     number_, y = _logarithms(at, n)
     many, long = y.size, np.diff(at)

@@ -1,4 +1,4 @@
-"""The cells of a line of a table, and the numbers in them."""
+"""Splitting of a line of a table into cells, and reading of the numbers in the cells."""
 
 import math
 from typing import NamedTuple
@@ -104,7 +104,8 @@ class Split(NamedTuple):
 def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset[str]) -> Split | None:
     """Separate columns of text, such as names, from columns of numbers; None if all are of one kind.
 
-    The line of names is the first that is as wide as the table. ValueError if a column has numbers and texts.
+    The line of names is the first line with as many cells as the table has columns. ValueError if a column
+    has numbers and texts.
     """
     try:
         rows = [(at, [cell.strip() for cell in split(line, delimiter)]) for at, line in lines]
@@ -148,7 +149,7 @@ def without_texts(lines: list[tuple[int, str]], delimiter: str, units: frozenset
 
 
 def _reads_as_number(cell: str) -> bool:
-    """Whether a cell is a number, or one that is infinite or written in a way that tables must not have."""
+    """Whether a cell looks like a number, even one that tables must not have, such as inf or 1e."""
     bare = cell.strip(" \t\"'")
     if bare.lower() in MISSING:
         return False

@@ -1,4 +1,4 @@
-"""The times of clicks in a recording: where the sound rises at once above what was heard just before."""
+"""Times of clicks in a recording: where the sound suddenly becomes louder than just before."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _START = 0.3  #: A click begins where it reaches this share of its first peak.
 
 
 def clicks(t: Reals, sound: Reals) -> Floats:
-    """Times of the clicks of a recording; an error names a wrong argument."""
+    """Times of the clicks of a recording, in seconds; errors name the argument at fault."""
     time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
     if x.ndim != 1 or time.shape != x.shape:
         raise ValueError(f"t and sound: expected equal shapes (n,), not {time.shape} and {x.shape}")

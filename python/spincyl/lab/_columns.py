@@ -118,8 +118,8 @@ class Columns(dict[str, Floats]):
         if name in self._written:
             return self[self._written[str(name)]]
         if name in self.texts:
-            raise KeyError(f"{name!r}: a column of text; .texts[{name!r}] has its cells")
-        raise KeyError(f"{name!r}: expected one of {', '.join(map(repr, self))}")
+            raise KeyError(f"{name!r}: a column of text, not of numbers; its cells are in .texts[{name!r}]")
+        raise KeyError(f"{name!r}: no such column; expected one of {', '.join(map(repr, self))}")
 
     def __contains__(self, name: object) -> bool:
         return super().__contains__(name) or name in self._written
@@ -175,26 +175,26 @@ class Picked(NamedTuple):
 
     @property
     def in_si(self) -> Floats:
-        """The numbers in SI."""
+        """The numbers of the column, converted to SI."""
         return self.values * self.factor
 
 
 def picked(
     told: str, columns: Columns, names: Sequence[str], units: Mapping[str, float], *, wide: bool = False
 ) -> Picked:
-    """The column with the first of these names that the table has, (n,), or (n, k) if `wide`.
+    """The first of the columns `names` that a table has, of the shape (n,), or (n, k) if `wide`.
 
-    An error begins with `told`, and lists the columns if none has such a name.
+    An error begins with `told`, and lists the columns if the table has none of these.
     """
     key = next((k for k in names if k in columns), None)
     if key is None:
         others = f" (or {', '.join(map(repr, names[1:]))})" if len(names) > 1 else ""
         there = ", ".join(map(repr, columns)) or "none"
-        raise ValueError(f"{told}: expected a column {names[0]!r}{others}; there are {there}")
+        raise ValueError(f"{told}: expected a column {names[0]!r}{others}; the table has {there}")
     unit = columns.units[key]
     if unit not in units:
         known = ", ".join(u for u in units if u)
-        raise ValueError(f"{told}: unit {unit!r} of {key}: expected one of {known}")
+        raise ValueError(f"{told}: unit {unit!r} of the column {key}: expected one of {known}")
     values = np.asarray(reals(f"{told}[{key!r}]", columns[key]), np.float64)
     if values.ndim != 1 + wide:
         raise ValueError(f"{told}: expected columns of equal length; {key} has {values.shape}")

@@ -101,7 +101,7 @@ class Comparison(NamedTuple):
 
     @property
     def _verdict(self) -> str:
-        """Whether the points are in accord with the body as built."""
+        """Text that says whether the points agree with the body as built."""
         most = float(self.away.max())
         words = ("agrees with", "doubtful beside", "disagrees with")[(most > 2.0) + (most > 3.0)]
         return f"{most:.1f} errors from a steady state: {words} the body as built"
@@ -142,7 +142,7 @@ class Comparison(NamedTuple):
         return framed("Comparison", rows, drawing(self.body, middle, "θ"))
 
     def _rates(self) -> str:
-        """The range of the turns per second, if these were given."""
+        """Text with the range of the turns per second, or "" if reduced rates were given."""
         low, high = self.hertz.min(), self.hertz.max()
         return "" if math.isnan(self.unit) else f", {low:.4g} to {high:.4g} turns a second"
 
@@ -157,7 +157,7 @@ class Comparison(NamedTuple):
         return with_ratio(self.body, max(self.ratio, 0.5))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw the measurement with error bars, and the branches of the body as built and as fitted."""
+        """Draw the points with error bars, and the steady states of the body as built and as fitted."""
         shown = self if self.factor == 1 else self._replace(rate=self.rate / self.factor)
         drawn: Axes = function_of_method("Comparison.plot")(shown, ax)
         if self.factor != 1:
@@ -196,7 +196,7 @@ class Comparison(NamedTuple):
         return "\n".join(lines)
 
     def _about_points(self) -> list[tuple[str, str]]:
-        """One or two points, which determine no ratio, beside the steady states of the body."""
+        """Rows of the report for one or two points: each with its distance from the nearest steady state."""
         rows = [("body", repr(self.body))]
         for theta, theta_err, rate, rate_err, away in zip(
             *(np.degrees(self.theta), np.degrees(self.theta_err), self.rate, self.rate_err, self.away),
@@ -247,12 +247,12 @@ def compare(
     ----------
     body : Body or Motion
         Single body with the aspect ratio and the moments of inertia as built. Or the motion of a body of
-        revolution on a level table, to compare with a film; its time 0 is that of the film.
+        revolution on a level table, to compare with a film; both have the same time 0.
     theta : array_like, 1-D or a number, or Filmed
-        For a motion: the film, as `from_above` returns it, and no further arguments. For a body:
-        Measured inclinations in radians, up to pi/2; also larger for balls, and for bodies with steady states
-        there. One or two points, such as a single film, need their errors: they are compared with the body as
-        built, and no ratio is fitted.
+        For a motion: the film, as `from_above` returns it, and no further arguments. For a body: Measured
+        inclinations in radians, up to pi/2, or larger for balls and other bodies that have steady states
+        beyond pi/2. One or two points, such as a single film, need their errors: they are compared with the
+        body as built, and no ratio is fitted.
     rate : array_like, 1-D or a number
         Measured reduced rates: turns per second divided by `body.critical_hertz`.
     hertz : array_like, 1-D
@@ -362,7 +362,8 @@ def compare(
     # a real body has I3 <= 2 I1; measurement errors may bring the ratio slightly below 1/2
     if not found.success or not ratio + 5 * ratio_err >= 0.5:
         raise ValueError(
-            f"theta and rate: no real body has the fitted I1/I3, {ratio:.3g}; give turns per second as hertz="
+            f"theta and rate: no real body has the fitted I1/I3, {ratio:.3g}; are the rates turns per second?"
+            " Give them as hertz="
         )
     said = doubts_of_ratio(found, alone, both, own, known, fitted=common > 0)
     if said:
@@ -394,7 +395,7 @@ def compare(
 def _reduced(
     body: Body, rate: Reals | None, rate_err: Reals | None, hertz: Reals | None, hertz_err: Reals | None
 ) -> tuple[Reals, Reals | None, float]:
-    """Reduced rates, their errors, and turns per second of a reduced rate of 1; NaN if rates were given."""
+    """Reduced rates, their errors, and turns per second at the reduced rate 1; NaN if `rate` was given."""
     if (rate is None) == (hertz is None):
         raise TypeError("rate, hertz: give exactly one of them")
     if hertz is None:
@@ -413,7 +414,7 @@ def _reduced(
 
 
 def _film_beside(body: object, theta: object, more: dict[str, object]) -> FilmComparison:
-    """A film beside a motion; TypeError unless there are just these two."""
+    """Compare a motion with a film; TypeError if any other argument was given."""
     if not isinstance(body, Motion):
         raise TypeError(f"body: expected a Motion to compare with the film, not {type(body).__name__}")
     if not isinstance(theta, Filmed):

@@ -15,14 +15,14 @@ _BYTES_PER_READ = 1 << 20
 
 
 def contents(path: str | PathLike[str]) -> bytes:
-    """The bytes of a file."""
+    """Read the bytes of a file; ValueError for more than `MOST_BYTES`."""
     found = path_of("path", path)
     with found.open("rb") as file:
         return limited(file, str(found), MOST_BYTES)
 
 
 def limited(file: IO[bytes], name: str, most: int) -> bytes:
-    """Read a file in a zip file, even if its stated size is wrong; ValueError for more than `most` bytes."""
+    """Read an open file, whatever size it states in a zip file; ValueError for more than `most` bytes."""
     pieces, left = [], most
     while piece := file.read(_BYTES_PER_READ):
         pieces.append(piece)

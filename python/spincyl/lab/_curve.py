@@ -1,4 +1,4 @@
-"""The drift of a law as a curve to fit: smooth in the coefficients and in the position on the clock.
+"""The drift under a loss law as a curve to fit: smooth in the coefficients and in time.
 
 Every law is linear in its coefficient, so the drift with coefficients `lam * k` is that with `k` and a clock
 that runs `lam` times as fast. With the centre at rest one drift of unit coefficient therefore serves all
@@ -29,10 +29,10 @@ _TANGENT_SHARE = 1e-6
 class Curve:
     """The drift of a body under one law or a sum, as a function of coefficients and first inclination.
 
-    `ends` are the least and the greatest first inclination. The tabulated drift starts at the end that it
-    passes first, the greatest if the drift goes `down`. For rolling, one more number may follow the
-    coefficients: the inclination at which the centre was at rest, as a share of the way from the first
-    inclination to that end.
+    `ends` are the least and the greatest first inclination. The tabulated drift starts at the greatest if the
+    drift goes `down`, to smaller inclinations, and else at the least. For rolling, one more number may follow
+    the coefficients: the inclination at which the centre was at rest, as a share of the way from the first
+    inclination to the end where the tabulated drift starts.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Curve:
         return total
 
     def drift(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
-        """The drift from an inclination, with its warnings."""
+        """The drift that starts at the inclination `theta`, with its warnings."""
         law, rested = self.law(coefficients), self.rested(coefficients, theta)
         start: Any = theta
         if rested != theta:
@@ -66,13 +66,13 @@ class Curve:
         return theta + share * (self.ends[1 if self.down else 0] - theta)
 
     def quietly(self, coefficients: Sequence[float] | Floats, theta: float) -> Any:
-        """The same drift without warnings, for trials of a fit."""
+        """The result of `drift` without warnings, for trials of a fit."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return self.drift(coefficients, theta)
 
     def times(self, coefficients: Sequence[float] | Floats, theta: Floats) -> Floats:
-        """Times at which a drift from `top` passes inclinations; if rolling, a drift from the first one."""
+        """Times at which a drift from `top` (if rolling, from the first inclination) passes inclinations."""
         begin = self.top
         if self.centre != "rest":
             begin = float(theta.max() if self.down else theta.min())
@@ -88,13 +88,13 @@ class Curve:
     def __call__(
         self, names: Sequence[str], time: Floats, coefficients: Sequence[float] | Floats, theta: float
     ) -> Floats:
-        """Rows of "theta" and "precession", at times after the passage of `theta`."""
+        """Rows of the outputs `names`, "theta" or "precession", at times since the drift passed `theta`."""
         drift, pace, begun = self._on_the_clock(coefficients, theta)
         clock = begun + pace * time
         return np.stack([_continued(getattr(drift, name), clock, float(drift.stops_at)) for name in names])
 
     def _on_the_clock(self, coefficients: Sequence[float] | Floats, theta: float) -> tuple[Any, float, float]:
-        """A tabulated drift, the factor by which its clock runs fast, and its reading at `theta`."""
+        """A tabulated drift, the factor from time to its clock, and the reading of its clock at `theta`."""
         if self.centre == "rest":  # a fit may exceed its bounds slightly
             theta = min(max(float(theta), self.ends[0]), self.ends[1])
         total = float(sum(coefficients[: len(self.laws)]))
@@ -123,10 +123,10 @@ def _continued(shown: Any, clock: Floats, stop: float) -> Floats:
 
 
 def branches(body: Body, centre: str) -> list[Floats]:
-    """The ranges of inclination that a single drift can pass.
+    """Ranges of inclination that a single drift can pass through, as arrays of inclinations in radians.
 
-    They end at the forbidden band; with the centre at rest also at extremes of the energy, for rolling also
-    where stability is lost.
+    The ranges end at the forbidden band; with the centre at rest also at extremes of the energy, for rolling
+    also where stability is lost.
     """
     most = steepest(body)
     wide = np.linspace(0.0, most, math.ceil(4000 * most / (np.pi / 2)) + 1)[1:]

@@ -23,7 +23,7 @@ def example(name: str) -> Path:
     name : {"tube_from_above", "tube_project", "flicks", "spin_down", "whirr", "class",
         "bounces"}
         "tube_from_above" has both ends of a tube, tracked in a film and exported by Tracker; "tube_project"
-        is the project of Tracker (for `read_tracker` and `from_above`). "flicks" has the inclination in
+        is its Tracker project (for `read_tracker` and `from_above`). "flicks" has the inclination in
         degrees and the turns per second of ten flicks of this tube (for `read_table` and `compare`).
         "spin_down" is a disk that spins down on film (for `read_table` and `fit_losses`), and "whirr" is its
         sound (for `read_sound` and `wobble`). "class" has the times in which a 2-euro coin stops, measured by

@@ -1,4 +1,4 @@
-"""Figures of measured data: steady states beside branches, and a spin-down with the fitted drifts."""
+"""Figures of measured data: measured and computed steady states, and a spin-down with fitted drifts."""
 
 import warnings
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ _MOST_LAWS = 4  # number of laws that are drawn
 
 @sized
 def comparison(found: Comparison, ax: "Axes | None" = None) -> "Axes":
-    """Draw measured steady states with error bars, and the branches of the given and of the fitted body.
+    """Draw measured steady states with error bars, and those of the body as built and as fitted.
 
     Parameters
     ----------

@@ -111,8 +111,8 @@ class Filmed(NamedTuple):
     counts as scatter: give `mark_err` if the tube nods or circles within a few frames. The errors are then
     sqrt(2) mark_err for the first two, and mark_err/sqrt(2) for x and y.
 
-    The error of theta is half of the change of arcsin over the range of the line with its error. The
-    precession is the slope of the parabola that fits the directions in `window` frames best, at the frame
+    The error of theta is half of the change of arcsin(line/length) from line minus error to line plus error.
+    The precession is the slope of the parabola that fits the directions in `window` frames best, at the frame
     itself; it is a sum of the directions with weights, and its error is the root of the sum of the squares of
     weight times error. The values in neighbouring frames share directions, and are correlated. `ruler` is
     added to the errors of theta, x and y, although it is the same error in all frames.
@@ -171,7 +171,7 @@ class Filmed(NamedTuple):
 
     @property
     def _scatter(self) -> Scatter:
-        """Standard errors in a frame: those of the marks, or of the scatter."""
+        """Standard errors in a single frame, from the given error of the marks or from their scatter."""
         if math.isfinite(self.mark_err):
             both = math.sqrt(2.0) * self.mark_err
             return Scatter(both, both, both / 2)
@@ -231,7 +231,7 @@ class Filmed(NamedTuple):
         camera: Sequence[float] | None = None,
         ax: "Axes | None" = None,
     ) -> "Axes":
-        """Draw a motion on a frame of the film, beside the marks.
+        """Draw the computed tube of a motion on a frame of the film, beside the marks of both ends.
 
         The circles are the marks of one turn, filled in this frame. The lines are the outline of the computed
         tube in this frame, and the computed paths of its ends during this turn; the crosses are its ends.
@@ -264,7 +264,7 @@ class Filmed(NamedTuple):
         Raises
         ------
         ValueError
-            If the camera is not known, or the file has no such frame. As in `compare`.
+            If the camera is not known, or the file has no such frame. If `compare` raises an error.
         TypeError
             If an argument is of the wrong type; the message names it.
         ImportError
@@ -279,7 +279,7 @@ class Filmed(NamedTuple):
 
 
 def differences(t: Floats) -> tuple[Any, Floats]:
-    """Rows of four neighbouring frames without a gap, and the weights of their third difference."""
+    """Indices of four neighbouring frames without a gap, (m, 4), and weights of their third difference."""
     if t.size < _ROWS:
         return np.empty((0, _ROWS), int), np.empty((0, _ROWS))
     rows = np.arange(t.size - _ROWS + 1)[:, np.newaxis] + np.arange(_ROWS)
@@ -290,7 +290,7 @@ def differences(t: Floats) -> tuple[Any, Floats]:
 
 
 def error_of_scatter(off: Floats) -> float:
-    """Standard error of values, from their third differences without outliers; NaN without a difference."""
+    """Standard error of values from their third differences, without outliers; NaN if there are none."""
     if not off.size:
         return math.nan
     middle = 1.4826 * float(np.median(np.abs(off)))

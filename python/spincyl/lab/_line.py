@@ -1,7 +1,8 @@
-"""The usual first analysis in the literature: a power law of the time left, a straight log-log line.
+"""Power law of the time left until a body stops: a straight line in a log-log diagram.
 
-Its exponent is biased unless the inclination is small: by 0.01 to 0.03 from 0.3 rad on, which is many times
-the error from the scatter. It suggests which laws to try, but cannot decide between them.
+This is the usual first analysis in the literature. The exponent is biased unless the inclination is small: by
+0.01 to 0.03 from 0.3 rad on, which is many times the error from the scatter. The line suggests which laws to
+try, but cannot decide between them.
 """
 
 from typing import NamedTuple
@@ -35,7 +36,7 @@ class Line(NamedTuple):
 
 
 def line(t: Floats, y: Floats) -> Line | None:
-    """The straightest log-log line of positive values against the time left, with a free stopping time.
+    """Fit a power law of the time left to positive values, and the stopping time that makes it straightest.
 
     None if the best stopping time is not within 100 times the duration of the data after the last time.
     """

@@ -186,7 +186,7 @@ def fit_losses(
 
 
 class _RawFit(NamedTuple):
-    """A fit by odrpack: parameters, and their covariance in units of the errors."""
+    """Result of a fit by odrpack: parameters, and their covariance if the given errors are true."""
 
     data: SpinDown
     curve: Curve
@@ -212,7 +212,7 @@ def _fit_every_law(
     sums: Any,
     told: Progress | None,
 ) -> tuple[list[_RawFit], list[tuple[str, Any, Exception]]]:
-    """The fits of every law, and the laws that are refused with the reasons."""
+    """The fits of all laws that can be fitted, and the other laws with the reasons."""
     found: list[_RawFit] = []
     refused: list[tuple[str, Any, Exception]] = []
     count, rounds = len(kept) * len(sums), 2  # the second with errors that the first has estimated
@@ -271,7 +271,7 @@ def _doubts_of_laws(body: Body, best: _RawFit, fits: list[FittedLoss]) -> list[s
 
 
 def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | None) -> _RawFit:
-    """Fit one law, or a sum, from given parameters or from a guess."""
+    """Fit one law, or a sum, starting at the parameters `begin`, or at a guess if they are None."""
     at: Floats = _first_guess(odrpack, data, curve) if begin is None else begin.copy()
     many = len(curve.laws)
     if curve.centre == "rolling" and at.size == many + 1:
@@ -312,7 +312,7 @@ def _fitted_curve(odrpack: Any, data: SpinDown, curve: Curve, begin: Floats | No
 
 
 def _first_guess(odrpack: Any, data: SpinDown, curve: Curve) -> Floats:
-    """A guess of coefficients and first inclination. Times are proportional to those of a tabulated drift."""
+    """Guess coefficients and first inclination, by comparing the times with those of a tabulated drift."""
     if len(curve.laws) > 1:
         alone = [
             _fitted_curve(odrpack, data, Curve(curve.body, [law], curve.centre, data.ends, data.down), None)
@@ -372,7 +372,7 @@ def _refuse_degenerate(found: _RawFit) -> None:
 def _covariance(found: _RawFit) -> Floats:
     """The covariance of the parameters; estimated errors follow from the scatter about this law.
 
-    If points scatter by more than their given errors, it is enlarged accordingly.
+    If points scatter by more than their given errors, the covariance is enlarged accordingly.
     """
     return found.covariance * (found.chi2 / found.freedom if found.data.estimated else found.spread)
 
@@ -423,7 +423,7 @@ def _fitted_loss(found: _RawFit, aic: float, daic: float) -> FittedLoss:
 
 
 def _slope_of_stop(curve: Curve, beta: Floats, k: int, error: float) -> float:
-    """Derivative of the stopping time by a parameter."""
+    """Derivative of the stopping time with respect to parameter number `k`, whose error is `error`."""
     size = beta[k]
     low, high = curve.ends if k == len(beta) - 1 else (0.5 * size, 2 * size)
     if len(curve.laws) <= k < len(beta) - 1:

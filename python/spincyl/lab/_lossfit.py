@@ -323,7 +323,7 @@ def printed(found: FittedLoss) -> list[tuple[float, float, str]]:
 
 
 def _units(found: FittedLoss) -> Floats:
-    """Factor of each coefficient to the unit of `from_si`."""
+    """Factors that convert the coefficients of a fit to the units of `from_si`."""
     return np.array([law.in_si(found.drift.body) / law.coefficient for law in found.law.laws], np.float64)
 
 

@@ -1,4 +1,4 @@
-"""Numbers of a motion fitted to a measured one: friction, restitution, losses and the start at once."""
+"""Fit of a motion to a measured one: friction, restitution, losses and initial state, all at once."""
 
 import math
 import warnings
@@ -195,7 +195,7 @@ def fit_motion(
     instance_of("guess", guess, Motion)
     if getattr(guess.body, "rims", None) is not None or type(guess) is not Motion:
         raise TypeError(
-            "guess: expected the motion of a body of revolution with a circular rim, not of this body"
+            "guess: expected the motion of a body of revolution with a circular rim, as roll returns it"
         )
     least_squares = optional_library("scipy.optimize", "lab").least_squares
     one_of("loss", loss, _LOSSES)
@@ -230,7 +230,7 @@ def fit_motion(
 
 
 def _free(known: dict[str, Number], free: Any) -> dict[str, Number]:
-    """The free numbers with the bounds of the user."""
+    """The numbers to fit, with the bounds given in `free`; errors name the argument `free`."""
     pairs = free.items() if isinstance(free, Mapping) else None
     listed = isinstance(free, Mapping | list | tuple | set | frozenset)
     names = [*free] if listed else []
@@ -263,7 +263,7 @@ def _free(known: dict[str, Number], free: Any) -> dict[str, Number]:
 
 
 class _Fit:
-    """The residuals as a function of the numbers, in units of their sizes, from 1 at the guess."""
+    """The residuals as a function of the free numbers, which are scaled so that all are 1 at the guess."""
 
     def __init__(self, guess: Motion, data: Measured, numbers: dict[str, Number]) -> None:
         self.guess, self.numbers = guess, numbers
@@ -302,7 +302,7 @@ class _Fit:
         return np.concatenate([(off[n] / self.data.errors[n])[self.seen(n, share)] for n in off])
 
     def seen(self, name: str, share: float) -> Any:
-        """Whether each value of an output was measured, and in the first `share` of the duration."""
+        """Whether each value of an output was measured and belongs to the first `share` of the duration."""
         t = self.data.t
         early = t <= t[0] + share * (t[-1] - t[0])
         return np.isfinite(self.data.values[name]) & early[:, np.newaxis]
@@ -403,7 +403,7 @@ class _Fit:
 
 
 def _inverse(jacobian: Floats) -> tuple[Floats, Any]:
-    """Inverse of J^T J, and which numbers it does not determine."""
+    """Inverse of J^T J with the Jacobian J, and which numbers the points do not determine."""
     effect = np.linalg.norm(jacobian, axis=0)
     scale = np.where(effect > _NONE * effect.max(), effect, np.inf)
     _, size, axes = np.linalg.svd(jacobian / scale, full_matrices=False)

@@ -83,7 +83,7 @@ def over(
 
 
 def ends_of_tube(film: Filmed, at: At) -> Any:
-    """Computed positions x + iy of both ends of the tube, (n, 2), in metres; NaN outside the motion."""
+    """Computed positions x + iy of both ends of the tube, (n, 2), metres; NaN before and after the motion."""
     half = float(film.scale.metres(film.body.ell + film.body.fillet))
     reach = half * np.sin(at.theta) * np.exp(1j * at.phi)
     return np.column_stack([at.path + reach, at.path - reach])
@@ -102,7 +102,7 @@ def outline_of_tube(film: Filmed, at: At) -> list[Any]:
 
 
 def _camera_of(film: Filmed, camera: Sequence[float] | None) -> Camera:
-    """The given axes and scale, or those of the project."""
+    """The given axes and scale of the film, or those of its Tracker project."""
     if camera is None:
         if film.camera is None:
             raise ValueError(
@@ -117,7 +117,7 @@ def _camera_of(film: Filmed, camera: Sequence[float] | None) -> Camera:
 
 
 def _nearest(film: Filmed, t: float) -> int:
-    """Row of the frame nearest to a time."""
+    """Row in the film of the frame that is nearest to the time `t`, in seconds."""
     low, high = float(film.t[0]), float(film.t[-1])
     if not low <= t <= high:
         raise ValueError(f"t = {t!r}: expected a time of the film, from {low:.6g} to {high:.6g} s")
@@ -125,7 +125,7 @@ def _nearest(film: Filmed, t: float) -> int:
 
 
 def _picture(frames: Any, index: int) -> Any:
-    """The picture of a frame: the given one, that in the file, or that frame of a film."""
+    """The picture of a frame: a given array, the picture in a file, or frame `index` of a film."""
     if isinstance(frames, str | PathLike):
         path = path_of("frames", frames)
         pictures: Any = optional_library("matplotlib.image", "film")
@@ -146,7 +146,7 @@ def _picture(frames: Any, index: int) -> Any:
 
 
 def _frame_of_film(path: Any, index: int) -> bytes:
-    """A frame of a film by its number, as PNG, by ffmpeg."""
+    """Frame `index` of a film as the bytes of a PNG picture, extracted by ffmpeg."""
     if not path.is_file():
         raise FileNotFoundError(f"frames: there is no file {path}")
     if index < 0:
@@ -164,7 +164,7 @@ def _frame_of_film(path: Any, index: int) -> bytes:
 
 
 def _empty_frame(ax: "Axes", places: Any) -> None:
-    """Limits of a frame without a picture, in pixels, with y downward."""
+    """Set the limits of axes without a picture, in pixels, with y downward."""
     x, y = places.real, places.imag
     margin = _MARGIN * float(max(np.ptp(x), np.ptp(y)))
     ax.set(xlim=(x.min() - margin, x.max() + margin), ylim=(y.max() + margin, y.min() - margin))

@@ -1,4 +1,4 @@
-"""Measured inclinations and rates with their errors, checked."""
+"""Checks of the measured inclinations and rates, and of their errors, that are given to `compare`."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ LEAST = 3  #: With fewer points no ratio is fitted.
 def points(
     theta: Reals, rate: Reals, theta_err: Reals | None, rate_err: Reals | None, body: Body
 ) -> dict[str, Floats]:
-    """The measured points with errors, without missing values; an error names a wrong argument."""
+    """The measured points with errors, without missing values; errors name the argument at fault."""
     x = {name: np.asarray(reals(name, v), np.float64) for name, v in (("theta", theta), ("rate", rate))}
     if x["theta"].ndim == x["rate"].ndim == 0:
         x = {name: values[np.newaxis] for name, values in x.items()}

@@ -62,7 +62,7 @@ def project(raw: bytes, name: str, encoding: str | None) -> dict[str, Columns] |
 
 
 def _decoded(raw: bytes, name: str, encoding: str | None) -> str:
-    """The text in the given, marked or declared encoding, if that is right; else decoded like any file."""
+    """The text of a project in the given, marked or declared encoding, or else decoded like any text file."""
     declared = _DECLARED.match(raw[:400])
     if encoding is not None:
         return as_told(raw, name, encoding)
@@ -87,22 +87,22 @@ def _tree(text: str) -> Any:
 
 
 def _properties(of: Any) -> dict[str, Any]:
-    """The properties of an object, by name."""
+    """The properties of an XML object of a project, by name."""
     return {} if of is None else {one.get("name", ""): one for one in of if one.tag == "property"}
 
 
 def _object_of_property(of: Any) -> Any:
-    """The object that a property holds; None for any other."""
+    """The XML object in a property; None for a property without an object."""
     return None if of is None else of.find("object")
 
 
 def _text(of: Any, default: str = "") -> str:
-    """The text of a property."""
+    """The text of an XML property, or `default` if the property is missing or empty."""
     return default if of is None or not of.text else str(of.text).strip().translate(_BYTE_OF_PRIVATE)
 
 
 def _finite(own: dict[str, Any], name: str, default: float = math.nan) -> float:
-    """A number of an object, which has to be finite."""
+    """The property `name` of an object as a number; ValueError if it is missing or not a finite number."""
     said = _text(own.get(name), str(default))
     try:
         found = float(said)
@@ -116,7 +116,7 @@ def _finite(own: dict[str, Any], name: str, default: float = math.nan) -> float:
 
 
 def _frames(own: dict[str, Any]) -> Iterator[tuple[int, dict[str, Any]]]:
-    """The numbers of the frames for which there is data, and the data."""
+    """Numbers of the frames for which an object has data, and the data of each frame."""
     for name, one in _properties(own.get("framedata")).items():
         data = _object_of_property(one)
         if data is not None and re.fullmatch(r"\[\d{1,9}\]", name):
@@ -124,7 +124,7 @@ def _frames(own: dict[str, Any]) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def _tracks_of_points(root: Any) -> dict[str, Columns]:
-    """The tracks of the points of a project, in the units of its calibration and in seconds."""
+    """The tracks of the point masses of a project, in the unit of its scale of length and in seconds."""
     kind = root.get("class", root.tag)
     if kind != _PANEL:
         raise ValueError(f"of the kind {kind.rpartition('.')[2]!r}: open it in Tracker and save a single tab")
@@ -174,7 +174,7 @@ def _tracks_of_points(root: Any) -> dict[str, Columns]:
 
 
 def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str]]:
-    """Positions of the marks by track and frame, and the names of other tracks."""
+    """Positions of the marks of point masses by track and frame, and the names of all other tracks."""
     marks: dict[str, dict[int, complex]] = {}
     others = []
     for one in own.get("tracks", ()):
@@ -193,7 +193,7 @@ def _marks(own: dict[str, Any]) -> tuple[dict[str, dict[int, complex]], list[str
 
 
 class _World(NamedTuple):
-    """Coordinates in a project."""
+    """Conversion of positions in the picture, in pixels, to the axes and unit of length of a project."""
 
     map: Callable[[Any], tuple[Floats, Floats]]  #: from positions in the picture, x + iy downward
     unit: str  #: of length, in brackets
@@ -201,7 +201,7 @@ class _World(NamedTuple):
 
 
 def _world(own: dict[str, Any], frames: Floats) -> _World:
-    """Coordinates of the positions in the frames of a project."""
+    """Make the conversion of positions in the given frames from the axes and scale of a project."""
     keys = ("xorigin", "yorigin", "angle", "xscale", "yscale")
     system = _properties(_object_of_property(own.get("coords")))
     rows = sorted((n, *(_finite(at, key) for key in keys)) for n, at in _frames(system))

@@ -36,7 +36,7 @@ def variables(rows: Sequence[tuple[str, float, float, str]]) -> list[str]:
 
 
 def with_error(value: float, error: float, joint: str = "+-") -> str:
-    """A number with the decimals that its standard error leaves, and the error with two digits."""
+    """A number with as many decimals as its standard error, and the error with two digits."""
     if not (error > 0 and math.isfinite(error)):
         return f"{value:.6g} {joint} {error:.2g}"
     digits = max(0, 1 - math.floor(math.log10(error)))
@@ -56,9 +56,9 @@ def counted(many: int) -> str:
 
 
 def student(errors: float, freedom: int) -> float:
-    """Number of standard errors, estimated from few points, that is as unlikely as `errors` normal deviates.
+    """Student's t: number of estimated standard errors that is as unlikely as `errors` true ones.
 
-    Student's t from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
+    Computed from the normal deviate, after Wallace (1959), Ann. Math. Statist. 30, 1121.
     """
     normal = errors * (8 * freedom + 3) / (8 * freedom + 1)
     return math.sqrt(freedom * math.expm1(min(normal**2 / freedom, 50.0)))

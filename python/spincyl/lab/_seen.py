@@ -50,7 +50,7 @@ class Measured(NamedTuple):
 
     @property
     def wants(self) -> frozenset[Any]:
-        """The optional outputs of `roll` that are needed."""
+        """The optional outputs of `roll` that are needed to compute the measured outputs."""
         return frozenset({"pose"} if _POSE & set(self.values) or self.sloped else ())
 
     @property
@@ -74,7 +74,7 @@ class Measured(NamedTuple):
 
 
 def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None) -> Measured:
-    """The columns of a table, checked and in natural units."""
+    """Check a table of measured outputs and their errors, and convert them to natural units."""
     if not hasattr(table, "keys"):
         raise TypeError(f"measured: expected a table or a dict with columns, not {type(table).__name__}")
     units: dict[str, str] = getattr(table, "units", {})
@@ -87,7 +87,7 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
                 f"measured: {name!r} is not an output of a motion; expected {', '.join(OUTPUTS)}"
             )
     if not names:
-        raise ValueError(f"measured: expected a column besides 't': {', '.join(OUTPUTS)}")
+        raise ValueError(f"measured: expected a column besides 't', one of {', '.join(OUTPUTS)}")
     if "hertz" in names and guess.scale is None:
         raise ValueError("measured: 'hertz' needs a measured body; for any other body give 'precession'")
     second, _ = si_factor("sqrt(R/g)", guess.scale)
@@ -113,7 +113,7 @@ def measured_motion(guess: Motion, table: Any, errors: Mapping[str, Any] | None)
     found = {}
     for name in given:
         if name not in names:
-            raise ValueError(f"errors: {name!r} is not a column of the measured motion")
+            raise ValueError(f"errors: {name!r} is not among the measured outputs, {', '.join(names)}")
     for name, column in values.items():
         if name in given:
             one = np.asarray(

@@ -4,9 +4,9 @@
 phi' in frame i = sum over k of weights[i, k] * direction[rows[i, k]]
 ```
 
-A slope over several frames is not the value of a moment: the precession of a body that nods changes within
-them. Whoever compares it with a motion takes the same sum of the motion's phi. Neighbouring slopes share
-directions, so that their errors are correlated.
+A slope over several frames is not the value at one time: the precession of a body that nods changes within
+these frames. To compare the slope with a motion, take the same sum of the phi of the motion. Neighbouring
+slopes share directions, so that their errors are correlated.
 """
 
 from typing import Any, NamedTuple, Self
@@ -20,7 +20,7 @@ _SAME = 1e-6  # of the time between two frames: times closer than this are one
 
 
 class Slopes(np.ndarray[Any, np.dtype[np.float64]]):
-    """Column of slopes over the frames of a film; it keeps these frames when it is sliced or rescaled."""
+    """Column of slopes over the frames of a film; it keeps the times of the frames if sliced or rescaled."""
 
     frames: tuple[Floats, int] | None  #: times of all frames, ascending, and the window
 
@@ -39,7 +39,7 @@ class Slopes(np.ndarray[Any, np.dtype[np.float64]]):
 
 
 def _again(values: Floats, frames: tuple[Floats, int] | None) -> Slopes:
-    """A column from a file, by pickle."""
+    """Make a column of slopes again when pickle reads it from a file."""
     found = values.view(Slopes)
     found.frames = frames
     return found
@@ -53,11 +53,11 @@ class Sloped(NamedTuple):
     weights: Floats  #: (n, window)
 
     def of(self, values: Floats) -> Floats:
-        """Slopes over the same frames of other values, given at all frames."""
+        """Slopes of other values, which are given at all frames, over the same frames."""
         return slope(values, self.rows, self.weights)
 
     def correlation(self, kept: Any) -> Floats:
-        """Correlation of the errors of kept slopes, which are differences of directions of equal errors."""
+        """Correlation matrix of the errors of the slopes `kept`, if all directions have equal errors."""
         whole = np.zeros((len(self.rows), self.t.size))
         np.put_along_axis(whole, self.rows, self.weights, axis=1)
         whole = whole[kept]
@@ -92,7 +92,7 @@ def slopes_at(column: Any, t: Floats, second: float) -> Sloped | None:
 
 
 def slopes(t: Floats, window: int) -> tuple[Any, Floats]:
-    """Rows of the frames near each frame, and their weights in the slope at the frame; NaN at a gap."""
+    """Indices of the `window` frames near each frame, and their weights in its slope; NaN at a gap."""
     many = min(window, t.size)
     at = np.arange(t.size)[:, np.newaxis]
     rows = np.clip(at - many // 2, 0, t.size - many) + np.arange(many)

@@ -132,7 +132,7 @@ def _samples(raw: bytes, form: bytes, name: str) -> tuple[Floats, Floats]:
         raise ValueError(f"{name}: WAV format {code} with {bits} bits: expected uncompressed samples")
     if frame != channels * bits // 8 or pace != hertz * frame:
         told = (
-            f"{channels} x {bits} bits are not {frame} bytes, or {hertz} times that not {pace} bytes a second"
+            f"{channels} x {bits} bits are not {frame} bytes, or {hertz} times this not {pace} bytes a second"
         )
         raise ValueError(f"{name}: the header of this WAV file contradicts itself: {told}; convert it again")
     raw = raw[: len(raw) // frame * frame]

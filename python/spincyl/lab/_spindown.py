@@ -85,14 +85,14 @@ def known_laws() -> list[Any]:
 
 
 def known_law(name: str, law: Any) -> Any:
-    """A class of loss laws, or TypeError naming the argument."""
+    """Return `law` if it is a class of loss laws, else raise a TypeError about the argument `name`."""
     if not any(law is one for one in known_laws()):
         raise TypeError(f"{name}: expected a class of sc.loss such as sc.loss.DryContour, not {law!r}")
     return law
 
 
 def asked(laws: Sequence[Any] | None) -> list[tuple[Any, ...]]:
-    """The laws to fit, each as a tuple of one class or of two whose laws add."""
+    """The laws to fit, each as a tuple of one class, or of two classes whose laws are added."""
     known = known_laws()
     if laws is None:
         return [(law,) for law in known]
@@ -123,7 +123,7 @@ def measured(
     start: float | None,
     laws: int,
 ) -> SpinDown:
-    """The measured spin-down without missing points; an error names a wrong argument."""
+    """The measured spin-down without missing points; errors name the argument at fault."""
     if not isinstance(body, Body):
         raise TypeError(f"body: expected a Body, not {type(body).__name__}")
     if not is_scalar(*body._numbers):
@@ -231,7 +231,7 @@ def _rises(name: str, t: Floats, values: Floats) -> bool:
 
 
 def _ranks(values: Floats) -> Floats:
-    """The rank of each value; the mean of their ranks for equal ones."""
+    """The rank of each value, from 1; equal values have the mean of their ranks."""
     _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
     found: Floats = (np.cumsum(counts) - (counts - 1) / 2.0)[places]
     return found
@@ -240,7 +240,7 @@ def _ranks(values: Floats) -> Floats:
 def _first_inclinations(
     body: Body, columns: dict[str, Floats], rises: dict[str, bool], centre: str, start: float | None
 ) -> tuple[Floats, tuple[float, float], bool]:
-    """Approximate inclinations, the ends of their branch, and whether the drift goes down on it."""
+    """Approximate inclinations, the ends of their range of steady states, and whether they decrease."""
     pieces = branches(body, centre)
     if start is not None and not 0 < number("start", start) <= steepest(body):
         raise ValueError(f"start = {start!r}: expected an inclination in {_range_in_words(body)}, in radians")
@@ -259,10 +259,10 @@ def _first_inclinations(
         piece = pieces[int(np.argmax(inside))]
         down = goes_down(body, centre, float(np.clip(known[0], piece[1], piece[-2])))
         if rises["theta"] == down:
-            way = ("rises", "down") if down else ("falls", "up")
+            way = ("rises", "smaller") if down else ("falls", "larger")
             raise ValueError(
-                f"theta: {way[0]}, but a body that loses energy with centre = {centre!r} drifts {way[1]}"
-                " from there"
+                f"theta: {way[0]}, but with centre = {centre!r} a body that loses energy drifts to {way[1]}"
+                " inclinations"
             )
         near = theta
         if "precession" in columns and not np.isfinite(theta).all():

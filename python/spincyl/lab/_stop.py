@@ -47,8 +47,8 @@ class FittedStop(NamedTuple):
     drift : Drift
         Drift from the (largest) first inclination to the end, with this coefficient.
     misses : ndarray, (k,)
-        Measured mean times minus those of the law, in seconds, for each first inclination; 0 for a single
-        one.
+        Measured mean times minus those of the law, in seconds, for each first inclination; 0 for a
+        single inclination.
     chi2 : float
         Sum of the squares of `misses` in units of their errors, of the times and the inclinations together.
     daic : float
@@ -164,7 +164,7 @@ class StopFit(NamedTuple):
         return int(np.size(self.theta))
 
     def _about(self) -> list[tuple[str, str]]:
-        """The measurement in words."""
+        """Rows of the report on the measurement: body, laws, inclinations, mean times, times left out."""
         rows = [("body", repr(self.body)), ("law" if "," not in self.name else "laws", self.name)]
         told = zip(*map(np.atleast_1d, self[2:4]), *map(np.atleast_1d, self[5:7]), strict=True)
         for theta, theta_err, mean, err in told:
@@ -405,7 +405,7 @@ def _about_wild(wild: tuple[WildTime, ...]) -> str:
 
 
 def _fitted_drift(body: Body, kind: Any, centre: str, data: Timed) -> FittedStop:
-    """The coefficient by one drift, from the inclinations and the mean times with their errors."""
+    """Fit the coefficient of one law and kind of drift to the mean times from all first inclinations."""
     second = body.scale.seconds(1.0)  # type: ignore[union-attr]
     lasts = np.empty((2, data.theta.size))
     for k, (theta, err) in enumerate(zip(data.theta.tolist(), data.theta_err.tolist(), strict=True)):
@@ -428,7 +428,7 @@ def _fitted_drift(body: Body, kind: Any, centre: str, data: Timed) -> FittedStop
 
 
 def _duration(plain: Body, kind: Any, centre: str, theta: float, theta_err: float) -> tuple[float, float]:
-    """Duration of the drift of unit coefficient, and its change by the error of the inclination."""
+    """Duration of a drift with the coefficient `_UNIT`, and its change by the error of the inclination."""
     name = kind.__name__
     try:
         one = drift(plain, theta, kind(_UNIT), centre)

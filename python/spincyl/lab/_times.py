@@ -1,4 +1,4 @@
-"""Times of a stopwatch, of one or several first inclinations: outliers, robust means and their errors."""
+"""Times by a stopwatch from one or several first inclinations: outliers, robust means, their errors."""
 
 import math
 import re
@@ -44,7 +44,7 @@ class WildTime(NamedTuple):
     theta : float
         First inclination, in radians.
     seconds : float
-        The time.
+        The time in seconds.
     deviations : float
         Its distance from the median of the times from the same inclination, in robust standard deviations.
     """
@@ -85,7 +85,7 @@ class _Trials(NamedTuple):
 
 
 def timed(from_: Any, seconds: Any, error: float | None, from_err: Any, names: Sequence[str] | None) -> Timed:
-    """The times by first inclination; an error names a wrong argument."""
+    """Group times by first inclination; errors name the argument at fault."""
     trials = _of_table(from_, seconds, from_err, names) if hasattr(from_, "keys") else None
     trials = trials or _of_arrays(from_, seconds, from_err, names)
     if not trials.seconds.size:
@@ -124,14 +124,15 @@ def _doubt_of_units(times: Floats, group: Any) -> str:
     for k in range(group.max() + 1):
         own = times[group == k]
         if own.max() > _MIXED_RATIO * own.min():
-            return f"the times range from {own.min():.4g} to {own.max():.4g} s: are all of them in seconds?"
+            ends = f"{own.min():.4g} to {own.max():.4g} s"
+            return f"from the same inclination, the times range from {ends}: are all in seconds?"
     return ""
 
 
 def _robust_means(
     times: Floats, group: Any, many: int, scale: float, error: float | None
 ) -> tuple[Floats, Floats]:
-    """Mean and standard error of the times of each group, with far ones clipped."""
+    """Mean and standard error of the times of each group; times far from the mean are clipped."""
     count = np.bincount(group, minlength=many)
     mean = np.bincount(group, times, many) / count
     reach = _CLIP * scale if scale else math.inf
@@ -187,7 +188,7 @@ def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | No
 
 
 def _angle_of_column(name: object, unit: str) -> tuple[float, float]:
-    """The inclination that a column is called by, and the seconds of its unit of time."""
+    """The inclination in the name of a column, in radians, and the unit of its times in seconds."""
     second = _TIMES.get(unit.lower())
     text = (str(name) if second else f"{name}{unit}").replace(",", ".")
     angles = {found[1] for found in _IN_DEGREES.finditer(text)}
@@ -204,7 +205,7 @@ def _angle_of_column(name: object, unit: str) -> tuple[float, float]:
 
 
 def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
-    """Trials of an inclination, or of one for each column or for each time."""
+    """Trials with one inclination for all times, for each column of times, or for each time."""
     if seconds is None:
         raise TypeError("seconds: expected the measured times; leave it out only if from_ is a table")
     times = _seconds("seconds", seconds)
@@ -234,7 +235,7 @@ def _of_arrays(from_: Any, seconds: Any, from_err: Any, names: Sequence[str] | N
 def _trials(
     theta: Floats, theta_err: Floats, times: Floats, where: list[str], names: Sequence[str] | None
 ) -> _Trials:
-    """Trials without missing times."""
+    """Make trials from arrays of equal length, without missing times."""
     named = _checked_names(names, times.size) if names is not None else [""] * times.size
     seen = np.isfinite(times)
     kept = np.flatnonzero(seen).tolist()

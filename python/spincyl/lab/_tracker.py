@@ -205,7 +205,7 @@ def _tracks_of_lines(
 
 
 def _column_of_texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str:
-    """The column of texts in a table that otherwise has numbers; empty if there is none."""
+    """Message about a column of text in a table that otherwise has numbers; "" if there is none."""
     for delimiter in delimiters:
         try:
             rows = [
@@ -227,7 +227,7 @@ def _column_of_texts(lines: list[tuple[int, str]], delimiters: list[str]) -> str
 
 
 class _Garbled(ValueError):
-    """The reason why a line cannot be a line of names, in any format."""
+    """Error: a line cannot be the line of column names in any format; the message gives the reason."""
 
 
 def _tracks_in_format(
@@ -284,7 +284,7 @@ def _shortened(line: str) -> str:
 
 
 def _track_names(line: str, delimiter: str | None, columns: list[str], several: bool) -> list[str]:
-    """Names of tracks above columns, empty above their further columns; else the line as a single name."""
+    """Track name above each column, "" beside the first of a track; or the line as a single name."""
     try:
         names = [cell.strip() for cell in split(line, delimiter)]
     except ValueError:

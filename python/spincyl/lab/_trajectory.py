@@ -1,4 +1,4 @@
-"""The trajectory of a contact engine in a table: times, positions and quaternions by names of columns."""
+"""Reading of the trajectory of a contact engine from a table, whose columns are found by their names."""
 
 import os
 import re
@@ -14,7 +14,7 @@ _TIMES = ("t", "time", "seconds", "simulation_time")
 
 
 class _Vector(NamedTuple):
-    """How a vector may be called in a table."""
+    """Names that a vector and its components may have in a table, and the units of its components."""
 
     words: tuple[str, ...]  #: names before the axis; "" is the axis alone
     axes: str  #: a letter for each component
@@ -47,7 +47,7 @@ def trajectory(table: Any) -> Trajectory:
     alike: dict[str, str] = {}
     for name in columns:
         if (other := alike.setdefault(_plain(name), name)) != name:
-            raise ValueError(f"{told}: {other!r} and {name!r} are the same column")
+            raise ValueError(f"{told}: {other!r} and {name!r} are names of the same column")
     time = picked(told, columns, _there(alike, _TIMES), SECONDS)
     place, _ = _components(told, columns, alike, _PLACE)
     turn, named = _components(told, columns, alike, _TURN)
@@ -58,7 +58,7 @@ def trajectory(table: Any) -> Trajectory:
 
 
 def _components(told: str, columns: Columns, alike: dict[str, str], of: _Vector) -> tuple[Floats, bool]:
-    """The components of vectors in columns of their own, or one column with all of them; and which it is."""
+    """Components of a vector, (n, k), and whether each has its own column, not all a common one."""
     words, axes, units = of
     whole = [alike[_plain(word)] for word in words if _plain(word) in alike and word]
     wide = [name for name in whole if np.ndim(columns[name]) == 2]
@@ -73,12 +73,12 @@ def _components(told: str, columns: Columns, alike: dict[str, str], of: _Vector)
 
 
 def _plain(name: str) -> str:
-    """A name without capitals, points, underscores and brackets."""
+    """A name in small letters, without points, underscores, spaces and brackets."""
     return re.sub(r"[\W_]", "", name.lower())
 
 
 def _there(alike: dict[str, str], names: Any) -> list[str]:
-    """The name of the column in the table that has one of these names; else the names in plain letters."""
+    """The column of a table that has one of `names`, as a list; else `names`, for a message about them."""
     found = [alike[_plain(name)] for name in names if _plain(name) in alike]
     short = [name.removeprefix("_").replace("q_", "q") for name in names]
     return found[:1] or short

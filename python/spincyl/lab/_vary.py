@@ -1,4 +1,4 @@
-"""The numbers of a motion that a fit can vary, by name, and the motion with other values of them."""
+"""Numbers of a motion that a fit can vary, by name, and the motion computed with other values."""
 
 import math
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ _SHARE = 0.0, 1.0
 
 
 class Number(NamedTuple):
-    """A number of a motion, in natural units."""
+    """A number of a motion that a fit can vary, such as mu, with its bounds, in natural units."""
 
     value: float
     low: float

@@ -148,7 +148,7 @@ def _left_out(
 
 
 def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> str:
-    """The reason why no wobble was detected: too few audible turns, or none."""
+    """Message that says why no whirr was detected: too few audible turns, or none."""
     needed = _FEWEST_WINDOWS * _TURNS_PER_WINDOW
     if turns < needed and heard.size and heard.mean() > 0.5:
         return f"sound: too short: {int(turns)} turns, at least {needed} needed"
@@ -157,7 +157,7 @@ def _why_unheard(heard: np.ndarray, turns: float, low: float, high: float) -> st
     if row >= 2 * _TURNS_PER_WINDOW:  # noise has short rows of audible windows
         many = row + _TURNS_PER_WINDOW - 1
         return f"sound: too short: {many} turns in a row are audible, at least {needed + 2} needed"
-    return f"sound: no wobble between {low:g} and {high:g} turns a second stands out from the noise"
+    return f"sound: no whirr of {low:g} to {high:g} turns a second stands out from the noise"
 
 
 def _range(between: object) -> tuple[float, float]:
@@ -172,7 +172,7 @@ def _range(between: object) -> tuple[float, float]:
 
 
 def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats, float, float]:
-    """The sound without its mean, its first time, and its sampling rate; an error names a wrong argument."""
+    """The sound without its mean, its first time, and its sampling rate; errors name the argument."""
     time, x = (np.asarray(reals(name, v), np.float64) for name, v in (("t", t), ("sound", sound)))
     if x.ndim != 1 or time.shape != x.shape:
         raise ValueError(f"t and sound: expected equal shapes (n,), not {time.shape} and {x.shape}")
@@ -192,7 +192,8 @@ def _recording(t: Reals, sound: Reals, low: float, high: float) -> tuple[Floats,
         raise ValueError("t: expected evenly spaced times")
     if step * high > 0.05:
         raise ValueError(
-            f"t: {1 / step:.3g} samples a second are too few; expected at least 20 times {high:g}"
+            f"t: {1 / step:.3g} samples a second are too few; expected at least {20 * high:g}, twenty times"
+            " the greatest frequency in between="
         )
     loudest = np.abs(x).max()
     x = x - x.mean()
@@ -222,7 +223,7 @@ def _envelope(x: Floats, hertz: float, high: float) -> tuple[Floats, float]:
 
 
 def _without_mains(spectrum: np.ndarray, frequency: Floats) -> np.ndarray:
-    """A spectrum without the harmonics of the mains, whose beats are as regular as a wobble."""
+    """A spectrum without the harmonics of the mains frequency, whose beats are as regular as a whirr."""
     power = np.abs(spectrum) ** 2
     for mains in _MAINS:
         lines = [
@@ -341,7 +342,7 @@ def _windows(rest: Floats, pace: float, track: Floats) -> tuple[Floats, Floats, 
 
 
 def _scatter_of_neighbours(scatter: Floats) -> Floats:
-    """The mean scatter of each window and its neighbours without common turns; outliers are limited."""
+    """The mean scatter of each window and of neighbours that share no turns with it, limited for outliers."""
     reach = np.arange(-3, 4) * _TURNS_PER_WINDOW
     at = np.arange(scatter.size)[:, None] + reach
     near = np.where((at >= 0) & (at < scatter.size), scatter[np.clip(at, 0, scatter.size - 1)], np.nan)
@@ -364,7 +365,7 @@ def _smooth_cubic(at: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _separate_windows(heard: np.ndarray) -> np.ndarray:
-    """Windows that do not overlap, several in a row, each of which and both neighbours are audible.
+    """Which windows to keep: several in a row without overlap, if they and both neighbours are audible.
 
     A sound that begins or ends during the recording does so within a turn: windows with that turn are left
     out.

@@ -1,10 +1,10 @@
 """Motions in the air, on both rims or on a face: their kinks, and angles that refer to one rim throughout.
 
-An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim takes
-over, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi changes its sign.
-Angles that refer to the first rim throughout are continuous, except where a body stands on its face: there
-only the sum of phi and psi has a meaning, and phi jumps to the point over which the body topples. A stone has
-neither rims nor these angles: only its kinks count.
+An impact changes all velocities at once, so that positions and angles have a kink. Where the other rim
+becomes the lower one, theta, phi and psi refer to that rim: theta becomes pi - theta, phi grows by pi, psi
+changes its sign. Angles that refer to the first rim throughout are continuous, except where a body stands on
+its face: then only the sum of phi and psi has a meaning, and phi jumps to the point over which the body
+topples. A stone has neither rims nor these angles: only its kinks are used.
 """
 
 from contextlib import suppress
@@ -51,7 +51,7 @@ def strikes(m: "Motion") -> "tuple[Impact, ...]":
 
 
 def force_beside(m: "Motion") -> Floats:
-    """(n, 3) force on the other rim along the axes of the laboratory; 0 where this rim is in the air."""
+    """(n, 3) force on the rim to which theta does not refer, along laboratory axes; 0 if it is in the air."""
     found: Floats = np.nan_to_num(m._extra.get("contact_force_other", np.zeros((m.t.size, 3))))
     return found
 
@@ -74,7 +74,7 @@ class Aloft(NamedTuple):
     told: np.ndarray
 
     def on_other(self, t: Floats) -> Any:
-        """Whether the angles at these times refer to the other rim."""
+        """Whether the angles of the motion at these times refer to the rim that was not the first."""
         return self.told[np.searchsorted(self.times, t, "right"), 0] % 2 == 1
 
     def from_first(self, t: Floats, theta: Floats, phi: Floats, psi: Floats) -> Floats:
@@ -153,7 +153,7 @@ def _poles(m: "Motion", first: float, last: float) -> Floats:
 
 
 def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -> tuple[Floats, np.ndarray]:
-    """The times among these at which the reference of the angles changes, and its changes as in `Aloft`."""
+    """Times of `t` at which the rim to which the angles refer changes, and the changes as in `Aloft`."""
     groups = np.array(_groups(np.union1d(t, poles), 1e-12 * (last - first))).reshape(-1, 2)
     # both sides of each group, closer to it than to the next one
     gaps = np.concatenate([groups[:1, 0] - first, groups[1:, 0] - groups[:-1, 1], last - groups[-1:, 1]])
@@ -187,7 +187,7 @@ def _changes(m: "Motion", t: Floats, poles: Floats, first: float, last: float) -
 
 
 def _has_pole(sides: Floats, poles: Floats) -> np.ndarray:
-    """Whether there is a pole between both times of each row."""
+    """Whether the time of one of the poles lies between the two times of each row of `sides`."""
     found = (sides[:, :1] < poles) & (poles < sides[:, 1:])
     return np.asarray(found.any(axis=1))
 

@@ -51,7 +51,7 @@ class Vectors(NamedTuple):
 
 
 def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
-    """The vectors at the times `t` that are drawn as arrows or that define the axis."""
+    """The vectors at the times `t` that are drawn as arrows or that define the instantaneous axis."""
     first, last = sorted(span(m))
     t = np.clip(t, first, last)
     (w,) = seen(m, t, "w")
@@ -79,7 +79,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
 
 
 def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
-    """Size of each vector for which its arrow has the usual length: its largest; for forces the median N."""
+    """Magnitude for which an arrow has the usual length: the largest; for forces the median of N."""
     first, last = sorted(span(m))
     of = vectors(m, np.linspace(first, last, _SAMPLES), drawn).of
     sizes = {name: np.linalg.norm(x, axis=-1) for name, x in of.items()}
@@ -88,7 +88,7 @@ def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
 
 
 class Tip(NamedTuple):
-    """A letter, the name of its colour, and the tip and the root of its arrow in the picture."""
+    """The letter of a vector, the name of its colour, and the tip and root of its arrow in the picture."""
 
     letter: str
     name: str
@@ -125,7 +125,7 @@ def drawings(
 
 
 def _rods(now: Vectors, half: float) -> list[tuple[Piece, str, Floats, Floats, float, float]]:
-    """Shape, colour, root, direction, width and length of the line P-C-O, a bead at each, and the axis."""
+    """Shape, colour, root, direction, width and length of the line P-C-O, its three beads, and the axis."""
     way, omega = now.centre - now.contact, now.of["omega"]
     long, square, thick = float(np.linalg.norm(way)), float(omega @ omega), 0.006 * half
     line = way / long

@@ -1,4 +1,4 @@
-"""What matplotlib draws of a frame: triangles with light, and photographs, pixel by pixel or as vectors.
+"""Matplotlib artists for a frame: shaded triangles, and photographs, as pixels or in a vector drawing.
 
 The classes are made when they are used, since matplotlib need not be installed.
 """
@@ -17,7 +17,7 @@ def photo_of(ax: Any, vector: bool) -> Any:
     from matplotlib.artist import Artist
 
     class Photo(Artist):
-        """A picture whose pixels are those of Agg."""
+        """A picture that is copied to the pixels of Agg, matplotlib's raster renderer."""
 
         def set_data(self, picture: np.ndarray) -> None:
             self.picture = picture
@@ -46,7 +46,7 @@ def surface_of(ax: Any, vector: bool) -> Any:
     from PIL import Image
 
     class Surface(Artist):
-        """Gouraud triangles for Agg."""
+        """Triangles with Gouraud shading, for Agg, matplotlib's raster renderer."""
 
         def put(self, found: list[Painted]) -> None:
             self.corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))
@@ -80,7 +80,7 @@ def surface_of(ax: Any, vector: bool) -> Any:
             picture[where] = np.asarray(found.reduce(_SUPERSAMPLING))
 
     class Polygons(PolyCollection):
-        """Polygons, whose edges close the gaps between them."""
+        """Triangles in plain colours, whose drawn edges close the gaps between them."""
 
         def put(self, found: list[Painted]) -> None:
             corners, colours = (np.concatenate(x) for x in zip(*found, strict=True))

@@ -143,7 +143,7 @@ def stone_motion(found: EllipsoidMotion) -> str:
 
 
 def _motion(found: Motion) -> tuple[list[tuple[str, str]], tuple[float, ...]]:
-    """Rows that all motions have, and the inclinations between which the body nods."""
+    """Rows of the table that all motions have, and the inclinations between which the body nods."""
     rows = [("body", repr(found.body)), ("contact", contact_in_words(found.contact))]
     if found.losses is not None:
         rows.append(("losses", losses_in_words(found.losses, found.scale)))
@@ -285,7 +285,7 @@ def _axis(theta: float) -> complex:
 
 
 def _silhouette(ell: float, theta: float) -> list[complex]:
-    """The corners of a cylinder seen from the side: the contact point, then the lower and the upper face."""
+    """The corners of a cylinder seen from the side, as complex numbers x + iz from the contact point on."""
     across, up = 2j * _axis(theta), 2 * ell * _axis(theta)
     return [0j, across, across + up, up]
 

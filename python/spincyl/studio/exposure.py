@@ -103,9 +103,9 @@ def exposure(
 class Shutter:
     """A camera from above with an open shutter; times and lengths are in natural units.
 
-    A picture starts from the one before: only the light of the time in which the shutter is open for one of
-    the two, but not for both, is computed. There is a picture for each list of `ink`. Default of `middle`:
-    the middle of the path of the centre.
+    Each picture starts from the previous one: only light of times at which the shutter is open for one of
+    these two pictures, but not for both, is computed. There is a picture for each list of `ink`. Default of
+    `middle`: the middle of the path of the centre.
     """
 
     def __init__(
@@ -158,7 +158,7 @@ class Shutter:
         return self._light.reshape(-1, *self._shape)
 
     def _instants(self, first: float, last: float, share: float) -> "_Instants":
-        """Instants between two times, as many as belong to a share of the picture."""
+        """Sample instants between two times, which are the `share` of the time that the shutter is open."""
         many = math.ceil(self._times * share)
         # a random time in each interval: equal steps could be in step with the precession
         t = first + (last - first) * (np.arange(many) + self._random.random(many)) / many
@@ -170,7 +170,7 @@ class Shutter:
         return _Instants(t, np.full(many, (last - first) / many), which, centre, rotations(orientation))
 
     def _shine(self, lit: "_Instants", sign: float) -> None:
-        """Add the light of these instants."""
+        """Add the light of these instants to the pictures (`sign` 1), or remove it (`sign` -1)."""
         block = max(1, 1_000_000 // self._places)
         for start in range(0, lit.t.size, block):
             now = lit.at(slice(start, start + block))
@@ -196,7 +196,7 @@ class Shutter:
 
 
 class _Instants(NamedTuple):
-    """Instants at which light falls."""
+    """Instants at which the pose of the body is sampled, and the poses."""
 
     t: Floats
     lasts: Floats  #: the time that each stands for
@@ -248,7 +248,7 @@ def _area(part: Part) -> float:
 
 
 def _sampled(ink: list[Part], count: int) -> tuple[Floats, Floats]:
-    """Points and their normals, evenly over the marks, as is each of the `_SETS` interleaved sets."""
+    """Points spread evenly over the marks, and their normals; so is each of the `_SETS` interleaved sets."""
     corners = np.concatenate([part.vertices[part.triangles] for part in ink])
     normals = np.concatenate([part.normals[part.triangles] for part in ink])
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

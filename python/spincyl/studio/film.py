@@ -44,7 +44,7 @@ def reel(
     size: tuple[int, int] | None,
     seconds: float | None = None,
 ) -> Reel:
-    """The settings of the film of a page for a kind of file; an error names a wrong argument."""
+    """The settings of a view's film, for a file with this suffix; errors name the argument at fault."""
     gif = suffix == ".gif"
     fps = (25 if gif else 30) if fps is None else whole("fps", fps, 1, 240)
     if gif and 100 % fps:
@@ -77,7 +77,7 @@ def reel(
 
 
 def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound: bool | None = None) -> None:
-    """Write the film, and report the finished share; a `sound` of None means a sound if possible."""
+    """Write the film, and report the finished share; if `sound` is None, with sound if possible."""
     write = _gif if path.suffix.lower() == ".gif" else _mp4
     sound = sound if sound is None else flag("sound", sound)
     if sound and write is _gif:
@@ -106,7 +106,7 @@ def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound:
 
 
 def still(what: Reel, path: Path, t: float | None) -> None:
-    """Write the picture at a time, in the page's unit of time."""
+    """Write the picture of a view at the time `t`, in the page's unit of time."""
     optional_library("matplotlib", "film")
     from PIL import Image
 
@@ -166,7 +166,7 @@ def _mp4(what: Reel, pictures: Iterator[np.ndarray], path: Path, program: str, h
 
 
 def _run(words: list[str], pictures: Iterator[np.ndarray]) -> None:
-    """Run ffmpeg, and pass it the pictures; an error has its words."""
+    """Run ffmpeg, and pass it the pictures; an OSError quotes the message of ffmpeg."""
     with TemporaryFile() as said:
         process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=said)
         assert process.stdin is not None

@@ -167,7 +167,7 @@ class _Stage:
             self.still = self.canvas.copy_from_bbox(self.figure.bbox)
 
     def picture(self, k: int) -> np.ndarray:
-        """Frame number k."""
+        """The picture of frame number `k`, (height, width, 3) of 8 bits."""
         self.canvas.restore_region(self.still)
         for index in range(len(self.panels)):
             self.draw(index, k)
@@ -176,14 +176,14 @@ class _Stage:
         return np.array(np.asarray(self.canvas.buffer_rgba())[..., :3])
 
     def _made(self, body: Any, camera: Camera, reach: float) -> "_Body":
-        """The triangles of a body, as few as none can tell from its true surface."""
+        """The triangles of a body: as few as look the same as its true surface in this picture."""
         near = (camera.far - reach) / camera.far  # the distance of the nearest place, over that of the middle
         off = (_OFF_VECTOR if self.vector else _OFF) * near * 2 * camera.high / self.shape[0]
         surface = turned(body, off)
         return _Body(pieces(body, surface, self.what.upper), caster(surface))
 
     def _ground(self, ax: Any, index: int, reach: float, aspect: float) -> None:
-        """Draw the table: lines one radius apart, or five, that fade into the distance."""
+        """Draw the table: lines 1 R apart, or 5 R, that fade into the distance."""
         from matplotlib.collections import LineCollection
 
         camera = self.cameras[index]
@@ -235,7 +235,7 @@ class _Stage:
         return _Moving(rolled, slipped, shades, surface_of(ax, self.vector), photo, clock, [])
 
     def _rule(self, ax: Any, camera: Camera, t: float) -> None:
-        """Set the lines of the table that this camera sees; they turn with it about its middle."""
+        """Set the lines of the table that this camera sees; they turn with the table."""
         steps = np.arange(-math.ceil(ax.far / ax.cell), math.ceil(ax.far / ax.cell) + 1)
         pieces = np.linspace(-ax.far, ax.far, 25 if self.vector else 81)
         sets = []
@@ -367,7 +367,7 @@ class _Stage:
         return 2 / float(np.percentile(most, 99.7)) if most.any() else 0.0
 
     def _developed(self, index: int, t: float) -> np.ndarray:
-        """The photograph at a time: of a still the exposure from then on, of a film the one until then."""
+        """The photograph at the time `t`: a still shows the exposure after `t`, a film the one before `t`."""
         picture = np.zeros((math.prod(self.shape), 3), np.uint8)
         if (found := self._light(index, t)) is not None:
             lit, light = found
@@ -386,7 +386,7 @@ class _Stage:
         return f"spin {told} {self.what.rates}"
 
     def _note(self, index: int, t: float) -> tuple[str, float] | None:
-        """The note about a motion before its first time, or from its end on, and the time to show."""
+        """Before the first time or after the end: a note that says so, and the time to show; else None."""
         before, after = (self.what.edges[index][name] for name in ("before", "after"))
         if t > after["at"] or (after["event"] and t >= after["at"]):
             return after["said"], after["t"]

@@ -26,7 +26,7 @@ class Look(NamedTuple):
 
 
 def look(drawn: str | Iterable[str] | None, above: bool, follow: bool | None, exposure: float | None) -> Look:
-    """The settings of a view's picture from the arguments of `view`; an error names a wrong argument."""
+    """The settings of a view's picture from the arguments of `view`; errors name the argument."""
     drawn = None if drawn is None else known_words("drawn", drawn, DRAWN)
     follow = None if follow is None else flag("follow", follow)
     if exposure is not None:
@@ -58,7 +58,7 @@ class Camera(NamedTuple):
 
 
 class Tilt(NamedTuple):
-    """The slope of a table, in radians, and what all cameras of a view need to know of its slopes."""
+    """The slope of a table in radians, the steepest of its view, and the side of the cameras."""
 
     slope: float = 0.0
     steepest: float = 0.0
@@ -76,8 +76,8 @@ def tilts(slopes: list[float]) -> list[Tilt]:
 def camera(at: Floats, reach: float, half: float, aspect: float, above: bool, tilt: Tilt = _LEVEL) -> Camera:
     """The first camera of the page, or one that looks straight down, with x to the right and y upwards.
 
-    The first one sees a table with a slope as it lies: its directions are turned about y, from the room to
-    the table. The other one looks along the normal of the table.
+    The first camera of the page sees a table with a slope as it lies: its directions are turned about y, from
+    the room to the table. The camera that looks down (`above`) looks along the normal of the table.
     """
     azimuth, elevation = (-math.pi / 2, math.pi / 2) if above else (AZIMUTH, _ELEVATION)
     slope = tilt.slope
@@ -102,7 +102,7 @@ def _to_room(slope: float) -> Floats:
 
 
 def _rise(reach: float, slope: float) -> float:
-    """By how much the half height that the camera has to show is larger on a slope."""
+    """Increase, on a slope, of the half height that the camera has to show."""
     seen_at = min(_ELEVATION + abs(slope), math.pi / 2)
     return 1.06 * reach * (math.sin(seen_at) - math.sin(_ELEVATION))
 

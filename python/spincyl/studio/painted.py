@@ -42,7 +42,7 @@ def whole(part: Part) -> Piece:
 
 
 def turned(body: Body | Ellipsoid, off: float) -> list[Part]:
-    """The surface of a body with few triangles, which lie at most `off` inside that of `parts`."""
+    """The surface of a body with few triangles, which lie at most `off` inside the true surface."""
     drawn = profiles(body)
     wide = max(r * _stretched(profile) for profile in drawn for r, _ in profile.corners)
     around = math.pi / math.acos(max(1 - off / wide, 0.0))
@@ -55,13 +55,13 @@ def _stretched(profile: Profile) -> float:
 
 
 def _without_flat_corners(profile: Profile, off: float) -> Profile:
-    """The profile without the corners that lie within `off` of a line whose normals are almost theirs."""
+    """The profile without corners that a straight line between others replaces within `off`."""
     if profile.normals is None:
         return profile
     corners, normals = np.array(profile.corners), np.array(profile.normals)
 
     def spanned(first: int, last: int) -> bool:
-        """Whether a straight line between two corners is close enough to all corners between them."""
+        """Whether a line between two corners is close to all corners between them, in place and normal."""
         line, rows = corners[last] - corners[first], slice(first + 1, last)
         away, long = corners[rows] - corners[first], max(float(np.hypot(*line)), 1e-300)
         share = (away @ line / long**2)[:, np.newaxis]
@@ -112,7 +112,7 @@ def _slabs(piece: Piece, heights: Floats) -> list[Piece]:
 
 
 def _cut(piece: Piece, height: float) -> Piece:
-    """The same triangles; those that contain a height are cut there."""
+    """The piece with each triangle that crosses a height cut into three triangles there."""
     off = piece.corners[..., 2] - height
     sides = np.where(np.abs(off) < _SAME_HEIGHT, 0, np.sign(off)).astype(int)
     through = (sides.min(axis=1) < 0) & (sides.max(axis=1) > 0)

@@ -1,4 +1,4 @@
-"""The drawn shape of a body put together from parts: each as it is, and two stripes that show its spin."""
+"""The drawn shape of a body put together from parts: its parts, and two stripes that show the spin."""
 
 import math
 from collections.abc import Iterator
@@ -52,7 +52,7 @@ def _hull_of_circles(body: Body) -> Iterator[tuple[_Corners, _Corners | None]]:
 
 
 def _surfaces(form: int, numbers: tuple[float, ...]) -> list[tuple[_Corners, _Corners | None]]:
-    """Polygons to turn round the axis, with their normals; the outside is on the right."""
+    """Polygons that give the surfaces of a part when turned round the axis, the outside on their right."""
     if form == 0:
         r, s, b, c, low, high, f = numbers
         if f:

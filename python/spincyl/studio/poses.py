@@ -1,4 +1,4 @@
-"""Poses of a motion as knots with cubics between them, for programs that only interpolate.
+"""Poses of a motion at a few times, called knots, with cubics between, for programs that interpolate.
 
 Angles and positions are smooth even when a body whirls: a steady spin needs two knots, a nutation four to
 eight. Every interval is halved until its cubic agrees with the motion within the tolerance. An exact motion
@@ -248,7 +248,7 @@ def _first_knots(m: "Motion", up: Aloft, first: float, last: float) -> Floats:
 
 
 def _kinks(t: Floats, up: Aloft | None) -> np.ndarray:
-    """Whether the interval between these times and the next is a kink."""
+    """Whether the interval from each of these times to the next one is a kink."""
     return np.zeros(len(t) - 1, bool) if up is None else np.isin(t[:-1], up.edges[:, 0])
 
 

@@ -98,7 +98,7 @@ class Scene:
         The scene in the format of MuJoCo (MJCF), with the initial state as the keyframe "start". A comment at
         its top names the laws that MuJoCo does not have.
     urdf : str
-        The body in the format URDF, where that has its shape.
+        The body in the format URDF; ValueError if URDF has no such shape.
     """
 
     def __init__(self, motion: Motion, scale: Scale) -> None:
@@ -120,7 +120,7 @@ class Scene:
         """The body as URDF: mass, inertia, and what touches the table.
 
         URDF has no friction, no initial state and no table: an engine takes these from the JSON file. A
-        ValueError says that URDF does not have the shape of the body, as of one with a fillet.
+        ValueError says that URDF does not have the shape of the body, such as one with a fillet.
         """
         return urdf(self.data)
 
@@ -273,7 +273,7 @@ class Scene:
         if position is None and orientation is None:
             time, position, orientation, named = function_of_method("Scene.compare")(time)
             if named and flag("scalar_first", scalar_first):
-                raise ValueError("scalar_first: leave it out; the columns of the table are named")
+                raise ValueError("scalar_first: leave it out, since the names of the columns show the order")
         elif position is None or orientation is None:
             raise TypeError("position, orientation: give both of them, or neither beside a table")
         t = checked_array("time", si("time", time, "second"), ())
@@ -301,7 +301,7 @@ class Scene:
         away = np.linalg.norm(x[:n] - metre * m.centre, axis=1)
         reach = metre * float(np.linalg.norm(m.centre[0]))
         if away[0] > _FARTHEST * reach:
-            told = f"position: {away[0]:.2g} m from the known one at t = {t[0]:.4g} s, which is {reach:.2g} m"
+            told = f"position: {away[0]:.2g} m from the known place at t = {t[0]:.4g} s, itself {reach:.2g} m"
             warn(f"{told} from the origin; are the positions in millimetres?")
         theta = inclination(q[:n]) - inclination(m.orientation)
         return Deviation(t[:n], away, angle, theta, off * metre, turned)

@@ -1,7 +1,7 @@
-"""What the answer of a scene is computed from, in natural units, as the Rust crate writes it; and the motion.
+"""Body, start and options of a scene, from which its motion is computed, as the Rust crate writes them.
 
-The names and forms are those of the crate's `Body`, `Ellipsoid`, `Start` and `Ask` in a file, so that either
-language computes the answer of a file of the other at any time.
+They are in natural units, with the names and forms of the crate's `Body`, `Ellipsoid`, `Start` and `Ask` in a
+file, so that Python and Rust compute the motion of each other's files at any time.
 """
 
 import math
@@ -79,7 +79,7 @@ def _state_data(state: Any) -> dict[str, Any]:
 
 
 def _slip(m: Motion) -> list[float]:
-    """The initial slip; a body on its face has that with which its centre rests, unless it has its own."""
+    """The initial slip; of a body on its face by default the slip that leaves its centre at rest."""
     slip = m.start.slip
     if slip is None and m.body._in_files == "body" and "slip" in m._extra and m.theta[0] in (0, np.pi):
         slip = m._extra["slip"][0]
@@ -100,7 +100,7 @@ def _table_data(contact: AnyContact, mu: float) -> Any:
 
 
 def _finite_or_word(x: Any) -> float | str:
-    """A number, or the word for infinity, which JSON has not."""
+    """A finite number as it is, and infinity as the text "inf", since JSON has no infinity."""
     return float(x) if math.isfinite(x) else "inf"
 
 

@@ -60,7 +60,7 @@ _PIECES = 4
 def scene_data(m: Motion, scale: Scale, t0: float) -> dict[str, Any]:
     """The scene of a motion in natural units with poses and forces, whose initial state is at time `t0`."""
     if m._asked.turning:
-        raise ValueError("m: a scene needs a table that does not turn")
+        raise ValueError("motion: a scene needs a table that does not turn")
     metre, second, joule = (float(x) for x in (scale.metres(1.0), scale.seconds(1.0), scale.joules(1.0)))
     w, v = moving(m)
     known = _known_answer(m, metre, second, joule, w=w, v=v, t0=t0)
@@ -96,7 +96,7 @@ def moving(m: Motion) -> tuple[Floats, Floats]:
 
 @singledispatch
 def _turning(m: Motion, slip: Floats, lift: Floats) -> tuple[Floats, Floats]:
-    """Angular velocity, and velocity of the contact point with its slip and lift."""
+    """Angular velocity and velocity of the contact point, along laboratory axes, from its slip and lift."""
     phi = m.turns[0][:, 1]
     zero, up = np.zeros(phi.size), np.array([0.0, 0.0, 1.0])
     along = np.column_stack([np.cos(phi), np.sin(phi), zero])
@@ -129,7 +129,7 @@ def inclination(orientation: Floats) -> Floats:
 def bounds(m: Motion, w: Floats | float = 0.0, v: Floats | float = 0.0) -> dict[str, float]:
     """Bounds of the errors of a motion by name, in natural units, from its angular velocities and velocities.
 
-    Without these only those of the state, the position and the orientation are right.
+    If velocities are left out, only the bounds of state, position and orientation are right.
     """
     force = m.contact_force if "contact_force" in m._extra else 0.0
     most = [float(np.linalg.norm(np.atleast_2d(x), axis=1).max(initial=0.0)) for x in (w, v, force)]
@@ -153,7 +153,7 @@ def _body(body: Body | Ellipsoid, scale: Scale, metre: float) -> dict[str, Any]:
 
 @singledispatch
 def _touching_parts(body: Any, metre: float) -> dict[str, Any]:
-    """The parts of a body of revolution that can touch: one or two circles, swollen by the fillet."""
+    """The shapes of a body of revolution that can touch the table: circles, swollen by a fillet."""
     if body.rims is not None:
         return _several_circles(body, metre)
     middle, wall, fillet, rim, bore = (x * metre for x in skin(body))
@@ -249,7 +249,7 @@ def _table(m: Motion, metre: float, second: float, joule: float, t0: float) -> d
 
 
 def friction_needed(m: Motion, t0: float) -> float:
-    """The coefficient of friction that rolling needs, at 4001 sampled times."""
+    """The largest coefficient of friction that rolling needs, of 4001 sampled times."""
     t = np.linspace(t0, float(m.t[-1]), 4001)
     return float(m.wanting("force", t=t).friction_coefficient.max(initial=0.0))
 
@@ -257,7 +257,7 @@ def friction_needed(m: Motion, t0: float) -> float:
 def _known_answer(
     m: Motion, metre: float, second: float, joule: float, *, w: Floats, v: Floats, t0: float
 ) -> dict[str, Any]:
-    """The known answer; NaN where the contact has no single point or force."""
+    """The known motion in SI, as for JSON; NaN where the contact has no single point or force."""
     weight, extra = joule / metre, m._extra
     phase = extra.get("phase", np.zeros(m.t.size, int))
     stands = phase == KINDS.index("on its face")

@@ -124,8 +124,8 @@ class Skin(NamedTuple):
 def skin(body: Body) -> Skin:
     """The surface of a body that is symmetric top to bottom, like all except balls with a stem.
 
-    A general body is drawn solid, and as long above its centre as below. If it continues beyond pi/2 although
-    its centre is above its rim, the upper side must not be in the way, and only the lower end is drawn.
+    A general body is drawn solid, and as long above its centre as below. If it can lean beyond pi/2 although
+    its centre is above its rim, an upper end would reach into the table, and only the lower end is drawn.
     """
     ell, fillet = float(body.ell), float(body.fillet)
     lower = kind(body) == "ball" or (fillet > 0 and np.isnan(body.bore) and landing(body) > np.pi / 2 + 1e-9)

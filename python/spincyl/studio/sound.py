@@ -122,11 +122,11 @@ class Sources(NamedTuple):
 
 
 def sources(m: "Motion", first: float, unit: float, lasting: float, listener: float = math.pi) -> Sources:
-    """The sources of the sound of a motion from a time on; `unit` converts times to seconds.
+    """The sources of the sound of a motion after the time `first`; `unit` converts times to seconds.
 
-    `listener` is the azimuth at which the contact point is nearest to the one who hears it.
+    `listener` is the azimuth at which the contact point is nearest to the listener.
 
-    Raises `Silent` if that is nothing.
+    Raises `Silent` if there is nothing to hear.
     """
     looks = np.linspace(0.0, lasting, max(64, math.ceil(_POSES_PER_SECOND * lasting)))
     begin, end = sorted(span(m))
@@ -162,7 +162,7 @@ def pressure(of: Sequence[Sources], count: int, rate: int, compression: float = 
 
 
 def _gain(level: Floats, most: float, compression: float) -> Floats:
-    """Factors that compress levels below the loudest; what has no level stays silent."""
+    """Factors that compress levels below the loudest; 0 where the level is 0."""
     share = np.divide(level, most, out=np.zeros(level.size), where=level > 0)
     return np.power(share, 1 / compression - 1, out=np.zeros(level.size), where=share > 0)
 

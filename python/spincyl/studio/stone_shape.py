@@ -101,14 +101,14 @@ def marks_of_stone(stone: Ellipsoid, upper: str) -> list[Part]:
 
 
 def _needle(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
-    """One half of the needle on the plane."""
+    """One half of the needle that lies on the plane at which a stone with an edge is cut."""
     long, wide = end * math.sqrt(1 - cut * cut) * np.array([_LONG, _WIDE])
     corners = np.array([[long, 0.0, cut + _LIFT], [0.0, wide, cut + _LIFT], [0.0, -wide, cut + _LIFT]])
     return corners, np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([[0, 1, 2]])
 
 
 def _stripe_of_hull(cut: float, end: int) -> tuple[Floats, Floats, np.ndarray]:
-    """One half of the stripe round the hull, below the edge."""
+    """One half of the stripe round the hull of a stone, below its edge."""
     up = -np.pi / 2 + np.linspace(*_STRIPE, 3)[:, np.newaxis] * math.acos(-cut)
     angle = np.linspace(-np.pi / 2, np.pi / 2, _QUARTER + 9)
     around = [end * np.cos(up) * np.cos(angle), end * np.cos(up) * np.sin(angle), np.sin(up)]

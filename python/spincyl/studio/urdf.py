@@ -38,7 +38,7 @@ def urdf(data: dict[str, Any]) -> str:
 
 
 def _parts(shape: dict[str, Any]) -> list[tuple[float, str]]:
-    """What touches the table: heights and shapes."""
+    """Height and XML of each shape that touches the table; ValueError if URDF has no such shape."""
     circles = shape.get("circles")
     if circles is None:
         raise ValueError(_NO_SHAPE)

@@ -15,9 +15,9 @@ _BRIEF = 2e-3
 
 
 def flying(m: Motion) -> dict[str, Any]:
-    """Phases as (time, code, whether the other rim is down), and as a text tells them: (time, code, impacts).
+    """Phases as (time, code, whether the second rim is the lower one), and for text as (time, code, impacts).
 
-    A stone has no rims.
+    For a stone, which has no rims, the third number is 0.
     """
     first, last = span(m)
     begins = np.array([phase.time for phase in m.phases])
@@ -58,7 +58,7 @@ def _told(m: Motion, begins: Floats, ends: Floats, codes: list[int]) -> list[lis
 
 
 def beside(m: Motion, t: Floats) -> dict[str, Any]:
-    """Force on the other rim of a body that lies on both, as 16-bit integers between bounds: F_h, F_2, N."""
+    """Force on the rim to which theta does not refer, as 16-bit integers between bounds: F_h, F_2, N."""
     there = m.wanting("pose", "force", t=t)
     on_both = (there.phase > FLIES) & (there.phase != ON_FACE)
     if not on_both.any():

@@ -1,4 +1,4 @@
-"""Checks of what the live page can show."""
+"""Checks that the live page can show the given contact, losses, restitution and slope."""
 
 from typing import Any
 

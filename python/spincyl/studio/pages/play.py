@@ -228,11 +228,11 @@ class Play:
         """Raise ValueError if the page shows a stone."""
         if self._told.get("stone"):
             raise ValueError(
-                "the page shows a rattleback, which is not a body of revolution; see its `motion`"
+                "the page shows a rattleback, which is not a body of revolution; use the attribute `motion`"
             )
 
     def _set(self, words: dict[str, Any], gone: Iterable[str] = ()) -> None:
-        """Change the state here and on the page; entries in `gone` are removed."""
+        """Change settings of this object and of the page; the settings in `gone` are removed."""
         self._told = {k: v for k, v in self._told.items() if k not in gone or k in words} | words
         if self._widget is not None:
             self._widget.state = self._told

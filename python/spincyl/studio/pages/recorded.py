@@ -1,4 +1,4 @@
-"""Data of motions for a page."""
+"""Data of recorded motions for a page: poses, forces, impacts, and notes on times without a motion."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ _FAINT = 1e-3
 def shown(m: Motion, slips: bool) -> tuple[dict[str, Any], float]:
     """The data of a motion for the page, and the largest number of turns per unit of time.
 
-    A face that lands turns the faster the flatter it is: the last tenth of its time does not count.
+    A body whose face lands turns the faster the flatter it lies: the last tenth of its time does not count.
     """
     first, last = sorted(span(m))
     again = repeats(m)

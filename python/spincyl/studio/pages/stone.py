@@ -21,7 +21,7 @@ _SAMPLES_PER_KNOT = 8  # samples between two knots
 
 @singledispatch
 def numbers(m: Motion, t: Floats) -> dict[str, Any]:
-    """Numbers of a body for the page; for a stone, times of reversals and `ell` of a cylinder as large."""
+    """Numbers of a body for the page; for a stone, reversal times and `ell` of a cylinder of its size."""
     found = {"ell": m.body.ell, "i1": m.body.i1, "i3": m.body.i3}
     if m.body.rims is not None:
         rows = {"circles": m.body.circles.tolist(), "borders": m.body.borders.tolist()}

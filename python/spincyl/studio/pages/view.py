@@ -258,7 +258,7 @@ class View:
 
     @property
     def _slips(self) -> bool:
-        """Whether the page has forces, and a camera that may follow."""
+        """Whether the page shows forces, and has a camera that may follow the body."""
         wanted = self.look.follow or "force" in (self.look.drawn or ())
         return bool(wanted) or any(map(slips_or_flies, self.motions))
 
@@ -272,7 +272,7 @@ class View:
         return {"speed": 1e3 * self.scale.metres_per_second(1.0), "speeds": "mm/s"} | lengths
 
     def _rates(self) -> dict[str, Any]:
-        """The unit in which the page gives the spin of a stone."""
+        """The unit in which the page gives the spin of a stone, and the factor from natural units."""
         second = 1.0 if self.scale is None else float(self.scale.seconds(1.0))
         return {"rate": 1 / second, "rates": self._spun}
 
@@ -420,7 +420,7 @@ def view(
 def film_of(
     m: Motion, path: str | PathLike[str], seconds: float | None = None, sound: bool | None = None
 ) -> Path:
-    """Write the film of a motion."""
+    """Write the film of a motion as an .mp4 or .gif file, and return its path."""
     path = path_of("path", path)
     if path.suffix.lower() not in (".mp4", ".gif"):
         raise ValueError(f"path = {str(path)!r}: expected a name that ends in .mp4 or .gif")

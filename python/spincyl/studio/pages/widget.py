@@ -38,7 +38,7 @@ export default {
 
 
 class Widget(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
-    """The shared state of all frames with one name."""
+    """State that is shared by all frames in a notebook that have one name."""
 
     _esm = _SCRIPT
     name = traitlets.Unicode().tag(sync=True)

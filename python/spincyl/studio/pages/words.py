@@ -49,7 +49,7 @@ def words_of_body(body: Body) -> dict[str, Any]:
 
 
 def _words_of_frustum(body: Body) -> dict[str, Any]:
-    """Words for a solid frustum, such as a cone: radii of both ends, and height; none for another body."""
+    """Keywords for a solid frustum or cone: radii of both ends, and height; {} for another body."""
     if body.rims is None or len(body.rims) != 2:
         return {}
     (bottom, low, _), (top, high, _) = body.rims.tolist()
@@ -63,7 +63,7 @@ def _words_of_frustum(body: Body) -> dict[str, Any]:
 
 
 def _words_of_parts(body: Body) -> dict[str, Any]:
-    """Words for the surfaces of a body made from parts: shade, stripes, and corners with normals."""
+    """Keywords for the surfaces of a body made from parts: shade, stripes, and corners with normals."""
     if not body._parts and body.rims is None:
         return {}
     surfaces = parts_shape.profiles_of_parts(body)
@@ -77,7 +77,7 @@ def _words_of_parts(body: Body) -> dict[str, Any]:
 
 
 def _words_of_scale(scale: Scale | None) -> dict[str, float]:
-    """Words for a scale: the radius in metres, the mass if it is known, and gravity unless it is standard."""
+    """Keywords for a scale: radius in metres, mass if it is known, and gravity unless it is standard."""
     if scale is None:
         return {}
     told = {"radius": scale.radius, "mass": scale.mass, "gravity": scale.gravity}
@@ -169,7 +169,7 @@ def _natural_of(words: Mapping[str, Any]) -> Body:
 
 
 def state_of(words: Mapping[str, Any]) -> State:
-    """The state that these keywords give, or else a steady state, or else rest; then the kick is added."""
+    """The state of these keywords; without w1, w2, w3 a steady state, or else rest; plus the kick."""
     theta, given, turning = words["theta"], words.get("w"), words.get("precession")
     if given:
         start = State(theta, *given[:3], slip=tuple(given[3:]) if any(given[3:]) else None)

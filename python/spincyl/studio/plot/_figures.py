@@ -81,7 +81,7 @@ def figures(
 
 
 def _written(folder: Path, suffix: str, slides: bool, progress: Progress | None) -> list[Path]:
-    """The paths of the figures, after they are drawn."""
+    """Draw the figures, write them to files in a folder, and return the paths."""
     plt: Any = optional_library("matplotlib.pyplot", "plot")
     critical = float(Body.critical_aspect())
     contacts: tuple[Contact, Contact] = ("smooth", "rolling")
@@ -139,7 +139,7 @@ def _written(folder: Path, suffix: str, slides: bool, progress: Progress | None)
 
 
 def _motions() -> "dict[str, list[Motion]]":
-    """The motions among the figures, by name."""
+    """The motions that are drawn as figures, by the name of the figure."""
     cylinder, can, coin, disk = (Body.solid(ell) for ell in (2.5, 1.0, 0.17, 0.375))
     rocking = State(0.3, 1e-3, 0.0, 0.0)
     # unstable on a smooth table, stable when rolling

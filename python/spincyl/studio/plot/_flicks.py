@@ -32,8 +32,8 @@ def flicks(found: "xarray.Dataset", ax: "Axes | None" = None) -> "Axes":
     """Draw a map of the outcomes of flicks.
 
     For tubes that settle on one rim, colours show the time until they roll. Tubes that slip until the last
-    time, or in every nod until shortly before it, have a colour of their own. If the flicks were computed
-    with a `restitution`, the area of the tubes that hop first is hatched.
+    time, or in every nutation until shortly before this time, have a colour of their own. If the flicks were
+    computed with a `restitution`, the area of the tubes that hop first is hatched.
 
     Parameters
     ----------

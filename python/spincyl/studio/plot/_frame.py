@@ -98,7 +98,7 @@ def _horizontal(angle: float) -> Floats:
 
 
 def _view() -> Floats:
-    """The direction of view."""
+    """Unit vector from the body towards the eye."""
     view: Floats = np.cos(_ELEVATION) * _horizontal(_AZIMUTH) + np.array([0.0, 0.0, np.sin(_ELEVATION)])
     return view
 

@@ -332,7 +332,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
 
 
 def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
-    """The half lengths and bodies to draw; an error names the argument."""
+    """The aspect ratios and bodies to draw; errors name the argument `ells`."""
     try:
         given = [ells] if isinstance(ells, Body) else list(ells)
     except TypeError:
@@ -345,7 +345,7 @@ def _ells(ells: Iterable[float | Body]) -> list[float | Body]:
 
 
 def _mapped(data: Any) -> tuple[Any, Any, Any, float, float]:
-    """Inclinations, half lengths, regions, bore and fillet from `sweep.portrait`; an error for other data."""
+    """Inclinations, aspect ratios, regions, bore and fillet from `sweep.portrait`; else an error."""
     if not hasattr(data, "data_vars"):
         raise TypeError(f"data: expected a Dataset of sweep.portrait, not {type(data).__name__}")
     region = data.get("region")
@@ -393,7 +393,7 @@ def pieces(
 
 
 def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
-    """Draw up to five roots against ell as curves; two that appear or vanish together are joined."""
+    """Draw up to five inclinations against ell as curves; two that appear or vanish together are joined."""
     many = np.count_nonzero(~np.isnan(roots), axis=1)
     runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
     for run in runs:

@@ -1,4 +1,4 @@
-"""Motions, and photographs of them."""
+"""Figures of motions: inclination, path and contact force, and long-exposure photographs."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -185,7 +185,7 @@ def motion(m: "Motion", axes: "Sequence[Axes] | None" = None) -> "list[Axes]":
 
 
 def _spin(ax: "Axes", m: Any, t: Any, scale: "Scale | None", style: dict[str, Any]) -> None:
-    """Draw the spin of a stone on a second axis of the inclination; the spin reverses at zero."""
+    """Draw the spin of a stone on a second vertical axis, beside the inclination."""
     right = ax.twinx()
     right.plot(t, _in_plot_units(scale, "w", m.spin), color=ORANGE, **style)
     right.axhline(0.0, color="#888888", lw=0.8, ls=":")
@@ -284,7 +284,7 @@ def _unit_label(name: str, scale: "Scale | None") -> str:
 
 
 def _law(m: "Motion") -> str:
-    """The law of friction, for a title."""
+    """The contact with the table as text, for the title of a figure."""
     if isinstance(m.contact, Viscous):
         return rf"viscous, $c = {m.contact.c:.4g}$"
     mu, static, _ = m.contact._numbers if isinstance(m.contact, Coulomb) else (0.0, 0.0, 0.0)
