@@ -98,7 +98,7 @@ def table():
     """Rows of the table."""
     head = [
         "body",
-        "shape in MuJoCo",
+        "shape in MuJoCo (MJCF: the model file that spincyl writes)",
         "radius of the circle in MuJoCo",
         "exact radius",
         "time of a turn in MuJoCo",

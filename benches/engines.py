@@ -118,7 +118,7 @@ def main():
     args = parser.parse_args()
     head = [
         "scene",
-        "engine",
+        "engine (lagged, sap: contact solvers of Drake)",
         "time step",
         "largest error of the position of the centre",
         "largest error of the inclination",

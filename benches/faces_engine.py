@@ -132,8 +132,8 @@ def table():
         "largest error of the centre",
         "largest error of the rotation about the vertical",
         "largest error of the inclination",
-        "time of rest in MuJoCo",
-        "time of rest in spincyl",
+        "time at which it comes to rest in MuJoCo",
+        "time at which it comes to rest in spincyl",
         "processor time",
     ]
     yield ["---"] * 9

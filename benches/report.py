@@ -34,17 +34,17 @@ _TARGETS = (1e-6, 1e-9, 1e-12)
 #: the sentences above the tables
 EXACT = """\
 Each row is a scene, computed by the exact solution up to the time t. The scenes are a tube near its steady state, a cylinder and Euler's disk that nod, a can that rocks from side to side,
-a cylinder of the critical aspect ratio, and a cylinder that leaves an unstable steady state slowly (the "slow saddle"). Errors are in natural units."""
+a cylinder of the critical aspect ratio, and a cylinder that slowly leaves an unstable steady state, which is a saddle point (the "slow saddle"). Errors are in natural units."""
 EACH = """\
-The next table has the time in which each method computes a scene up to the time t with an error of the final state below the allowed error; "-" means that
-none of its settings reaches this error."""
+The next table has the time in which each method computes one of these scenes up to the time t with an error of the final state below the allowed error; "-" means that
+no step or tolerance of the method reaches this error."""
 LISTS = (
-    "The lists below have the points of the curves. Each point has the step or the tolerance, the time of the"
-    " motion, and the error of the final state."
+    "The lists below have the points of the curves of time against error. Each point has the step or the tolerance,"
+    " the time to compute the motion, and the error of the final state."
 )
 COSTS = (
-    "Time that RK4 with a fixed step takes for one step of a rolling cylinder, by the outputs that are computed,"
-    " if only the last state or the state after every step is returned:"
+    "Each row is a set of outputs, with the time that RK4 with a fixed step takes for one step of a rolling cylinder"
+    " to compute them, if only the last state or the state after every step is returned:"
 )
 #: heads of the columns with the times of a method
 TIMES = {

@@ -193,7 +193,7 @@ def main() -> None:
     head = [
         "scene",
         "solver",
-        "number of time steps",
+        "number of time steps in the scene",
         "largest error of the inclination",
         "largest error of the position of the centre",
         "processor time",

@@ -109,7 +109,7 @@ def main() -> None:
     args = parser.parse_args()
     head = [
         "scene",
-        "solver, and its steps per unit of time",
+        "solver, and its time steps per sqrt(R/g)",
         "largest error of the centre before the first impact (mm)",
     ]
     head += [

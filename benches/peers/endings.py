@@ -193,16 +193,16 @@ def measure(quick):
         shown.setdefault(who, []).append((setting, us, max(parts[1], parts[3])))
         exact.setdefault(who, []).append((setting, us, max(parts[2], parts[4])))
     head = (
-        "program",
-        "tolerance, or step of RK4",
+        "program (heyoka: Taylor's method; RK4, DOP853: Runge-Kutta)",
+        "tolerance, or step of RK4 in sqrt(R/g)",
         "time per motion (µs)",
         "number of motions",
         "motions with a wrong ending",
-        "median error of the time of the ending",
-        "99 % of the errors of this time are below",
-        "largest error of this time",
-        "99 % of the errors of the state at t = 20 are below",
-        "largest error of the state at t = 20",
+        "median error of the time of the ending (sqrt(R/g))",
+        "99 % of the errors of this time are below (sqrt(R/g))",
+        "largest error of this time (sqrt(R/g))",
+        "99 % of the errors of the state at t = 20 are below (natural units)",
+        "largest error of the state at t = 20 (natural units)",
     )
     text = table(head, rows)
     share = np.bincount(truth[:, 0].astype(int), minlength=4) / n

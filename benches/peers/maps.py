@@ -111,7 +111,12 @@ def measure(quick, also=()):
             job = {"grid": "grid", "scattered": "points"}[x["job"]]
             rows.append((job, f"numba {x['version']}, {x['svml']}", x["threads"], x["ns"]))
     text = table(
-        ("points computed", "program", "number of threads", "time per point (ns)"),
+        (
+            "points at which the rate is computed",
+            "program (SVML: Intel's vectorised functions)",
+            "number of threads",
+            "time per point (ns)",
+        ),
         sorted(
             (("scattered points" if job == "points" else job, *more) for job, *more in rows),
             key=lambda r: r[:2],
@@ -119,8 +124,8 @@ def measure(quick, also=()):
     )
     text += "\nErrors of the rates on the grid:\n\n" + table(
         (
-            "program",
-            "largest error over 1 + kappa_c (ulp)",
+            "program (SVML: Intel's vectorised functions)",
+            "largest error of the rate over 1 + kappa_c (ulp)",
             "99 % of errors over 1 + kappa_c are below (ulp)",
         ),
         [(w, *e) for w, e in off.items()],
