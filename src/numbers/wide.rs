@@ -1,6 +1,6 @@
 //! Eight numbers in SIMD lanes, and two vectors of such lanes side by side.
 //!
-//! Each lane is computed like a single number, except that `mac` is fused here: the tests of `angle` and of the
+//! Each lane is computed like a single number, except that `mac` is fused in lanes: the tests of `angle` and of the
 //! ensembles compare the bits of lanes and of single numbers.
 
 use super::real::{Lane, Real, operators};
