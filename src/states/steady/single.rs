@@ -12,7 +12,7 @@
 
 use crate::numbers::{Narrow, Short};
 
-/// Relative to the terms that were subtracted, n or m has too few digits below this bound.
+/// n or m has too few digits below this bound, relative to the terms whose difference they are.
 const NEAR: f64 = 1.0 / (1_u64 << 18) as f64;
 
 /// Where theta or n/m is below this bound, the rate may leave the range of single numbers.
