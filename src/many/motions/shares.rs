@@ -1,5 +1,5 @@
-//! Numbers of motions that one series, the marches and single motions compute. These counts are the same on every
-//! machine; they show whether a change moves motions to a slower method.
+//! Tests of the numbers of motions that are computed by one series, by marches and alone. These counts are the same on
+//! every machine; they show whether a change moves motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;
@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_PI_2;
 
 const COUNT: usize = 2048;
 
-/// Bodies and states as columns.
+/// Bodies and states as columns of numbers.
 type Starts = ([Vec<f64>; 5], [Vec<f64>; 4]);
 
 /// Solid cylinders of ell 0.5 to 3 with a nutation, as in `docs/benchmarks.md`; for a `kick` of 0 random states.
@@ -35,8 +35,8 @@ fn starts(kick: f64) -> Starts {
     (bodies, states)
 }
 
-/// The number of motions of 2,048 that one series does not compute, and of those that the lanes do not
-/// compute; None without lanes.
+/// The number of motions of 2,048 that one series does not compute, and the number that SIMD lanes do not compute; None
+/// without lanes.
 fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]> {
     let starts = MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     let times = [20.0];
