@@ -101,7 +101,7 @@ pub enum Error {
         /// The number of outcomes that obey the laws.
         outcomes: usize,
     },
-    /// A user-defined couple is not finite, or supplies energy, in a state on the way of a motion.
+    /// A user-defined couple is not finite, or supplies energy, in a state during a motion.
     #[error("couple: power = {power:?} at theta = {theta:?}, w = {w:?}, N = {normal:?}: expected {expected}")]
     Couple {
         /// The power that the couple takes, -m.w, in M g sqrt(g R); NaN if the couple is not finite.
@@ -115,7 +115,7 @@ pub enum Error {
         /// The normal force, in M g.
         normal: f64,
     },
-    /// A user-defined coefficient of friction is negative or not finite at a speed on the way of a motion.
+    /// A user-defined coefficient of friction is negative or not finite at a speed of slip during a motion.
     #[error("mu = {mu:?} at the speed {speed:?}: expected {expected}")]
     Coefficient {
         /// The coefficient of friction.

@@ -197,12 +197,12 @@ const JUMP_SHARE: f64 = 1e-3;
 /// By rounding, a couple may supply this share of its power, and static friction may be smaller than mu(0) by this share.
 const POWER_ROUNDING: f64 = 1e-12;
 
-/// What an error expects of a couple and of a coefficient of friction.
+/// The conditions on a couple and on a coefficient of friction, as errors name them.
 const FINITE: &str = "a couple that is finite in every state";
 const EXPECTED_TO_LOSE: &str = "a couple that takes energy, m.w <= 0";
 const AT_LEAST_0: &str = "a coefficient of friction of 0 or more at every speed";
 
-/// The error of a couple that is not finite in a state, or supplies energy there.
+/// The error of a couple that is not finite, or supplies energy, in the state `y`; None for a valid couple.
 pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Error> {
     let w = [y.w1, y.w2, y.w3];
     let fault = |power: f64, expected| Some(Error::Couple { power, expected, theta: y.theta, w, normal });
@@ -221,7 +221,7 @@ pub(crate) fn fault_of_drive(push: &Push, now: &Moment) -> Option<Error> {
     (!finite).then_some(Error::OutOfRange { name: "drive", value: now.time, expected })
 }
 
-/// The error of a coefficient of friction that is negative or not finite at a speed.
+/// The error of a coefficient of friction that is negative or not finite at a speed; None for a valid one.
 pub(crate) fn fault_of_friction(mu: f64, speed: f64) -> Option<Error> {
     (!(0.0..=f64::MAX).contains(&mu)).then_some(Error::Coefficient { mu, expected: AT_LEAST_0, speed })
 }
@@ -319,7 +319,7 @@ fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
         "static",
         fixed,
         (most * (1.0 - POWER_ROUNDING), f64::INFINITY),
-        "at least mu(0), the friction of the law at the start of a slip",
+        "at least mu(0), the coefficient of sliding friction at speed 0",
     )?;
     let mut from = (0.0, most);
     for i in 0..=1000 {

@@ -53,7 +53,7 @@ pub struct Slip {
 }
 
 impl Slip {
-    /// The slip with this component along e_h and this one along e2.
+    /// The slip with the components `u_h` along e_h and `u_2` along e2, in sqrt(g R).
     pub const fn new(u_h: f64, u_2: f64) -> Self {
         Self { u_h, u_2 }
     }

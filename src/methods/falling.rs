@@ -24,7 +24,7 @@ pub(crate) struct Falling<F: FnMut(f64) -> [f64; 2]> {
 
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
     /// The first zero in [from, to]; None if there is none. The function is known to be positive up to `from`. Returns
-    /// an error if it is negative there, and after too many evaluations.
+    /// an error if it is negative at `from`, and after too many evaluations.
     pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, Exhausted> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
         if here <= 0.0 {

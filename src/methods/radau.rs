@@ -12,8 +12,8 @@
 //! derivatives of the rates, is that of a point within the step. For an oscillation d5 and d3 vanish together but d4
 //! does not, so that the error does not depend on its phase.
 //!
-//! Error: that of a pendulum goes as h^9. The tests at the end measure this, run a stiff equation, and check the
-//! estimate of the error.
+//! Error: that of a pendulum goes as h^9; the tests at the end measure this exponent, run a stiff equation, and check
+//! the estimate of the error.
 
 use super::rk8::Step;
 use crate::numbers::larger_or_nan;
@@ -120,7 +120,8 @@ fn extrapolation(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
     })
 }
 
-/// The variables in the middle of a step, as far as the guess knows them; the derivatives J are taken there for the whole step.
+/// The variables in the middle of a step, as far as the guess knows them; the derivatives J at this place serve for the
+/// whole step.
 pub(crate) fn middle<const N: usize>(y: &[f64; N], guess: &Guess<N>) -> [f64; N] {
     guess.map_or(*y, |moved| core::array::from_fn(|n| y[n] + moved[2][n]))
 }

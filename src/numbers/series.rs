@@ -41,7 +41,7 @@ impl Series {
         self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
-    /// The series of the same function in powers of the distance from `t`.
+    /// The series of this function in powers of the distance from `t`.
     pub fn about(&self, t: f64) -> Self {
         let mut at = self.at;
         for k in 0..TERMS {

@@ -33,7 +33,7 @@ enum Op {
 }
 
 impl Op {
-    /// The same operation, with `to` applied to the index of each operand.
+    /// This operation with `to` applied to the index of each operand.
     fn with(self, mut to: impl FnMut(u16) -> u16) -> Self {
         match self {
             Self::Given | Self::Constant(_) => self,

@@ -6,7 +6,7 @@
 use super::real::{Lane, Real, operators};
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 
-/// Number of lanes in one vector.
+/// Number of SIMD lanes in one vector.
 pub(crate) const LANES: usize = 8;
 
 impl<S: Simd> Real for f64x8<S> {

@@ -33,7 +33,9 @@ impl<'py> GivenColumns<'py> {
             match self.column(name)? {
                 Some(column) => all[i] = column,
                 None if i == 0 => return Ok(None),
-                None => return Err(PyValueError::new_err(format!("columns: expected a column {name}"))),
+                None => {
+                    return Err(PyValueError::new_err(format!("columns: expected a column named {name}")));
+                }
             }
         }
         Ok(Some(all))
@@ -41,7 +43,7 @@ impl<'py> GivenColumns<'py> {
 
     pub fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
         self.some(names)?
-            .ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {}", names[0])))
+            .ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {}", names[0])))
     }
 }
 
@@ -80,11 +82,11 @@ pub fn circles_of(given: &GivenColumns<'_>) -> PyResult<Vec<CirclesOfRow>> {
 /// The output column of codes with this name.
 pub fn code_column<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {name}")))?.extract()
 }
 
 /// The output column of numbers with this name.
 pub fn numbers<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, f64>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {name}")))?.extract()
 }

@@ -101,7 +101,8 @@ pub fn ensemble<'py>(
     for &kind in Summary::ALL {
         summary[kind as usize] = wanted.take(kind.label()[0]);
     }
-    let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("out: expected a column error"))?;
+    let error =
+        wanted.take("error").ok_or_else(|| PyValueError::new_err("out: expected a column named error"))?;
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
     let out = MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
     let mut watch = Watch::new(progress);

@@ -123,13 +123,14 @@ impl Natural {
     /// Computes the motion at these times, of which the first is 0.
     pub(super) fn answer(&self, times: &[f64]) -> Result<KnownMotion, SceneError> {
         if self.ask().turning != 0.0 {
-            return Err(SceneError::Motion("turning: a scene needs a table that does not turn"));
+            return Err(SceneError::Motion("turning: expected 0, a table that does not turn"));
         }
         match self {
             Self::Body { body, start, ask } => {
                 let ask = ask.with_pose().with_force();
                 let m = motion::roll_with(body, *start, times, &ask, || true)?;
-                let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
+                let m =
+                    m.ok_or(SceneError::Motion("motion: expected a motion that advances from its start"))?;
                 let rows: Option<_> = (0..m.states.len()).map(|i| body_at(&m, body, &ask, i)).collect();
                 let bounds = m.bounds(body);
                 told(m, rows.ok_or(UNTOLD)?, bounds, &ask)
@@ -137,7 +138,8 @@ impl Natural {
             Self::Stone { stone: of, start, ask } => {
                 let ask = ask.with_pose().with_force();
                 let m = stone::roll(of, *start, times, &ask, || true)?;
-                let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
+                let m =
+                    m.ok_or(SceneError::Motion("motion: expected a motion that advances from its start"))?;
                 let rows: Option<Vec<Known>> =
                     (0..m.states.len()).map(|i| stone_at(&m, of, &ask, i)).collect();
                 let rows = rows.ok_or(UNTOLD)?;
@@ -220,7 +222,7 @@ impl TouchNow {
         Self { both, point: !(both || stands || flies), flies }
     }
 
-    /// The force of the table; zero where it would pull, since the body then leaves the table at once.
+    /// The force of the table; zero where N would be negative, since the body then leaves the table at once.
     fn force(&self, normal: f64, force: Vector3<f64>) -> Vector3<f64> {
         match () {
             () if self.both => Vector3::repeat(f64::NAN),

@@ -55,7 +55,7 @@ pub(super) fn words(numbers: impl IntoIterator<Item = f64>) -> String {
 mod tests {
     use super::*;
 
-    /// What Python 3 writes.
+    /// Checks the texts against those that Python 3 writes.
     #[test]
     fn numbers_are_written_as_python_writes_them() {
         for (x, told, six) in [

@@ -25,8 +25,8 @@ pub struct CircleBorder {
 }
 
 impl Body {
-    /// The inclinations at which the contact passes from one circle of the body to the next, in ascending order, and the
-    /// distances of the two points of contact there.
+    /// The inclinations at which the contact passes from one circle of the body to the next, in ascending order, each
+    /// with the distance between the two contact points at this inclination.
     ///
     /// ```
     /// let can = spincyl::Body::solid(2.0)?; // it lies on both rims at pi/2
@@ -225,7 +225,7 @@ impl Body {
 pub(crate) struct View {
     /// Whether the state refers to the upper end of the body.
     pub over: bool,
-    /// The indices, from the lower end of the body, of the circle on which it stands and of the one that lands at
+    /// The indices, from the lower end of the body, of the circle on which it stands and of the circle that lands at
     /// theta_end; None for a body with one circle or two equal rims.
     pub circles: Option<[u8; 2]>,
     /// The least and the largest inclination of the circle, each as [inclination of the state, inclination of the lower end].

@@ -51,7 +51,7 @@ impl TryFrom<BodyFile> for Body {
                 ("fillet", of.fillet, body.fillet),
                 ("theta_end", ends, body.theta_end),
             ] {
-                within(name, given, (own, own), "the number of the first of the circles")?;
+                within(name, given, (own, own), "the number of the first circle in `circles`")?;
             }
             body
         } else {

@@ -40,7 +40,7 @@ impl Body {
             None => Form::Solid { radii, bores: [0.0; 2], ends, fillet: 0.0 },
             Some(0.0) => Form::Wall { radii, ends },
             Some(wall) => {
-                within("wall", wall, (0.0, bottom.min(top)), "a wall of at most the smaller radius")?;
+                within("wall", wall, (0.0, bottom.min(top)), "0 <= wall <= the smaller of bottom and top")?;
                 Form::Solid { radii, bores: radii.map(|r| r - wall), ends, fillet: 0.0 }
             }
         };

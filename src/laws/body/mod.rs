@@ -402,7 +402,7 @@ impl Body {
         landing_angle(self.theta_end)
     }
 
-    /// The circle on which the body stands and the one that lands at theta_end, at this inclination.
+    /// The circle on which the body stands and the circle that lands at theta_end, both at the inclination theta_end.
     pub(crate) fn border(&self) -> Border<f64> {
         Border::between([self.shape().rim, self.next_rim()], landing_angle(self.theta_end))
     }
@@ -503,7 +503,7 @@ pub(crate) fn tilt((s, c): (f64, f64), angle: (f64, f64)) -> f64 {
     s * angle.1 - c * angle.0
 }
 
-/// Largest rate of the inclination, in sqrt(g/R), at which a body still counts as just leaving an end of the range of its circle.
+/// Largest rate of the inclination, in sqrt(g/R), at which a body counts as just leaving an end of the range of its circle.
 const LEAVES: f64 = 1e-9;
 
 /// How far beyond `border`, an inclination at which a circle lands, an inclination may be by rounding its sine and

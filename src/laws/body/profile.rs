@@ -1,4 +1,4 @@
-//! The profile of a body: a row of circles, one after the other of which carries the body as it tilts over.
+//! The profile of a body: a row of circles on which the body stands one after the other as it tilts over.
 //!
 //! ```text
 //! Z_k(theta) = l_k c + a_k s + rho_k       height of the centre above the table where circle k carries
@@ -128,7 +128,10 @@ impl CircleRow {
             while row.count > 0 {
                 let last = row.circles[row.count - 1];
                 let Some([border, _]) = last.border(circle) else {
-                    return refuse(k as f64, "circles with fillets that do not lie inside each other");
+                    return refuse(
+                        k as f64,
+                        "circles of which none, with its fillet, lies inside another one; this value is the index of one",
+                    );
                 };
                 // One that touches only at an end, as the inner edge of a tube does, never carries.
                 if (border - PI).abs() < JOINED {
@@ -156,7 +159,7 @@ impl CircleRow {
                 "circles",
                 row.border(k - 1),
                 (f64::MIN_POSITIVE, PI.next_down()),
-                "circles in order, from the lower end up",
+                "circles in order, from the lower end up; two of them meet at this inclination",
             )?;
         }
         Ok(row)

@@ -98,7 +98,7 @@ pub(crate) struct Border<T> {
     pub angle: (T, T),
     /// Height Z of the centre of mass.
     pub height: T,
-    /// The circle that touches the table at smaller inclinations, and the one that touches at larger ones.
+    /// The circle that touches the table at smaller inclinations, and the circle that touches it at larger inclinations.
     pub circles: [CircleDown<T>; 2],
     /// Whether both circles touch the table with the same radius A.
     pub even: bool,

@@ -8,9 +8,9 @@
 //!   q1 = rho^2 f/2 + 2 a rho^3/3 + rho^4/4,  q2 = rho^3 f/3 + pi a rho^4/8 + 2 rho^5/15
 //! sharp, rho = 0:  I3 = (1 + q^2)/2,   I1 = I3/2 + ell^2/3
 //! ```
-//! The formulas of m, I3 and I1 are volume integrals; see Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim. The
-//! inertia excess is exact to 2^-100 of the larger moment: the tests at the end check it. `test_rounded_reference`
-//! checks the moments of rounded edges to four ulp.
+//! The formulas of m, I3 and I1 are volume integrals; see Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the
+//! sharp rim. The inertia excess is exact to 2^-100 of the larger moment: the tests at the end check it.
+//! `test_rounded_reference` checks the moments of rounded edges to four ulp.
 
 use super::ELL;
 use crate::numbers::{Real, Sum};

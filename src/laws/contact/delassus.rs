@@ -1,4 +1,4 @@
-//! The inverse inertia of a point of contact: how its velocity changes with an impulse there.
+//! The inverse inertia of a contact point: the change of its velocity per impulse that acts on the point.
 //!
 //! ```text
 //! u' - u = W P,   W = [[A, b], [b, a_n]]       A of the two horizontal axes, b the coupling to the normal impulse
@@ -6,9 +6,9 @@
 //!                 d turns by f = d x (b - mu A d) per |u| dp,   df/dalpha = -d.(b - mu A d) - mu e.A e,   e across d
 //! held:           |A^-1 b| <= mu_s;   else it leaves along the one d with b - mu A d = lam d, lam > 0
 //! ```
-//! W is symmetric and positive for every body and every contact point (Delassus 1917; Routh 1860), and the two horizontal
-//! axes may be any. For every mu the slip at each p is unique, since (u - v).A^-1 (u - v) of two solutions never grows;
-//! so there is one way out of rest.
+//! W is symmetric and positive for every body and every contact point (Delassus 1917; Routh 1860), and the two
+//! horizontal axes may be any. For every mu the slip at each p is unique, since (u - v).A^-1 (u - v) of two solutions
+//! never grows; so a slip can begin from rest in only one way.
 //!
 //! Error: a few roundings; the direction of a slip has an error of one rounding.
 

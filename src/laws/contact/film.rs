@@ -4,7 +4,7 @@
 //! u_i = b_i/(c a_i) + (u_i0 - b_i/(c a_i)) exp(-c a_i p)      along the principal axes of A
 //! u_n and the work of the normal force are its integrals over the normal impulse p
 //! ```
-//! u_n may rise through 0 and fall again once. The end of compression and that of the impact are zeros, found between
+//! u_n may rise through 0 and later fall once. The end of compression and that of the impact are zeros, found between
 //! the places where u_n' changes sign. Error: a few roundings.
 
 use super::delassus::Delassus;

@@ -1,4 +1,4 @@
-//! Laws of restitution: where an impact ends.
+//! Laws of restitution, which determine where an impact ends.
 //!
 //! ```text
 //! Stronge   W = (1 - e^2) W_c, W the work of the normal force
@@ -17,8 +17,8 @@ use super::table::Table;
 use crate::error::{Error, within};
 
 /// The law by which an impact restores the normal velocity. Its coefficient e is that of
-/// [`restitution`](crate::motion::Ask::restitution). Only Stronge's law takes energy from every impact; a motion under another
-/// one ends where a second circle or a face lands.
+/// [`restitution`](crate::motion::Ask::restitution). Only Stronge's law takes energy from every impact; a motion under
+/// another law ends where a second circle or a face lands.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -35,7 +35,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 const DOUBTFUL_SHARE_OF_PAINLEVE: f64 = 0.9;
 /// Largest growth rate of the speed of a slip that counts as zero, since it may be a rounding error.
 const GROWTH_ROUNDING: f64 = 1e-11;
-/// The same limit just after static friction has ceased to hold, at a time that is rounded.
+/// Largest growth rate of a slip that counts as zero just after static friction has ceased to hold, at a time that is rounded.
 const GROWTH_ROUNDING_AT_RELEASE: f64 = 1e-8;
 
 /// The forces at a contact point at rest, and the rates of a slip from rest, which decide whether the point sticks.

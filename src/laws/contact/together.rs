@@ -101,7 +101,7 @@ const DIRECTION_ROUNDING: f64 = 1e-15;
 const START_DIRECTIONS: usize = 24;
 /// Largest growth rate of the speed of a slip that counts as zero.
 const SLIP_GROWTH_ROUNDING: f64 = 1e-11;
-/// Directions that differ by less than this are the same.
+/// Directions of slip that differ by less than this, in radians, count as the same.
 const SAME_DIRECTION: f64 = 1e-6;
 
 impl Together {

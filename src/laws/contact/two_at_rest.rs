@@ -17,7 +17,7 @@ use crate::numbers::larger_or_nan;
 /// The largest number of steps of the search.
 const SEARCH_STEPS: usize = 100_000;
 
-/// The way in which a body begins to move whose two circles were at rest.
+/// The beginning of the motion of a body whose two circles were at rest: forces, accelerations, and the circles that slip.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Begun {
     /// Forces and accelerations of the body; the normal force of a circle that rises is 0.
@@ -29,7 +29,7 @@ pub(crate) struct Begun {
 }
 
 impl Lying<f64> {
-    /// The way in which a body begins to move whose circles are at rest and which does not turn about the vertical. The
+    /// Computes how a body begins to move whose circles are at rest and which does not turn about the vertical. The
     /// coefficient of friction of each circle is that of `fixed` while it sticks, and that of sliding if it cannot. The
     /// result is None if the search finds no answer, or if a circle that slips could also stick. The search for
     /// friction, along e_h and e2 at each circle, begins at `near`: it is slow in directions in which friction changes

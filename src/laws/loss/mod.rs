@@ -136,8 +136,8 @@ macro_rules! laws {
             }
         }
 
-        /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
-        /// up to a tenth of their time.
+        /// The sums over all laws are written out, law by law: a loop with a `match` costs motions in SIMD lanes and
+        /// single motions up to a tenth of their time.
         impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
             /// The couple of all laws that are present.
             #[inline(always)]

@@ -49,10 +49,10 @@ fn stops_compiled_once(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let count = starts.len();
-    assert!(starts.fit(count), "columns of different lengths");
+    assert!(starts.fit(count), "expected columns of one length, or single numbers");
     assert!(
         [out.stops_at.len(), out.ends_at_theta.len(), out.ended.len()] == [count; 3],
-        "an array does not fit"
+        "an output array does not have the length of the results"
     );
     spare()?;
     let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
@@ -171,8 +171,8 @@ fn ask_compiled_once(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    assert!(starts.fit(starts.len()), "columns of different lengths");
-    assert!(of.len() == x.len() && out.len() == x.len(), "an array does not fit");
+    assert!(starts.fit(starts.len()), "expected columns of one length, or single numbers");
+    assert!(of.len() == x.len() && out.len() == x.len(), "of, x and out have different lengths");
     spare()?;
     let mut blocks = room(x.len().div_ceil(64))?;
     for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64)) {

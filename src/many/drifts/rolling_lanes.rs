@@ -121,7 +121,7 @@ impl<T: SideBySide> Flows<T, 4, DRIFT_MARGINS> for DriftLanes<T> {
     }
 }
 
-/// A drift that waits or is in a lane: its index, and the number of steps that it may still take.
+/// A drift that waits for a SIMD lane or is in one: its index, and the number of steps that it may still take.
 struct DriftTask {
     i: usize,
     of: Rolling<'static>,
@@ -201,8 +201,8 @@ fn begin(row: &DriftRow) -> Result<(Rolling<'static>, Numbers<f64>), Error> {
     Rolling::begin(&body, &State::from(row.state), &row.losses)
 }
 
-/// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws
-/// share their lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
+/// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws share a set
+/// of SIMD lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
 pub(crate) fn rolling_stops(
     level: Option<Level>,
     starts: &DriftStarts<'_>,

@@ -29,7 +29,7 @@ pub fn areas<const SETS: usize>(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<Vec<[[f64; 8]; SETS]>>, Error> {
     let fit = weights.iter().all(|w| w.len() == theta.len());
-    assert!(fit && theta.is_sorted(), "theta ascending, and a weight for each");
+    assert!(fit && theta.is_sorted(), "expected theta to ascend, and a weight for each inclination");
     spare()?;
     let mut sums = room(theta.len() + 1)?;
     let mut sum = [0.0; SETS];

@@ -181,7 +181,7 @@ pub fn portrait<F: Cell>(
     let out = Block::of(out);
     assert!(
         out.fits(theta.len() * bodies.len()),
-        "an array does not have theta.len() * bodies.len() numbers"
+        "an output array does not have theta.len() * bodies.len() numbers"
     );
     if theta.is_empty() || bodies.is_empty() {
         return Ok(true);
@@ -357,9 +357,9 @@ pub fn points<F: Cell>(
 ) -> Result<bool, Error> {
     let columns = [theta, ell, bore, fillet];
     let count = rows(columns.into_iter());
-    assert!(fit(columns.into_iter(), count), "columns of different lengths");
+    assert!(fit(columns.into_iter(), count), "expected columns of one length, or single numbers");
     let out = Block::of(out);
-    assert!(out.fits(count), "an array does not fit");
+    assert!(out.fits(count), "an output array does not have the length of the results");
     points_of(columns, count, out, threads, &mut go_on)
 }
 

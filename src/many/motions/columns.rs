@@ -130,10 +130,10 @@ impl<'a> MotionStarts<'a> {
         Self { slips: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these starts with friction of their own, in place of that of the job: the coefficients of sliding and of
-    /// static friction, and the radius of the patch, as those of [`Friction::Coulomb`](crate::contact::Friction). Of
-    /// viscous friction `mu` is c, and of a table without a law of friction the largest mu of rolling; both leave the
-    /// other columns unused.
+    /// Returns these starts with a coefficient of friction for each motion, in place of that of the job: the
+    /// coefficients of sliding and of static friction, and the radius of the patch, as those of
+    /// [`Friction::Coulomb`](crate::contact::Friction). Of viscous friction `mu` is c, and of a table without a law of
+    /// friction the largest mu of rolling; both leave the other columns unused.
     #[must_use]
     pub fn with_friction(self, mu: &'a [f64], fixed: &'a [f64], patch: &'a [f64]) -> Self {
         Self { coefficients: Some([mu, fixed, patch]), ..self }
@@ -405,7 +405,7 @@ pub struct MotionOutput<'a> {
     pub(crate) error: &'a mut [f64],
     /// Code of the [`Answer`], the method that computed a motion.
     pub(crate) method: &'a mut [u8],
-    /// Code of the [`Ending`](crate::motions::Ending) of a motion.
+    /// Code of the [`Ending`] of a motion.
     pub(crate) status: &'a mut [u8],
 }
 
@@ -559,7 +559,7 @@ impl<'a> MotionOutput<'a> {
         self.last_slip.iter_mut().flatten().chain(&mut self.last_rim).for_each(|column| column[i] = 0.0);
     }
 
-    /// The same arrays, borrowed for a shorter time.
+    /// The arrays of this output, borrowed for a shorter time.
     pub(super) fn reborrowed(&mut self) -> MotionOutput<'_> {
         fn all<'a, const N: usize>(columns: &'a mut Option<[&mut [f64]; N]>) -> Option<[&'a mut [f64]; N]> {
             columns.as_mut().map(|columns| columns.each_mut().map(|x| &mut **x))

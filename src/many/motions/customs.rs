@@ -31,8 +31,8 @@ pub(crate) fn roll_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let (count, times) = (starts.len(), job.times.len());
-    assert!(starts.fit(), "columns of different lengths");
-    assert!(out.fits(count, times), "an array does not fit");
+    assert!(starts.fit(), "expected columns of one length, or single numbers");
+    assert!(out.fits(count, times), "an output array does not have the length of the results");
     job.check(true, starts.coefficients.is_some())?;
     let custom = match laws {
         CustomLaws::ThisThread(custom) => *custom,

@@ -20,7 +20,7 @@ pub(super) struct LossyKind {
     pub present: [bool; COUNT],
 }
 
-/// Bodies in lanes that lose energy.
+/// Bodies in SIMD lanes that lose energy while they roll, or slide without friction.
 #[derive(Clone, Copy)]
 pub(super) struct LossyLanes<T> {
     kind: LossyKind,

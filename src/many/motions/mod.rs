@@ -226,8 +226,8 @@ pub(crate) fn roll_among(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let (count, times) = (starts.len(), job.times.len());
-    assert!(starts.fit(), "columns of different lengths");
-    assert!(out.fits(count, times), "an array does not fit");
+    assert!(starts.fit(), "expected columns of one length, or single numbers");
+    assert!(out.fits(count, times), "an output array does not have the length of the results");
     let level_flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
     let flows = level_flows || starts.slopes.is_some();
     job.check(flows, starts.coefficients.is_some())?;

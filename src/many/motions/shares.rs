@@ -1,4 +1,4 @@
-//! Tests of the numbers of motions that are computed by one series, by marches and alone. These counts are the same on
+//! Counts of the motions that are computed by one series, by marches and alone. These counts are the same on
 //! every machine; they show whether a change moves motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
@@ -79,8 +79,8 @@ fn series_and_marches_leave_few_motions_that_end_to_be_computed_alone() {
     holds(0.0, true, [(1e-6, all(5)), (1e-10, all(15)), (1e-12, all(380)), (1e-13, all(380))]);
 }
 
-/// The states at the end, the errors and the indices of the motions that lanes do not compute, as bits, of random states
-/// under static friction.
+/// The states at the end, the errors and the indices of the motions that are not computed in SIMD lanes, as bits, of
+/// random states under static friction.
 fn rubbing(since: Option<&[f64]>, times: &[f64]) -> Option<(Vec<u64>, Vec<usize>)> {
     let (bodies, states) = starts(0.0);
     let states =

@@ -1,4 +1,4 @@
-//! Walks side by side, and the queues in which their flows wait for SIMD lanes.
+//! The computation of many motions side by side, phase by phase, and the queues for SIMD lanes.
 //!
 //! A walk computes one motion through its phases; a flow is a phase that is integrated by steps. Each kind of flow has
 //! its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the lanes.
@@ -51,13 +51,14 @@ pub(super) type Queue<const N: usize> = (FlowKind, VecDeque<FlowTask<N>>);
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<BodyWalk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
-    /// The walks that wait for a phase of rolling, and the coefficient of static friction in that phase.
+    /// The indices of the walks (motions) that wait for a phase of rolling, each with its coefficient of static friction.
     pub rolls: Vec<(usize, f64)>,
-    /// Whether this processor has SIMD lanes; without lanes every walk is computed alone.
+    /// Whether this processor has SIMD lanes; without lanes every motion is computed alone.
     pub lanes: bool,
 }
 
-/// The kind of the present flow of a walk, and the parameters that a SIMD lane needs; None for a walk that is computed alone.
+/// The kind of the present phase of a motion, and the parameters that a SIMD lane needs; None for a motion that is
+/// computed alone.
 fn kind_and_lane_numbers<const N: usize>(
     walk: &BodyWalk<'_, N>,
     y: &[f64; N],
@@ -83,8 +84,8 @@ fn kind_and_lane_numbers<const N: usize>(
         .then_some((FlowKind::Slips { dry: slide.law.dry }, numbers))
 }
 
-/// The variables of a walk for a SIMD lane, the last of which is the time. Walks have a pose only on tilted tables.
-/// There the lane also has cos phi, sin phi and x; a cos phi that is only a rounding error, straight up or down, is 0.
+/// The variables of a motion for a SIMD lane, the last of which is the time. They have a pose only on tilted tables,
+/// where the lane also has cos phi, sin phi and x; a cos phi that is only a rounding error, straight up or down, is 0.
 fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N]) -> [f64; K] {
     let mut all = core::array::from_fn(|i| y[i]);
     if poses(N) {
@@ -95,7 +96,7 @@ fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N]) -> [f64; K] {
     all
 }
 
-/// The variables of a walk that began with `from` and has reached the variables `y` in a SIMD lane.
+/// The variables of a motion whose phase began with `from` and has reached the variables `y` in a SIMD lane.
 fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K]) -> [f64; N] {
     let mut all = *from;
     let own = if poses(N) { K - 4 } else { K - 1 };
@@ -108,7 +109,7 @@ fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K]) -
 }
 
 impl<const N: usize> Walks<'_, N> {
-    /// Continues a walk up to its next flow that a SIMD lane can compute, or to its end.
+    /// Continues a motion up to its next phase that a SIMD lane can compute, or to its end.
     pub fn continue_walk(
         &mut self,
         i: usize,
@@ -154,7 +155,7 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Continues a walk outside the SIMD lanes after its lane has stopped: from the state of the lane, with the step
+    /// Continues a motion outside the SIMD lanes after its lane has stopped: from the state of the lane, with the step
     /// that the lane would have taken.
     fn handle(
         &mut self,
@@ -202,7 +203,7 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
     }
 }
 
-/// Computes all flows of a queue side by side, each until its lane stops running.
+/// Computes all flows of a queue in SIMD lanes, each until its lane stops.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,

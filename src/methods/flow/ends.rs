@@ -39,14 +39,14 @@ enum Outlook {
     Clear,
     /// Each margin stays positive or falls through zero once.
     Falls,
-    /// A margin may become negative and positive again.
+    /// A margin may become negative and then positive within the step.
     Unsure,
 }
 
 /// The functions that a search for an end within a step uses: at a share of the step they give all margins with their
 /// rates in sigma, or one margin alone, or they call [`Flow::grazed`]. After `goes_on_from` a share of the step for
-/// which `middle` has given the margins, further parts begin there. Few steps are searched, so that the search is
-/// compiled once for all flows.
+/// which `middle` has given the margins, further parts of the step begin at this share. Few steps are searched, so that
+/// the search is compiled once for all flows.
 struct StepParts<'a, const M: usize> {
     margins: &'a dyn Fn(f64) -> [Dual<f64>; M],
     margin: &'a dyn Fn(f64, usize) -> f64,

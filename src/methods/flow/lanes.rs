@@ -41,7 +41,7 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn fastest(&self, y: &[T; N]) -> T;
     /// The longest time step that rotation and nutation allow at a place.
     fn calm(&self, y: &[T; N]) -> T;
-    /// The shortest step from a place: a lane whose next step would be shorter is stuck.
+    /// The shortest step from a place: a SIMD lane whose next step would be shorter is stuck.
     #[inline(always)]
     fn shortest(&self, y: &[T; N]) -> T {
         (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
@@ -96,7 +96,7 @@ struct LaneProgress<T, const N: usize, const M: usize> {
     /// The margins at a place before the current one, and the distance back to that place.
     before: [T; M],
     back: T,
-    /// Number of crawling steps that are still allowed.
+    /// Number of crawling steps, which hardly advance the time, that are left.
     patience: T,
     /// Number of evaluations of the rates so far.
     made: T,
@@ -171,7 +171,7 @@ fn margins_stay_positive<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() 
     sure
 }
 
-/// A set of motions, one in each lane.
+/// A set of motions, one in each SIMD lane, and the steps that they take.
 pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     law: L,
     tol: T,
@@ -181,7 +181,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     /// The margins at the current place of each motion.
     margins: [T; M],
     status: T,
-    /// 0 in a lane that has a motion, else 1.
+    /// 0 in a SIMD lane that has a motion, else 1.
     idle: T,
     rows: Vec<[f64; MOST]>,
 }
@@ -209,7 +209,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         set
     }
 
-    /// Puts a motion with its initial data into lane `k` of the rows.
+    /// Puts a motion with its initial data into SIMD lane `k` of the rows.
     pub fn fill(&mut self, k: usize, entry: &Entry<N, M>) {
         let mut way = LaneProgress {
             y: entry.y,
@@ -285,7 +285,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
     }
 
-    /// The status of lane `k`.
+    /// The status of SIMD lane `k` after its last step.
     pub fn status(&self, k: usize) -> LaneStatus {
         let status = self.status.lane(k);
         if status == NEEDS_SINGLE {
@@ -297,7 +297,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         }
     }
 
-    /// The variables of lane `k`, and the length of its next step.
+    /// The variables of SIMD lane `k`, and the length of its next step.
     pub fn place(&self, k: usize) -> ([f64; N], f64) {
         (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
     }
@@ -310,7 +310,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience, exhausted: None }
     }
 
-    /// Takes at most `steps` steps, until a lane stops running.
+    /// Takes at most `steps` steps in all SIMD lanes, until a lane cannot take its next step.
     pub fn take_steps(&mut self, zero: T, steps: usize) {
         apart(
             zero,

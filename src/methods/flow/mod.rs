@@ -67,7 +67,7 @@ pub(crate) fn toil_of(span: f64) -> u64 {
     TOIL.max((TOIL_PER_TIME * span) as u64)
 }
 
-/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still allowed.
+/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is left.
 pub(crate) fn steps_to_stuck_test(patience: u64) -> u64 {
     patience - patience.saturating_sub(1) / STEPS_BETWEEN_STUCK_TESTS * STEPS_BETWEEN_STUCK_TESTS
 }

@@ -61,6 +61,6 @@ pub(crate) struct Steps {
     pub patience: u64,
     /// Largest number of evaluations of the rates.
     pub toil: u64,
-    /// Whether [`Flow::stuck`] is called before the first step, since the steps before this flow crawled.
+    /// Whether [`Flow::stuck`](super::Flow::stuck) is called before the first step, since the steps before this flow crawled.
     pub tired: bool,
 }

@@ -16,7 +16,7 @@ use core::f64::consts::FRAC_PI_2;
 pub fn codes(theta: &[f64], bodies: &[Option<Body>], codes: &mut [u8]) {
     assert!(
         theta.is_sorted() && codes.len() == theta.len() * bodies.len(),
-        "theta ascending, a code for each"
+        "expected theta to ascend, and theta.len() * bodies.len() codes"
     );
     codes.fill(Region::Invalid as u8);
     let [first, last] = [0.0, FRAC_PI_2].map(|end| theta.partition_point(|x| *x <= end));

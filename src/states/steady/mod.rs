@@ -83,7 +83,7 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
 /// Reduced rotation rate at an inclination, NaN where no steady state exists. The quick terms give the rate; the terms
 /// with more digits are computed only where a sign is uncertain.
 ///
-/// The closure for uncertain lanes owns its inputs: borrowed inputs would be kept in memory at every point.
+/// The closure for uncertain SIMD lanes owns its inputs: borrowed inputs would be kept in memory at every point.
 #[inline(always)]
 pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
     let of = quick_terms(angle, ell, excess);

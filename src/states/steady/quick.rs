@@ -85,8 +85,8 @@ impl<T: Real> QuickTerms<T> {
     }
 }
 
-/// Whether the squared rate may be below `low` or above `high` in any lane, to forty bits and without a
-/// division. The result is true wherever the square is outside, and also where cancellation leaves too few
+/// Whether the squared rate may be below `low` or above `high` in any SIMD lane, to forty bits and without a division.
+/// The result is true wherever the squared rate is outside of the bounds, and also where cancellation leaves too few
 /// digits to exclude it.
 #[inline(always)]
 pub(crate) fn may_exceed<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]: [T; 2]) -> bool {

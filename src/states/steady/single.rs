@@ -53,7 +53,7 @@ mod tests {
     use crate::numbers::{LANES, Pair, Sum, in_lanes, level};
     use fearless_simd::{Simd, SimdFrom, f64x8};
 
-    /// The rate in single precision of sixteen tubes and inclinations in lanes.
+    /// The rate in single precision of sixteen tubes and inclinations in SIMD lanes.
     #[inline(always)]
     fn sixteen<S: Simd>(simd: S, of: &[(Body, f64)]) -> [f32; 2 * LANES] {
         let lanes = |f: fn(&(Body, f64)) -> f64| {

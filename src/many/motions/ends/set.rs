@@ -37,7 +37,7 @@ const MARCH_INPUTS: usize = 16;
 const MARCH_OUTPUTS: usize = 15;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
-/// The inputs of the marches in rows; a lane without a march repeats another one. None if no lane has a march.
+/// The inputs of the marches in rows; a SIMD lane without a march repeats another march. None if no lane has a march.
 fn gather_inputs(runs: &RunLanes<Run>, count: usize) -> Option<Rows<MARCH_INPUTS>> {
     let mut rows = [[0.0; MOST]; MARCH_INPUTS];
     let spare = runs.iter().flatten().next()?;
@@ -93,7 +93,7 @@ fn unload_outputs<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<MA
     }
 }
 
-/// The state in lane `k` at the end of a panel, from seven rows.
+/// The state in SIMD lane `k` at the end of a panel, from seven rows of numbers.
 fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
     let at = |i: usize| rows[i][k];
     Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5), doubt: at(6) }
