@@ -33,16 +33,16 @@ pub enum Error {
         /// The principal moments, in ascending order.
         moments: [f64; 3],
     },
-    /// No steady state with the centre at rest exists: the inclination lies between the two limits.
+    /// No steady state with the centre at rest exists: the inclination lies between theta_balance and theta_limit.
     #[error(
         "theta = {theta:?} is forbidden: no steady state between theta_balance = {theta_balance:?} and theta_limit = {theta_limit:?}"
     )]
     Forbidden {
         /// The given inclination, in radians.
         theta: f64,
-        /// The inclination at which the body balances on a point.
+        /// The inclination at which the body balances on a point of its rim, in radians.
         theta_balance: f64,
-        /// The inclination at which the rate grows without bound.
+        /// The inclination at which the rate of a steady state grows without bound, in radians.
         theta_limit: f64,
     },
     /// Double precision cannot tell whether the inclination is that of a steady state or forbidden.
@@ -52,12 +52,12 @@ pub enum Error {
     Undetermined {
         /// The given inclination, in radians.
         theta: f64,
-        /// The inclination at which the body balances on a point.
+        /// The inclination at which the body balances on a point of its rim, in radians.
         theta_balance: f64,
-        /// The inclination at which the rate grows without bound.
+        /// The inclination at which the rate of a steady state grows without bound, in radians.
         theta_limit: f64,
     },
-    /// The fixed step is too long for the motion at that time: the result would be plausible but wrong.
+    /// The fixed step of an RK4 motion is too long at the time `time`: the result would be plausible but wrong.
     #[error(
         "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: use a step of {advice:.2e}, or tol="
     )]
@@ -88,7 +88,7 @@ pub enum Error {
         mu: f64,
         /// The inclination, in radians.
         theta: f64,
-        /// The smallest coefficient of friction for which this can happen at this inclination, mu_P(theta).
+        /// The coefficient mu_P(theta): below it the contact force at this inclination is unique.
         limit: f64,
     },
     /// The laws of impact and friction do not determine a unique motion after the other rim lands.
@@ -98,15 +98,15 @@ pub enum Error {
     Landing {
         /// The coefficient of friction.
         mu: f64,
-        /// The number of consistent outcomes.
+        /// The number of outcomes that obey the laws.
         outcomes: usize,
     },
-    /// A user-defined couple is not finite, or supplies energy, in a state on the way of a motion.
+    /// A user-defined couple is not finite, or supplies energy, in a state during a motion.
     #[error("couple: power = {power:?} at theta = {theta:?}, w = {w:?}, N = {normal:?}: expected {expected}")]
     Couple {
         /// The power that the couple takes, -m.w, in M g sqrt(g R); NaN if the couple is not finite.
         power: f64,
-        /// The accepted couples.
+        /// The condition that a couple has to meet.
         expected: &'static str,
         /// The inclination, in radians.
         theta: f64,
@@ -115,12 +115,12 @@ pub enum Error {
         /// The normal force, in M g.
         normal: f64,
     },
-    /// A user-defined coefficient of friction is negative or not finite at a speed on the way of a motion.
+    /// A user-defined coefficient of friction is negative or not finite at a speed of slip during a motion.
     #[error("mu = {mu:?} at the speed {speed:?}: expected {expected}")]
     Coefficient {
         /// The coefficient of friction.
         mu: f64,
-        /// The accepted coefficients.
+        /// The condition that a coefficient of friction has to meet.
         expected: &'static str,
         /// The speed of the slip, in sqrt(g R).
         speed: f64,
@@ -141,7 +141,7 @@ pub enum Error {
         "spin = {spin:?}: the estimated error of the motion, {error:.1e}, is too large to tell whether the body turns over or rises: give a shorter time t"
     )]
     Undecided {
-        /// The spin, as in the result of the search.
+        /// The spin for which the search could not decide, in the unit of the result of the search.
         spin: f64,
         /// The estimated error of the motion.
         error: f64,

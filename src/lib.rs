@@ -7,7 +7,7 @@
 //!
 //! | layer | module | contents | an equation |
 //! | --- | --- | --- | --- |
-//! | `numbers` | | types of numbers: single, eight in lanes, double-double, dual; sine and cosine | |
+//! | `numbers` | | types of numbers: single, eight in SIMD lanes, double-double, dual; sine and cosine | |
 //! | `methods` | [`rk4`] | one step of the method of Runge and Kutta | y + h (k1 + 2 k2 + 2 k3 + k4)/6 |
 //! | | | steps of eighth order, or stiff ones of ninth, up to an end (`flow`), roots, quadrature | |
 //! | `laws` | [`body`] | moments of inertia, theta0, thetaInf, circle of contact | g = ell s - a c, h = a s + ell c + rho |
@@ -21,21 +21,21 @@
 //! | | [`topple`] | a body on its face that topples, or that a kerb stops | mu Z > a, w2 = -v Z/J |
 //! | | [`steep`] | the slope on which a body slips, tips or rolls | tan(slope) = mu (k + A^2)/k, a/Z |
 //! | | [`pose`] | the orientation, the contact path and the centre of the body | P' = A psi' e2 - rho theta' e_h |
-//! | `states` | [`steady`] | steady states, their inverse, folds and ridge | rate^2 = n A/(s (n + d A c)), n = -g |
-//! | | [`stability`] | stability of steady states: smooth, rolling | kappa = -dtheta''/dtheta along the lines |
+//! | `states` | [`steady`] | steady states, the inclinations that have a given rate, folds and ridge of the energy | rate^2 = n A/(s (n + d A c)), n = -g |
+//! | | [`stability`] | stability of steady states on a smooth table and in rolling | kappa = -dtheta''/dtheta along the lines |
 //! | | [`sideways`] | the drift of a spinning body across a slope | v_y = sin(beta)/2 ((I1 A^2 + I3 L^2)/(D Om) - ...) |
 //! | `motions` | [`exact`] | the solution by first integrals, at any time | dt = s^2 sqrt(J/G) dx |
 //! | | [`motion`] | a motion: times, states, and the event that ends it | N > 0, F <= mu N, theta < theta_end |
 //! | | [`measured`] | bodies with a size and a mass, and their motions in SI | I1 = i1/(M R^2) |
-//! | | [`world`] | a start anywhere in the world, and readings there | q = axes(phi, theta) Rz(psi) |
+//! | | [`world`] | initial states and positions in a fixed frame, the world | q = axes(phi, theta) Rz(psi) |
 //! | | [`turning`] | least spin with which a tippe top turns over or an egg rises | J = I1 w1 s + I3 w3 (ell + c) |
 //! | | [`stone`] | ellipsoids with any inertia: rattlebacks, eggs | (I + r^2 - r r^T) w' = ... + r x n |
 //! | | [`drift`] | slow drift along steady states, to rest | theta' = -P/E'(theta) |
-//! | `many` | [`sweep`] | steady states over dense grids, on lanes and threads | |
-//! | | [`ensemble`] | many motions at once, on lanes and threads | |
+//! | `many` | [`sweep`] | steady states over dense grids, on SIMD lanes and threads | |
+//! | | [`ensemble`] | many motions at once, on SIMD lanes and threads | |
 //! | `scene` | [`scene`] | scenes with a known answer for contact engines | |
 //!
-//! All layers may use `error`, and `python` uses all of them. Rolling and smooth share `contact::reduced`:
+//! All layers may use `error`, and `python` uses all of them. The equations of rolling and of a smooth table share `contact::reduced`:
 //! J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies or for Python, without lanes, or with only one width of lanes, some items are not used.
@@ -83,7 +83,7 @@ pub mod drift {
     //! centre is at rest, and nothing brings it back; a ridge has no effect. The drift ends where rolling becomes
     //! unstable, at kappa = 0 ([`stability`](crate::stability)). Both drifts are of first order in the losses.
     //!
-    //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for the
+    //! Relative error of a time: 1e-12 for `at_rest`, 1e-10 for `rolling`. Up to 0.99 of the time to the end the same bounds hold for the
     //! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a
     //! high power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and
     //! `test_late_drifts` check these bounds.
@@ -174,7 +174,7 @@ pub mod stone {
 #[doc = include_str!("../README.md")]
 mod readme {}
 
-/// The crate of the matrices, vectors and quaternions of poses and forces, in the version that this crate uses.
+/// nalgebra, in the version that this crate uses: its matrices, vectors and quaternions appear in poses and forces.
 pub use nalgebra;
 
 pub use body::Body;

@@ -15,7 +15,7 @@ pub trait CoupleLaw {
     /// has to be continuous, and zero when the motion that it resists is at rest.
     fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3];
 
-    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    /// Whether the law has failed and has no more values. A motion then ends at the present time, like one that is interrupted.
     fn has_failed(&self) -> bool {
         false
     }
@@ -34,7 +34,7 @@ pub trait FrictionLaw {
     /// The coefficient of friction mu >= 0 at the speed >= 0 of the slip, in sqrt(g R).
     fn coefficient(&self, speed: f64) -> f64;
 
-    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    /// Whether the law has failed and has no more values. A motion then ends at the present time, like one that is interrupted.
     fn has_failed(&self) -> bool {
         false
     }
@@ -60,7 +60,7 @@ pub struct Moment {
     pub phi: f64,
     /// The angle psi by which the body has turned about its axis, in radians.
     pub psi: f64,
-    /// The place of the contact point on the table, or below the lowest point of a body in the air, in R.
+    /// The contact point on the table in R; for a body in the air, the point below its lowest point.
     pub contact_point: Point2<f64>,
     /// The height of the lowest point, in R; 0 on the table.
     pub height: f64,
@@ -98,15 +98,15 @@ impl Push {
     }
 }
 
-/// A force and a couple that act on a body beside gravity and the table: a motor, a wind, a hand. They may give energy and
-/// take it.
+/// A force and a couple that act on a body in addition to gravity and the table: a motor, a wind, a hand. They may give
+/// or take energy.
 ///
 /// A closure `|body: &Body, now: &Moment| -> Push` is such a law.
 pub trait DriveLaw {
-    /// The force and the couple at a moment. They have to be finite, and without jumps.
+    /// The force and the couple in the state `now`. They have to be finite, and without jumps.
     fn push(&self, body: &Body, now: &Moment) -> Push;
 
-    /// Whether the law has failed and has no more values. A motion then ends where it is, as one that is interrupted.
+    /// Whether the law has failed and has no more values. A motion then ends at the present time, like one that is interrupted.
     fn has_failed(&self) -> bool {
         false
     }
@@ -118,15 +118,15 @@ impl<F: Fn(&Body, &Moment) -> Push> DriveLaw for F {
     }
 }
 
-/// The law of sliding friction in an impact. `()` is one of the library, whose coefficient is constant, and costs no code.
+/// The law of sliding friction in an impact. The type `()` means a constant coefficient of friction, and costs no code.
 pub(crate) trait SpeedLaw: Copy {
-    /// Whether the coefficient depends on the speed of the slip.
+    /// Whether the coefficient of friction depends on the speed of the slip.
     #[inline(always)]
     fn varies(&self) -> bool {
         false
     }
 
-    /// The coefficient at this speed, if it varies.
+    /// The coefficient of friction at this speed of the slip; not used if it does not vary.
     #[inline(always)]
     fn coefficient_at(&self, _speed: f64) -> f64 {
         f64::NAN
@@ -139,11 +139,11 @@ impl SpeedLaw for () {}
 #[derive(Clone, Copy, Default)]
 #[non_exhaustive]
 pub struct Custom<'a> {
-    /// A couple in addition to the losses of `Ask`.
+    /// A couple on the body in addition to the losses of [`Ask`](crate::motion::Ask).
     pub couple: Option<&'a dyn CoupleLaw>,
-    /// The coefficient of sliding friction, in place of that of the contact.
+    /// The coefficient of sliding friction as a function of speed, in place of the constant one of the contact.
     pub friction: Option<&'a dyn FrictionLaw>,
-    /// A force and a couple that may give energy.
+    /// A force and a couple that drive the body; they may give energy.
     pub drive: Option<&'a dyn DriveLaw>,
 }
 
@@ -190,19 +190,19 @@ impl<'a> Custom<'a> {
     }
 }
 
-/// Near rest the law is evaluated at this share of a speed.
+/// The check evaluates a law near rest at this share of a speed.
 const NEAR_REST_SHARE: f64 = 1e-9;
-/// A change by more than this share is a jump.
+/// A change of a law between neighbouring states by more than this share of its size is a jump.
 const JUMP_SHARE: f64 = 1e-3;
-/// A couple may supply this share of its power by rounding, and static friction may be smaller by this share.
+/// By rounding, a couple may supply this share of its power, and static friction may be smaller than mu(0) by this share.
 const POWER_ROUNDING: f64 = 1e-12;
 
-/// The values that a couple and a coefficient of friction may have.
+/// The conditions on a couple and on a coefficient of friction, as errors name them.
 const FINITE: &str = "a couple that is finite in every state";
 const EXPECTED_TO_LOSE: &str = "a couple that takes energy, m.w <= 0";
 const AT_LEAST_0: &str = "a coefficient of friction of 0 or more at every speed";
 
-/// The error of a couple that is not finite in a state, or supplies energy there.
+/// The error of a couple that is not finite, or supplies energy, in the state `y`; None for a valid couple.
 pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Error> {
     let w = [y.w1, y.w2, y.w3];
     let fault = |power: f64, expected| Some(Error::Couple { power, expected, theta: y.theta, w, normal });
@@ -214,32 +214,32 @@ pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Err
     }
 }
 
-/// The error of a force or a couple that drives a body and is not finite; its value is the time.
+/// The error of a driving force or couple that is not finite; the value in the error is the time.
 pub(crate) fn fault_of_drive(push: &Push, now: &Moment) -> Option<Error> {
     let finite = push.force.iter().chain(&push.couple).all(|x| x.is_finite());
     let expected = "a force and a couple that are finite at every time";
     (!finite).then_some(Error::OutOfRange { name: "drive", value: now.time, expected })
 }
 
-/// The error of a coefficient of friction that is negative or not finite at a speed.
+/// The error of a coefficient of friction that is negative or not finite at a speed; None for a valid one.
 pub(crate) fn fault_of_friction(mu: f64, speed: f64) -> Option<Error> {
     (!(0.0..=f64::MAX).contains(&mu)).then_some(Error::Coefficient { mu, expected: AT_LEAST_0, speed })
 }
 
-/// A law is evaluated near rest for states whose index is a multiple of this; all speeds and forces are among them.
+/// A law is evaluated near rest for test states whose index is a multiple of this; all speeds and forces are among them.
 const REST_STATE_STRIDE: usize = 3;
-/// States whose index is a multiple of this are joined by lines, along which jumps are searched for.
+/// Test states whose index is a multiple of this are joined by lines, along which jumps are searched for.
 const LINE_STATE_STRIDE: usize = 12;
-/// Number of halvings of such a line.
+/// Number of halvings of a line between two test states in the search for a jump.
 const LINE_HALVINGS: u32 = 44;
 
 fn magnitude(m: [f64; 3]) -> f64 {
     m.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The jump of a function between 0 and 1. The interval is halved, always towards the half with the larger change, down
-/// to rounding; the change that remains is the jump. There is none, and halving ends, where both halves together change
-/// by no more than `little`.
+/// The jump of the function f between 0 and 1. The interval is halved, always towards the half with the larger change,
+/// down to rounding; the change that remains is the jump. Halving ends, without a jump, where both halves together
+/// change by no more than `little`.
 fn jump_between(f: impl Fn(f64) -> [f64; 3], little: f64) -> f64 {
     let apart = |a: [f64; 3], b: [f64; 3]| magnitude(core::array::from_fn(|k| a[k] - b[k]));
     let (mut from, mut to) = ((0.0, f(0.0)), (1.0, f(1.0)));
@@ -319,7 +319,7 @@ fn check_friction(law: &dyn FrictionLaw, fixed: f64) -> Result<(), Error> {
         "static",
         fixed,
         (most * (1.0 - POWER_ROUNDING), f64::INFINITY),
-        "at least mu(0), the friction of the law at the start of a slip",
+        "at least mu(0), the coefficient of sliding friction at speed 0",
     )?;
     let mut from = (0.0, most);
     for i in 0..=1000 {

@@ -120,7 +120,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose with these angles, this contact point and this height.
+    /// The pose with the angles `phi` and `psi`, this contact point, and this height of the lowest point of the rim.
     pub fn new(phi: Angle, psi: Angle, contact_point: Point2<f64>, height: f64) -> Self {
         Self { phi, psi, contact_point, height }
     }
@@ -138,7 +138,7 @@ impl State {
 }
 
 impl Pose {
-    /// The pose at the beginning of every motion.
+    /// The pose at the beginning of every motion: phi = psi = 0, with the contact point at the origin of the table.
     pub fn start() -> Self {
         Self { phi: Angle::default(), psi: Angle::default(), contact_point: Point2::origin(), height: 0.0 }
     }

@@ -1,5 +1,5 @@
-//! The state of a rolling body: four numbers, and the quantities that follow from them without dynamics; and the slip, two
-//! more numbers of a body that does not roll.
+//! The state of a rolling body: four numbers, and the quantities that follow from them without equations of motion. A
+//! body that slips has two more numbers, its slip.
 //!
 //! ```text
 //! w = (w1, w2, w3) = (phi' sin theta, -theta', phi' cos theta + psi')      angular velocity
@@ -53,7 +53,7 @@ pub struct Slip {
 }
 
 impl Slip {
-    /// The slip with this component along e_h and this one along e2.
+    /// The slip with the components `u_h` along e_h and `u_2` along e2, in sqrt(g R).
     pub const fn new(u_h: f64, u_2: f64) -> Self {
         Self { u_h, u_2 }
     }
@@ -63,20 +63,20 @@ impl Slip {
         self.u_h.hypot(self.u_2)
     }
 
-    /// Both components, as the equations of motion have them.
+    /// Both components, [u_h, u_2], as the equations of motion use them.
     #[inline(always)]
     pub(crate) const fn pair(self) -> [f64; 2] {
         [self.u_h, self.u_2]
     }
 
-    /// The slip with other components, each from its own.
+    /// Applies `to` to each of the two components.
     pub(crate) fn map(self, to: impl Fn(f64) -> f64) -> Self {
         Self { u_h: to(self.u_h), u_2: to(self.u_2) }
     }
 }
 
 impl From<[f64; 2]> for Slip {
-    /// The components along e_h and e2.
+    /// The slip with these components along e_h and e2.
     #[inline(always)]
     fn from([u_h, u_2]: [f64; 2]) -> Self {
         Self { u_h, u_2 }
@@ -91,19 +91,19 @@ impl From<Slip> for [f64; 2] {
     }
 }
 
-/// w_z, the drilling: the angular velocity about the vertical, with sine and cosine of theta.
+/// The drilling w_z, the angular velocity about the vertical, from sine and cosine of theta, w1 and w3.
 #[inline(always)]
 pub(crate) fn drilling_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
     s * w1 + c * w3
 }
 
-/// w_h, the rolling: the angular velocity along the horizontal direction of the lean.
+/// The rolling w_h, the angular velocity along e_h, the horizontal direction of the lean.
 #[inline(always)]
 pub(crate) fn rolling_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
     c * w1 - s * w3
 }
 
-/// psi', the spin.
+/// The spin psi', the rate at which the body turns about its axis relative to e1, e2, e3.
 #[inline(always)]
 pub(crate) fn spin_of<T: Real>((s, c): (T, T), w1: T, w3: T) -> T {
     w3 - c / s * w1

@@ -13,8 +13,9 @@
 //! ```text
 //! t^2 = mu^2 (l^2 - mu^2)/(l^2 (cos^2 phi + q^2) - mu^2 cos^2 phi),  or  t = mu l/(q l + mu |cos phi|)  for  mu q l > (l^2 - mu^2) |cos phi|
 //! ```
-//! In the second case the upper circle, which carries less, has no friction left along the axis. The first one is a special case of a
-//! general equation of fourth degree in t, so that both are found as the change of sign of the margin.
+//! In the second case the upper circle, which carries less of the weight, has no friction left along the axis. The
+//! first one is a special case of a general equation of fourth degree in t, so that both are found as the change of
+//! sign of the margin.
 //!
 //! Error: 8 ulp for one circle or a face, and 1e-14 for two circles; a test of `steep` compares with these formulas.
 //!
@@ -64,7 +65,7 @@ fn on_two(body: &Body, held: bool, [t, phi]: [f64; 2]) -> Lain<f64> {
     Lying { losses: Some(losses), pull: Some([t * cos, -(t * sin)]), ..law }.rolls([0.0; 4])
 }
 
-/// The body on the circle that carries it at this inclination, and phi as seen from there.
+/// The body on the circle on which it stands at this inclination, and phi as seen from the end of this circle.
 fn seen(body: &Body, theta: f64, phi: f64) -> (Body, f64) {
     let body = body.at(theta);
     (body, if body.view().over { phi + PI } else { phi })
@@ -149,7 +150,12 @@ fn face_or(body: &Body, theta: f64, posture: Posture) -> Result<[f64; 2], Error>
     let (rim, flat) = (body.told_at(theta).shape().rim, (0.0, theta.cos().signum()));
     let a = rim.radius(flat);
     if posture == Posture::Standing {
-        within("a", a, (f64::MIN_POSITIVE, f64::MAX), "a body with a face: a ball has none")?;
+        within(
+            "a",
+            a,
+            (f64::MIN_POSITIVE, f64::MAX),
+            "a > 0, the radius of the face of the body: a ball has no face",
+        )?;
     }
     Ok([a, rim.height(flat)])
 }

@@ -29,8 +29,12 @@ use crate::error::{Error, within};
 /// A and Z of the face of a body, or an error for a body that has none, such as a ball.
 fn face(body: &Body) -> Result<[f64; 2], Error> {
     let (flat, rim) = ((0.0, 1.0), body.shape().rim);
-    let a =
-        within("a", rim.radius(flat), (f64::MIN_POSITIVE, f64::MAX), "a body with a face: a ball has none")?;
+    let a = within(
+        "a",
+        rim.radius(flat),
+        (f64::MIN_POSITIVE, f64::MAX),
+        "a > 0, the radius of the face of the body: a ball has no face",
+    )?;
     Ok([a, rim.height(flat)])
 }
 

@@ -1,5 +1,5 @@
-//! Columns of numbers. An input column has the length n, or is a single number for all rows; output columns are divided
-//! into blocks of rows.
+//! Columns of numbers, one row for each body or motion. An input column has the length n, or is a single number for all
+//! rows; output columns are divided into blocks of rows.
 
 use crate::error::{Error, room};
 use crate::laws::loss::{COUNT, Law, Losses};
@@ -8,7 +8,7 @@ pub(crate) fn rows<'a>(mut columns: impl Iterator<Item = &'a [f64]>) -> usize {
     columns.find(|x| x.len() != 1).map_or(1, <[f64]>::len)
 }
 
-/// True if every column has this length or is a single number.
+/// Whether every column has the length `count` or is a single number.
 pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize) -> bool {
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
@@ -42,13 +42,13 @@ impl<'a> LossColumns<'a> {
         self
     }
 
-    /// The losses in a row.
+    /// The losses of the body or motion with the index `row`.
     pub(crate) fn row(&self, row: usize) -> Losses {
         Losses { coefficients: self.0.map(|x| at(x, row)) }
     }
 }
 
-/// Columns of the numbers of bodies: each has the length n, or is a single number for all rows.
+/// Columns of the numbers that describe bodies: each has the length n, or is a single number for all rows.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct BodyColumns<'a> {
@@ -58,11 +58,11 @@ pub struct BodyColumns<'a> {
     pub i1: &'a [f64],
     /// Moment of inertia about the axis, in M R^2.
     pub i3: &'a [f64],
-    /// Inner radius of tubes, in R; NaN for other bodies.
+    /// Inner radius of a tube, in R; NaN for other bodies.
     pub bore: &'a [f64],
-    /// Radius of the rounding of the rim, in R.
+    /// Radius of the fillet of the rim, in R; 0 for a sharp rim.
     pub fillet: &'a [f64],
-    /// Inclination at which another part of the body touches the table; NaN for the default of the body.
+    /// Inclination, in radians, at which another part of the body touches the table; NaN for the default of the body.
     pub theta_end: &'a [f64],
 }
 
@@ -80,26 +80,27 @@ impl<'a> BodyColumns<'a> {
         Self { ell, i1, i3, bore: &[f64::NAN], fillet: &[0.0], theta_end: &[f64::NAN] }
     }
 
-    /// Returns these columns with this column of the inner radii of tubes.
+    /// Returns these bodies with this column of the inner radii of tubes, in R.
     #[must_use]
     pub const fn with_bore(self, bore: &'a [f64]) -> Self {
         Self { bore, ..self }
     }
 
-    /// Returns these columns with this column of the radii of the rounding.
+    /// Returns these bodies with this column of the radii of the fillets, in R.
     #[must_use]
     pub const fn with_fillet(self, fillet: &'a [f64]) -> Self {
         Self { fillet, ..self }
     }
 
-    /// Returns these columns with this column of the inclinations at which another part of the body touches the table.
+    /// Returns these bodies with this column of the inclinations, in radians, at which another part of the body touches
+    /// the table.
     #[must_use]
     pub const fn with_theta_end(self, theta_end: &'a [f64]) -> Self {
         Self { theta_end, ..self }
     }
 }
 
-/// Columns of the four numbers of a [`State`](crate::State), to be read or to be written.
+/// Columns of the four numbers of a [`State`](crate::State), as an input or an output.
 #[derive(Debug, Clone, Copy)]
 pub struct StateColumns<C> {
     /// Inclination, in radians.
@@ -113,7 +114,7 @@ pub struct StateColumns<C> {
 }
 
 impl<C> From<[C; 4]> for StateColumns<C> {
-    /// The columns in the order theta, w1, w2, w3, as those of a [`State`](crate::State).
+    /// The columns theta, w1, w2, w3, in this order, as those of a [`State`](crate::State).
     fn from([theta, w1, w2, w3]: [C; 4]) -> Self {
         Self { theta, w1, w2, w3 }
     }
@@ -127,7 +128,7 @@ impl<C> From<StateColumns<C>> for [C; 4] {
 
 /// Output columns that can be split at a row.
 pub(crate) trait Split: Sized {
-    /// The first `rows` rows, and the remaining rows.
+    /// Splits the columns into the first `rows` rows and the remaining rows.
     fn split(self, rows: usize) -> (Self, Self);
 }
 

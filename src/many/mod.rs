@@ -1,4 +1,4 @@
-//! Many bodies at once, on lanes and threads. This folder is the feature `many`.
+//! Many bodies at once, in SIMD lanes and on threads. This folder is the cargo feature `many`.
 
 pub(crate) mod columns;
 pub mod drifts;

@@ -18,25 +18,25 @@ use crate::motions::{Ask, Ending, Kind, Motion, Moving, Phase, Start};
 use core::cell::RefCell;
 use std::sync::OnceLock;
 
-/// The numbers of one motion: its stone, initial state and slip, and its own coefficients of friction and
-/// losses, if any.
+/// The description of one motion of many: its stone, initial state and slip, and its own coefficients of friction and
+/// losses, if it has any.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneRow {
-    /// The numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
+    /// The 13 numbers of the stone, as [`Ellipsoid::of_numbers`] takes them.
     pub(crate) stone: [f64; 13],
-    /// The initial vertical and angular velocity.
+    /// The initial direction of the vertical and the initial angular velocity, both along the axes of the stone.
     pub(crate) state: [f64; 6],
-    /// The initial slip.
+    /// The initial slip along x and y, in sqrt(g a).
     pub(crate) slip: [f64; 2],
-    /// The coefficients of sliding and of static friction and the radius of the patch, or c of viscous friction and two
-    /// numbers that are not used; None for those of `ask`.
+    /// The coefficients of sliding and of static friction and the radius of the patch, or c of a viscous film and two
+    /// numbers that are not used; None for those of [`StoneJob::ask`].
     pub(crate) coefficients: Option<[f64; 3]>,
-    /// The losses of this motion, if it has its own; None for those of `ask`.
+    /// The losses of this motion; None for those of [`StoneJob::ask`].
     pub(crate) losses: Option<Losses>,
-    /// The slope of the table, and phi at the start; None for a level table.
+    /// The slope of the table and the angle phi at the start, in radians; None for a level table.
     pub(crate) slope: Option<[f64; 2]>,
-    /// The height of the lowest point and its vertical velocity at the start; None on the table.
+    /// The height of the lowest point and its vertical velocity at the start, for a stone in the air; None on the table.
     pub(crate) aloft: Option<[f64; 2]>,
 }
 
@@ -90,7 +90,7 @@ impl StoneRow {
     }
 }
 
-/// Whether reversals of the spin are counted for many stones: this needs the estimated error at all times of each motion.
+/// Whether reversals of the spin are counted; counting needs the estimated error at all times of each motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Turns {
@@ -101,11 +101,11 @@ pub enum Turns {
     Counted,
 }
 
-/// The options and the times that all stones of a call have in common.
+/// The options and the times that all motions of a call of [`many`] share.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct StoneJob<'a> {
-    /// The options of every motion; the coefficients of a [`StoneRow`] replace them.
+    /// The options of every motion; the coefficients of a [`StoneRow`] replace those of the options.
     pub ask: Ask,
     /// Times of the motions, in sqrt(a/g); the results are those at the last time.
     pub times: &'a [f64],
@@ -114,7 +114,7 @@ pub struct StoneJob<'a> {
 }
 
 impl<'a> StoneJob<'a> {
-    /// A job of rolling, in which reversals are not counted.
+    /// A job of stones that roll until the last of these times, in sqrt(a/g), in which reversals are not counted.
     pub fn new(times: &'a [f64]) -> Self {
         Self { ask: Ask::default(), times, turns: Turns::Uncounted }
     }
@@ -125,7 +125,7 @@ impl<'a> StoneJob<'a> {
         Self { ask, ..self }
     }
 
-    /// Returns this job, with or without reversals.
+    /// Returns this job with or without counts of reversals.
     #[must_use]
     pub fn with_turns(self, turns: Turns) -> Self {
         Self { turns, ..self }
@@ -143,10 +143,10 @@ pub struct StoneSummary {
 }
 
 impl StoneSummary {
-    /// The names of the numbers: the last vertical and angular velocity, the time of the end, the last spin,
-    /// the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
-    /// numbers of impacts and of landings after which the stone stays, the time in the air, the energy lost in
-    /// impacts, the kind of the last phase, the estimated error, and the time up to which the motion is known.
+    /// The names of the numbers of a summary. They are the last vertical and angular velocity, the time of the end, the
+    /// last spin, the number of reversals of the spin, the time of the first reversal, the heat, the energy lost, the
+    /// numbers of impacts and of landings after which the stone stays, the time in the air, the energy lost in impacts,
+    /// the kind of the last phase, the estimated error, and the time up to which the motion is known.
     pub(crate) const NAMES: [&str; 19] = [
         "n1",
         "n2",
@@ -195,27 +195,27 @@ impl StoneSummary {
         Some(self.numbers[8]).filter(|count| !count.is_nan()).map(|count| count as usize)
     }
 
-    /// The time of the first reversal of the spin, in sqrt(a/g), if there is one and reversals are counted.
+    /// The time of the first reversal of the spin, in sqrt(a/g); None without a reversal, or if reversals are not counted.
     pub fn first_reversal(&self) -> Option<f64> {
         Some(self.numbers[9]).filter(|time| !time.is_nan())
     }
 
-    /// The heat of friction, in M g a.
+    /// The heat made by friction, in M g a.
     pub fn dissipated(&self) -> f64 {
         self.numbers[10]
     }
 
-    /// The energy lost to the losses, in M g a.
+    /// The energy taken by the loss laws, in M g a.
     pub fn work_lost(&self) -> f64 {
         self.numbers[11]
     }
 
-    /// The number of impacts; NaN for a motion without numbers.
+    /// The number of impacts; NaN for an invalid motion.
     pub fn impacts(&self) -> f64 {
         self.numbers[12]
     }
 
-    /// The number of landings after which the stone stays; NaN for a motion without numbers.
+    /// The number of landings after which the stone stays on the table; NaN for an invalid motion.
     pub fn landings(&self) -> f64 {
         self.numbers[13]
     }
@@ -235,7 +235,7 @@ impl StoneSummary {
         Some(self.numbers[16]).filter(|code| !code.is_nan()).and_then(|code| Kind::from_code(code as u8))
     }
 
-    /// The estimated error of the last state.
+    /// The estimated error of the state at the end.
     pub fn error(&self) -> f64 {
         self.numbers[17]
     }
@@ -249,7 +249,7 @@ impl StoneSummary {
         Self { status: status as u8, numbers: [f64::NAN; 19] }
     }
 
-    /// The row of a motion that was given up at this time.
+    /// The summary of a motion whose computation was given up at this time.
     fn given_up(time: f64) -> Self {
         let mut row = Self::none(Ending::Bounded);
         for (to, name) in row.numbers.iter_mut().zip(Self::NAMES) {
@@ -294,7 +294,7 @@ pub fn many(
     many_custom(count, row, job.times, (&job.ask, job.turns == Turns::Counted), (&laws, threads), go_on)
 }
 
-/// Computes the motions of [`many`] under a law of friction of the user, whose wrong values are errors.
+/// Computes the motions of [`many`] under a user-defined law of friction; a wrong value of the law is an error.
 pub(crate) fn many_custom(
     count: usize,
     row: &(dyn Fn(usize) -> StoneRow + Sync),
@@ -341,7 +341,7 @@ pub(crate) fn many_custom(
     Ok(done.then_some(all))
 }
 
-/// One motion; an error only for a wrong value of a law.
+/// Computes the motion of one row; returns an error only for a wrong value of a user-defined law.
 fn one(
     row: &StoneRow,
     times: &[f64],
@@ -357,7 +357,7 @@ fn one(
     let start =
         Start { slip: row.slip.into(), heading, aloft: row.aloft.map(Into::into), ..Start::from(state) };
     let mut ask = ask.with_slope(slope);
-    // A walk on a slope has units of its own, in which it sees reversals, too.
+    // A motion on a slope is computed in units of the slope; reversals are counted in these units, too.
     let pace = slope.cos().sqrt();
     ask.losses = row.losses.unwrap_or(ask.losses);
     if let Some(own) = row.coefficients {
@@ -398,8 +398,8 @@ fn one(
     Ok(StoneSummary { status: found.motion.ending() as u8, numbers })
 }
 
-/// The numbers of impacts and of landings after which the stone stays, the time in the air up to the time `end`, the
-/// energy lost in impacts, and the code of the last phase.
+/// The numbers of impacts and of landings after which the stone stays, the time in the air up to `end`, the energy lost
+/// in impacts, and the code of the last phase.
 fn flights(path: &Path<StoneState>, end: f64) -> [f64; 5] {
     let next = path.phases.iter().skip(1).map(|phase| phase.time).chain([end]);
     let flights = path.phases.iter().zip(next).filter(|(phase, _)| phase.kind == Kind::Flying);

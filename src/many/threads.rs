@@ -1,4 +1,4 @@
-//! Work in blocks, shared among threads, for any kind of work.
+//! Work in blocks that is shared among threads; this module contains no physics.
 //!
 //! The threads end with the call (a pool would hang in a forked child). It is random which thread takes which block, so
 //! the result of a block must not depend on its thread.
@@ -12,14 +12,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// thread is started, since it could fail in code that cannot return an error.
 const THREAD_BYTES: usize = 80 << 20;
 
-/// The stack of a thread of this module. The stack of the caller may be as small as 80 KiB, which does not
-/// hold the frames of lanes of many motions.
+/// The size of the stack of a thread of this module, in bytes. The stack of the caller may be as small as 80 KiB, which
+/// does not hold the frames of many motions in SIMD lanes.
 const STACK: usize = 2 << 20;
 
 /// Calls `work` with every block, on `threads` threads, one of which is the calling thread. The calling thread calls
 /// `go_on`, with the finished share of the blocks, about fifty times a second; `work` may call its second argument in
-/// between, which returns false if it should stop. Returns true if all blocks are done. Fewer threads are used if the
-/// system does not provide so many. If one panics, all stop, and the panic is passed on to the caller.
+/// between, which returns false if the work should stop. Returns true if all blocks are done. Fewer threads are used if
+/// the system does not provide so many. If one thread panics, all stop, and the panic is passed on to the caller.
 pub(crate) fn share<B: Send>(
     blocks: Vec<B>,
     threads: usize,
@@ -96,7 +96,7 @@ fn run_on_threads<B: Send>(
     !stop.into_inner()
 }
 
-/// Wakes the calling thread when the thread that holds this ends. If that thread panics, all threads stop, since no
+/// When dropped at the end of its thread, wakes the calling thread. If that thread panics, all threads stop, since no
 /// other thread would compute the lost block.
 struct WakeAtEnd<'a>(&'a AtomicBool, &'a std::thread::Thread);
 

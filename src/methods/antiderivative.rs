@@ -1,4 +1,4 @@
-//! Integrals from 0 of smooth functions of one variable, as Chebyshev series on as many pieces as are needed.
+//! Integrals from 0 on of smooth functions of one variable, as Chebyshev series on as many pieces of the interval as are needed.
 //!
 //! ```text
 //! F(u) = integral of f from 0 to u,   f = sum c_k T_k(v) on a piece,   v in [-1, 1]
@@ -10,14 +10,14 @@
 use std::sync::OnceLock;
 
 const NODES: usize = 24;
-/// A series is complete if its last terms are below this, relative to its scale. The terms of its integral are 48 times
-/// smaller, so that the integral is accurate to 1e-16. With a limit below the rounding errors the halving would never
-/// end.
+/// A series is complete if its last terms are below this, relative to the scale of the function. The terms of its
+/// integral are 48 times smaller, so that the integral is accurate to 1e-16. With a limit below the rounding errors the
+/// halving of pieces would never end.
 const COMPLETE_SERIES_TERM: f64 = 4e-15;
 /// Largest number of pieces of an integral; the slowest passage of an unstable steady state needs fewer.
 const PIECES: usize = 1000;
-/// Largest relative noise that relaxes the test of completeness: with more noise, the unresolved series of a noisy
-/// function would count as complete.
+/// Largest relative noise that relaxes the test for a complete series: with more noise, the unresolved series of a
+/// noisy function would count as complete.
 const NOISE: f64 = 1e-2;
 
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ struct Piece<const M: usize> {
     right: f64,
     before: [f64; M],
     doubt_before: f64,
-    /// Series of the first function, for Newton's method.
+    /// Chebyshev series of the first function itself, for Newton's method in the inversion of its integral.
     rate: [f64; NODES],
     series: [[f64; NODES + 1]; M],
 }
@@ -40,7 +40,7 @@ pub(crate) struct Antiderivative<const M: usize> {
     pub doubt: [f64; M],
 }
 
-/// cos(k u_j) at the midpoints u_j; j is the first index, so that the terms of one sample lie side by side.
+/// cos(k u_j) at the midpoints u_j of Chebyshev's nodes; j is the first index, so that the terms of one sample lie side by side.
 fn cosines() -> &'static [[f64; NODES]; NODES] {
     static TABLE: OnceLock<[[f64; NODES]; NODES]> = OnceLock::new();
     TABLE.get_or_init(|| {
@@ -52,7 +52,7 @@ fn cosines() -> &'static [[f64; NODES]; NODES] {
     })
 }
 
-/// Clenshaw's sum of a Chebyshev series whose first coefficient is not halved.
+/// The value at v of a Chebyshev series whose first coefficient is not halved, by Clenshaw's sum.
 fn sum(series: &[f64], v: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for c in series[1..].iter().rev() {
@@ -71,7 +71,7 @@ impl<const M: usize> Piece<M> {
     }
 }
 
-/// M functions at one place.
+/// The values of M functions at one place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sampled<const M: usize> {
     pub value: [f64; M],
@@ -82,8 +82,8 @@ pub(crate) struct Sampled<const M: usize> {
 }
 
 impl<const M: usize> Antiderivative<M> {
-    /// Integrals of `f` from the first of the `cuts` to the last; none if `f` is not finite, or cannot be resolved by
-    /// pieces of at least the width `narrowest`.
+    /// Integrals of `f` from the first of the `cuts` to the last one; None if `f` is not finite, or cannot be resolved
+    /// by pieces of at least the width `narrowest`.
     pub fn new(cuts: &[f64], narrowest: f64, mut f: impl FnMut(f64) -> Sampled<M>) -> Option<Self> {
         let mut waiting: Vec<(f64, f64)> = cuts.windows(2).rev().map(|w| (w[0], w[1])).collect();
         let mut whole = Self { pieces: Vec::new(), total: [0.0; M], doubt: [0.0; M] };
@@ -216,8 +216,8 @@ impl<const M: usize> Antiderivative<M> {
         u
     }
 
-    /// Every node in ascending order with its weight in the first integral. The nodes are dense enough to show every
-    /// feature of the functions.
+    /// All nodes in ascending order, each with its weight in the first integral. The nodes are dense enough to show
+    /// every feature of the functions.
     pub fn nodes(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let table = cosines();
         self.pieces.iter().flat_map(move |p| {

@@ -4,17 +4,17 @@
 //! no zero in [a, b]     if the least value of chord - K (t - a)(b - t)/2 is positive,   f'' <= K
 //! one zero              if f(a) > 0 >= f(b) and f'(a) + K (b - a) < 0
 //! ```
-//! An interval that is neither free nor certain is halved. Error: that of the function over its slope.
+//! An interval in which neither condition holds is halved. Error of the zero: that of the function over its slope.
 
 use super::flow::Exhausted;
 
-/// A cell shorter than this, in units of the time since the start, in which the function is below `touch` counts as a
-/// touch.
+/// An interval in which the function is below `touch` counts as a zero if it is shorter than this, in units of the time
+/// since the start.
 const SHORT_CELL: f64 = 1e-9;
-/// Largest number of evaluations.
+/// Largest number of evaluations of the function.
 const HEIGHTS: u32 = 1_000_000;
 
-/// A function of time with its derivative, whose second derivative is at most `bend`, and its rounding error.
+/// A function of time and its derivative, with an upper bound `bend` of the second derivative and with its rounding error.
 pub(crate) struct Falling<F: FnMut(f64) -> [f64; 2]> {
     pub of: F,
     pub bend: f64,
@@ -23,8 +23,8 @@ pub(crate) struct Falling<F: FnMut(f64) -> [f64; 2]> {
 }
 
 impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
-    /// The first zero in [from, to], where the function is known to be positive up to `from`. An error if it is
-    /// negative there, and after too many evaluations.
+    /// The first zero in [from, to]; None if there is none. The function is known to be positive up to `from`. Returns
+    /// an error if it is negative at `from`, and after too many evaluations.
     pub fn first_zero(&mut self, from: f64, to: f64) -> Result<Option<f64>, Exhausted> {
         let (mut t, [mut here, mut rate]) = (from, (self.of)(from));
         if here <= 0.0 {
@@ -62,7 +62,7 @@ impl<F: FnMut(f64) -> [f64; 2]> Falling<F> {
         Ok(None)
     }
 
-    /// The zero between two times, between which the function falls.
+    /// The zero between two times, between which the function falls from positive to negative values.
     fn root(&mut self, mut low: f64, mut high: f64) -> f64 {
         let mut x = 0.5 * (low + high);
         for _ in 0..100 {

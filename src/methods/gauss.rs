@@ -12,7 +12,7 @@
 
 use core::f64::consts::PI;
 
-/// The positive nodes of a rule on [-1, 1].
+/// The positive nodes of Gauss's rule of quadrature on [-1, 1]; the rule is symmetric.
 #[derive(Debug, Clone)]
 pub(crate) struct Rule {
     pub nodes: Vec<Node>,
@@ -29,7 +29,7 @@ pub(crate) struct Node {
 }
 
 impl Rule {
-    /// The rule of `count` nodes, a multiple of four.
+    /// Gauss's rule with `count` nodes, a multiple of four.
     pub fn new(count: usize) -> Self {
         let half = |k: usize| k as f64 + 0.5;
         let node = |i: usize| {
@@ -41,8 +41,8 @@ impl Rule {
     }
 }
 
-/// The zero `i` of the Legendre polynomial of degree `n`, by Newton's method from an approximate place; its weight, and
-/// P_(n-1) and P_(n-2) there. The zeros ascend with their index.
+/// The zero with the index `i` of the Legendre polynomial of degree `n`, by Newton's method from an approximate place;
+/// its weight, and the values of P_(n-1) and P_(n-2) at this zero. The zeros ascend with their index.
 fn zero(n: usize, i: usize) -> (f64, f64, [f64; 2]) {
     let degree = n as f64;
     let mut z = -(PI * (i as f64 + 0.75) / (degree + 0.5)).cos();

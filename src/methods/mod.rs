@@ -1,6 +1,6 @@
 //! Numerical methods, without any physics.
 
-/// Whether the code has to be short rather than fast, as for a page: code with several copies for speed then has one.
+/// Whether the code has to be short rather than fast, as in web pages: then only one copy of each function is compiled.
 pub(crate) const SHORT_CODE: bool = cfg!(short_code);
 
 pub(crate) mod antiderivative;

@@ -1,5 +1,5 @@
-//! Radau's method IIA of ninth order, for numbers some of which follow others thousands of times faster than the
-//! solution changes.
+//! Radau's method IIA of ninth order, for stiff systems, in which some variables relax thousands of times faster than
+//! the solution changes.
 //!
 //! ```text
 //! Z_i = h sum a_ij f(y + Z_j),   y(t + h) = y + Z_5                          five stages, at the nodes c_i
@@ -7,19 +7,22 @@
 //! error = 1.5e-4 x^4 |(d5, x d4)|,   x^2 = 0.8 |d5|/|d3|                        d_n: divided differences of y of order n
 //! ```
 //! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
-//! IV.8). Only the first M of the N numbers affect each other; the others are integrals. J is that of a point within
-//! the step. For an oscillation d5 and d3 vanish together but d4 does not, so that the error does not depend on its phase.
+//! The method is stable for any h (Hairer and Wanner, Solving Ordinary Differential Equations II (1996), IV.5 and
+//! IV.8). Only the first M of the N variables affect each other; the others are integrals. J, the matrix of the
+//! derivatives of the rates, is that of a point within the step. For an oscillation d5 and d3 vanish together but d4
+//! does not, so that the error does not depend on its phase.
 //!
-//! Error: that of a pendulum goes as h^9; the tests at the end run it, a stiff equation, and the estimate of the error.
+//! Error: that of a pendulum goes as h^9; the tests at the end measure this exponent, run a stiff equation, and check
+//! the estimate of the error.
 
 use super::rk8::Step;
 use crate::numbers::larger_or_nan;
 use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 
-/// The cost of a step in evaluations of the rates, if it converges fast; and that of J and its factors.
+/// The cost of a step that converges fast, in evaluations of the rates; and the cost of J and its factors.
 pub(crate) const COST: u64 = 36;
 const JACOBIAN_COST: u64 = 20;
-/// The number of stages.
+/// The number of stages of a step.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
 pub(crate) const PLACES: [f64; RADAU_STAGES] = [0.05710419611451768, 0.2768430136381238, 0.5835904323689168, 0.8602401356562195, 1.0];
@@ -31,8 +34,8 @@ const A: [[f64; RADAU_STAGES]; RADAU_STAGES] = [
     [0.14489430810953477, 0.27650006876015926, 0.32579792291042103, 0.12875675325490976, -0.015708917378805327],
     [0.14371356079122594, 0.28135601514946207, 0.31182652297574126, 0.22310390108357073, 0.04],
 ];
-/// The eigenvalues of 1/A, of which one is real and the others are pairs, and their right and left vectors, real and
-/// imaginary parts. They determine how fast Newton's iteration converges, but not its limit.
+/// The eigenvalues of 1/A, one real and two complex pairs, and their right and left eigenvectors, real and imaginary
+/// parts. They determine how fast Newton's iteration converges, but not its limit.
 #[rustfmt::skip]
 const REAL_EIGENVALUE: (f64, [f64; RADAU_STAGES], [f64; RADAU_STAGES]) = (
     6.2867047517292765,
@@ -67,31 +70,35 @@ const COMPLEX_EIGENVALUES: [ComplexEigenvalue; 2] = [
         ],
     ),
 ];
-/// The divided differences of y: of fifth order at the start and the nodes, of fourth at the nodes, of third at the last four.
+/// Weights of the divided differences of y: of fifth order from the start and the nodes, of fourth from the nodes, of
+/// third from the last four nodes.
 #[rustfmt::skip]
 const DIVIDED_DIFFERENCE_5: [f64; RADAU_STAGES] = [199.88739542347736, -127.022853068795, 92.10283313613321, -64.16737549081559, 25.2];
 #[rustfmt::skip]
 const DIVIDED_DIFFERENCE_4: [f64; RADAU_STAGES] = [11.414409029082394, -35.16538944447781, 53.750332212318185, -55.19935179692277, 25.2];
 #[rustfmt::skip]
 const DIVIDED_DIFFERENCE_3: [f64; RADAU_STAGES] = [0.0, -7.727201094286656, 28.298810103886993, -44.332583267514494, 23.760974257914153];
-/// Largest number of Newton's iterations.
+/// Largest number of Newton's iterations in a step.
 const ITERATIONS: usize = 14;
-/// The number of iterations after which their convergence is judged.
+/// The number of iterations after which their convergence is tested.
 const TRIAL_ITERATIONS: usize = 4;
-/// The factor of the error: that of an oscillation is known within a factor of ten from 0.2 rad in a step on, however long
-/// the step.
+/// The factor in the estimate of the error of a step. For an oscillation the estimate is within a factor of ten of the
+/// error if the step is 0.2 rad or more, however long.
 const ERROR_FACTOR: f64 = 1.5e-4;
-/// Largest x^2, which is 0.04 for a radian of an oscillation. Even in a step of 24 rad it is below this.
+/// Largest x^2 in the estimate of the error; it is 0.04 for a step of one radian of an oscillation, and below this
+/// limit even for 24 rad.
 const LARGEST_SQUARE: f64 = 10.0;
-/// Largest share by which the numbers still change in an iteration that rounding prevents from converging.
+/// Largest relative change of the variables by an iteration that still counts as converged, if rounding keeps it from
+/// converging further.
 const STALLED_CHANGE: f64 = 1e-6;
 
-/// The changes Z at the stages with which Newton's iteration begins.
+/// The changes Z of y at the stages with which Newton's iteration begins; None for zero changes.
 pub(crate) type Guess<const N: usize> = Option<[[f64; N]; RADAU_STAGES]>;
-/// A step may be this many times longer than the last one, if the iteration begins with the polynomial of that step.
+/// Largest ratio of the length of a step to that of the last step for which the iteration begins with the polynomial of
+/// the last step.
 const EXTRAPOLATED_STEP_RATIO: f64 = 2.0;
 
-/// The changes in a step of length `h` by the polynomial of the last step, from its changes and its length.
+/// The changes Z in a step of length `h` by the polynomial of the last step, which is given by its changes and its length.
 #[inline(never)]
 pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f64)>, h: f64) -> Guess<N> {
     let (moved, before) = last.as_ref().filter(|(_, before)| h <= EXTRAPOLATED_STEP_RATIO * before)?;
@@ -101,8 +108,8 @@ pub(crate) fn goes_on<const N: usize>(last: &Option<([[f64; N]; RADAU_STAGES], f
     }))
 }
 
-/// Lagrange's polynomials of the nodes at the stages of the next step, which is this many times as long. That of the start
-/// would multiply a change of zero.
+/// Weights that extrapolate the polynomial through the nodes of the last step to the stages of the next step, which is
+/// `longer` times as long. The start has no weight, since its change is zero.
 fn extrapolation(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
     PLACES.map(|place| {
         let x = 1.0 + place * longer;
@@ -113,23 +120,24 @@ fn extrapolation(longer: f64) -> [[f64; RADAU_STAGES]; RADAU_STAGES] {
     })
 }
 
-/// The numbers in the middle of a step, as far as they are known: their derivatives there are those of the whole step.
+/// The variables in the middle of a step, as far as the guess knows them; the derivatives J at this place serve for the
+/// whole step.
 pub(crate) fn middle<const N: usize>(y: &[f64; N], guess: &Guess<N>) -> [f64; N] {
     guess.map_or(*y, |moved| core::array::from_fn(|n| y[n] + moved[2][n]))
 }
 
-/// The stages of a step: the changes Z, and the rates there.
+/// The stages of a step: the changes Z of y, and the rates at the stages.
 pub(crate) struct Collocated<const N: usize> {
     pub moved: [[f64; N]; RADAU_STAGES],
     pub rates: [[f64; N]; RADAU_STAGES],
-    /// The cost in evaluations of the rates.
+    /// The cost of the step in evaluations of the rates.
     pub evaluations: u64,
 }
 
-/// One step of `h` from `y`. `slopes[i][j]` is the derivative of the rate of number i with respect to number j, and
-/// `sizes` are those of the first M numbers to which errors are relative. Newton's iteration begins with `guess`, and
-/// ends when no number
-/// changes by more than the share `converged` of its size; the error is NaN if this does not happen.
+/// One step of length `h` from `y`. `slopes[i][j]` is the derivative of the rate of variable i with respect to variable
+/// j, and `sizes` are the sizes of the first M variables, to which errors are relative. Newton's iteration begins with
+/// `guess`, and ends when no variable changes by more than the share `converged` of its size; the error is NaN if this
+/// does not happen.
 pub(crate) fn step<const M: usize, const N: usize>(
     mut f: impl FnMut(&[f64; N], &mut [f64; N]),
     y: &[f64; N],
@@ -187,7 +195,7 @@ where
             }
             for (n, (moved, by)) in all.moved[i].iter_mut().zip(moves).enumerate() {
                 *moved += *by;
-                // A rate may depend on an integral that is not among the first M numbers.
+                // A rate may depend on an integral that is not among the first M variables.
                 let size = sizes.get(n).copied().unwrap_or(1.0 + moved.abs());
                 most = larger_or_nan(most, by.abs() / size);
             }
@@ -219,7 +227,7 @@ where
             .hypot(square.min(1.0).sqrt() * difference(&DIVIDED_DIFFERENCE_4, n));
         share * spread + unknown
     });
-    // The numbers of an iteration that has not converged are not those of the step.
+    // The variables of an iteration that has not converged are not those of the step.
     let change = if share.is_nan() { [f64::NAN; N] } else { all.moved[RADAU_STAGES - 1] };
     (Step { change, fifth, third: [0.0; N] }, all)
 }

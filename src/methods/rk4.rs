@@ -4,10 +4,10 @@
 //! y(t + h) = y + h (k1 + 2 k2 + 2 k3 + k4)/6
 //! k1 = f(y),   k2 = f(y + h k1/2),   k3 = f(y + h k2/2),   k4 = f(y + h k3)
 //! ```
-//! The method is that of Kutta 1901. `f` gives the derivatives of N numbers and does not depend on time. The
-//! error of a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures 4.00 +- 0.05.
-//! The updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so the
-//! round-off of n steps grows as the square root of n from a few ulp of one step's change, not of the sum.
+//! The method is that of Kutta 1901. `f` gives the derivatives of N variables and does not depend on time. The error of
+//! a smooth motion at a fixed time goes as h^4, and a test of `integrators` measures the exponent 4.00 +- 0.05. The
+//! updates are compensated (Kahan 1965): the rounding error of one sum is added to the next, so that the round-off of n
+//! steps grows as the square root of n from a few ulp of one step's change, not of the sum.
 //!
 //! ```
 //! use spincyl::rk4::integrate;
@@ -35,7 +35,7 @@ where
     change(|y: &[f64; N]| f(&Y::from(*y)).into(), y, k1, h)
 }
 
-/// The change of the plain array `y` over one step `h`, as from `increment`, single or in lanes.
+/// The change of the array `y` over one step `h`, as [`increment`] gives it for other types; for single numbers or SIMD lanes.
 #[inline(always)]
 pub(crate) fn change<T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N]) -> [T; N],
@@ -60,22 +60,22 @@ pub(crate) fn change<T: Real, const N: usize>(
     sum
 }
 
-/// Numbers, and the rounding errors of the sums that led to them.
+/// The variables of an integration, with the rounding errors of the sums that led to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated<const N: usize> {
     /// The rounded sums.
     pub y: [f64; N],
-    /// The part, less than an ulp, that is still to be added to the numbers.
+    /// The part, less than an ulp, that is still to be added to `y`.
     pub carry: [f64; N],
 }
 
 impl<const N: usize> Compensated<N> {
-    /// These numbers, without rounding errors so far.
+    /// The variables at the start of an integration, without rounding errors.
     pub fn new(y: [f64; N]) -> Self {
         Self { y, carry: [0.0; N] }
     }
 
-    /// The sum of these numbers and a change.
+    /// The sum of these variables and a change, which also keeps the rounding error of the sum.
     #[inline(always)]
     #[must_use]
     pub fn plus(&self, change: &[f64; N]) -> Self {
@@ -84,9 +84,9 @@ impl<const N: usize> Compensated<N> {
     }
 }
 
-/// The state after `steps` steps of `h`; a negative `h` goes backward in time.
+/// The state after `steps` RK4 steps of length `h`; a negative `h` goes backward in time.
 ///
-/// The type of `y` holds N numbers, for example [`State`](crate::State) or an array.
+/// The type of `y` holds N variables, for example [`State`](crate::State) or an array.
 pub fn integrate<Y, const N: usize>(mut f: impl FnMut(&Y) -> Y, y: Y, h: f64, steps: u64) -> Y
 where
     Y: From<[f64; N]> + Into<[f64; N]>,

@@ -7,9 +7,9 @@
 //! ```
 //! The method is in Prince and Dormand 1981; the coefficients and the error are those of Hairer, Noersett and Wanner,
 //! Solving Ordinary Differential Equations I (1993), II.5 and II.10 (DOP853). `f` writes the derivatives of N
-//! numbers, single or in lanes, and does not depend on time. The stages are called in their order, each with
-//! a state within the step. A part of a step is computed as a separate step from the same k_1, so that an
-//! event within a step is located with the accuracy of the step, not with that of an interpolation.
+//! variables, single or in SIMD lanes, and does not depend on time. The stages are called in their order, each with a
+//! state within the step. A part of a step is computed as a separate step from the same k_1, so that an event within a
+//! step is located with the accuracy of the step, not with that of an interpolation.
 //!
 //! Error: the error of a pendulum goes as h^8; the tests at the end run it.
 
@@ -23,9 +23,9 @@ pub(crate) struct Step<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Step<T, N> {
-    /// The error of the step by the formula above; `per(i)` is the inverse of the tolerance of number `i`, and `count`
-    /// is N for a mean square over the numbers, or 1 for a sum. Overflow gives NaN, since an error of 0 would accept
-    /// the step.
+    /// The error of the step by the formula at the top of this file; `per(i)` is the inverse of the tolerance of
+    /// variable `i`, and `count` is N for a mean square over the variables, or 1 for a sum. Overflow gives NaN, since
+    /// an error of 0 would accept the step.
     #[inline(always)]
     pub fn error(&self, per: impl Fn(usize) -> T, count: f64) -> T {
         let number = |x: f64| self.change[0].splat(x);
@@ -39,9 +39,9 @@ impl<T: Real, const N: usize> Step<T, N> {
         fifth / square.sqrt() + number(0.0) * square
     }
 
-    /// A factor of at least 1 for the error of a step in which the first `count` numbers change by less than 1/`SLOW_CHANGE_FACTOR`
-    /// per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself, so that the error is
-    /// then bounded relative to the motion. No tolerance becomes smaller than `ROUNDING` by this.
+    /// A factor of at least 1 for the error of a step in which the first `count` variables change by less than
+    /// 1/`SLOW_CHANGE_FACTOR` per unit of time. Near an unstable equilibrium errors grow as fast as the motion itself,
+    /// so that the error is then bounded relative to the motion. This never makes a tolerance smaller than `ROUNDING`.
     #[inline(always)]
     pub fn strictness(&self, tol: T, count: usize, time: usize) -> T {
         let number = |x: f64| tol.splat(x);
@@ -56,16 +56,16 @@ impl<T: Real, const N: usize> Step<T, N> {
     }
 }
 
-/// [`Step::strictness`] divides the tolerance where no number changes by 1/`SLOW_CHANGE_FACTOR` per unit of time.
+/// [`Step::strictness`] divides the tolerance where all variables change by less than 1/`SLOW_CHANGE_FACTOR` per unit of time.
 const SLOW_CHANGE_FACTOR: f64 = 100.0;
-/// The smallest tolerance that [`Step::strictness`] leaves; an error below this is rounding.
+/// The smallest tolerance that [`Step::strictness`] may produce; a smaller error is rounding.
 const ROUNDING: f64 = 3e-15;
 
-/// Whether the stages of a step form a loop, unless a flow chooses otherwise: only in the code for pages, which is short. A
-/// program that is compiled for debugging follows the same steps as one that is compiled for speed.
+/// Whether the stages of a step form a loop, unless a flow chooses otherwise: only in the short code for web pages. A
+/// program that is compiled for debugging takes the same steps as one that is compiled for speed.
 pub(crate) const LOOPS: bool = cfg!(short_code);
 
-/// The number of stages of a step; the weights number the stages from 0 on.
+/// The number of stages of a step; the weights `a_ij` count the stages from 0 on.
 pub(crate) const STAGES: usize = 12;
 type Weights<const M: usize> = [(usize, f64); M];
 
@@ -98,10 +98,10 @@ const FIFTH_ORDER_ERROR: Weights<8> = [(0, 0.01312004499419488), (5, -1.22515644
 #[rustfmt::skip]
 const THIRD_ORDER_ERROR: Weights<8> = [(0, -0.18980075407240762), (5, 4.450312892752409), (6, 1.8915178993145003), (7, -5.801203960010585), (8, -0.4226823213237919), (9, -0.1521609496625161), (10, 0.20136540080403034), (11, 0.02265179219836082)];
 
-/// Space for the rates at the stages of a step, which a flow keeps from one step to the next.
+/// Space for the rates at the stages of a step, which an integration keeps from one step to the next.
 pub(crate) type Stages<T, const N: usize> = [[T; N]; STAGES];
 
-/// The sum `a_1 k_1 + ...` of number `i`.
+/// The sum `a_1 k_1 + ...` over the stages, for variable `i`.
 #[inline(always)]
 fn weighted<T: Real, const N: usize, const M: usize>(
     k: &Stages<T, N>,
@@ -116,10 +116,10 @@ fn weighted<T: Real, const N: usize, const M: usize>(
     sum
 }
 
-/// The stages whose numbers y approximate the solution, each with its time as a share of the step.
+/// The stages whose variables approximate the solution, each as [index, time as a share of the step].
 pub(crate) const LOOKS: [(usize, f64); 3] = [(5, 1.0 / 3.0), (9, 0.6), (10, 6.0 / 7.0)];
 
-/// The numbers y of a stage, from the rates of the stages before it.
+/// The variables y of a stage, from the rates of the stages before it.
 #[inline(always)]
 pub(crate) fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>) -> [T; N] {
     let mut at = *y;
@@ -127,7 +127,8 @@ pub(crate) fn place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: 
     at
 }
 
-/// Writes the numbers y of a stage: in lanes, a copy of all numbers takes as long as some of them.
+/// Writes the variables y of a stage into `at`, since in SIMD lanes a copy of all variables would take as long as
+/// computing some of them.
 #[inline(always)]
 fn write_place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stages<T, N>, at: &mut [T; N]) {
     macro_rules! by {
@@ -152,7 +153,7 @@ fn write_place<T: Real, const N: usize>(stage: usize, y: &[T; N], h: T, k: &Stag
     }
 }
 
-/// One step of `h` from `y`, where `k1 = f(y)` is known; LOOP says whether the stages form a loop or are written out.
+/// One step of length `h` from `y`, where `k1 = f(y)` is known; LOOP says whether the stages form a loop or are written out.
 #[inline(always)]
 pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     mut f: impl FnMut(&[T; N], &mut [T; N]),
@@ -185,7 +186,7 @@ pub(crate) fn step<const LOOP: bool, T: Real, const N: usize>(
     made
 }
 
-/// A sum, and its accumulated rounding error (Kahan 1965).
+/// The variables after a change, and their accumulated rounding errors `carry` (Kahan 1965).
 #[inline(always)]
 pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: &[T; N]) -> ([T; N], [T; N]) {
     let (mut sum, mut left) = ([y[0]; N], [y[0]; N]);
@@ -198,8 +199,8 @@ pub(crate) fn plus<T: Real, const N: usize>(y: &[T; N], carry: &[T; N], change: 
     (sum, left)
 }
 
-/// The factor by which the step may grow after this error, in units of the allowed error: 0.9 error^(-1/8) within [0.3,
-/// 5].
+/// The factor by which the next step may be longer or shorter, from the error in units of the allowed error: 0.9
+/// error^(-1/8), within [0.3, 5].
 #[inline(always)]
 pub(crate) fn growth<T: Real>(error: T) -> T {
     let one = |x: f64| error.splat(x);

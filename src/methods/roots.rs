@@ -39,8 +39,8 @@ pub(crate) fn in_unit_interval(p: &[Sum<f64>]) -> SortedRoots {
     in_unit_interval_with_end(p, sign_below_one(p))
 }
 
-/// The roots in the open interval (0, 1), where the caller knows the sign of the polynomial just below 1 better than
-/// the sum of its rounded coefficients does.
+/// The roots in the open interval (0, 1) of a polynomial whose sign just below 1 the caller knows better than the sum
+/// of its rounded coefficients shows.
 pub(crate) fn in_unit_interval_with_end(p: &[Sum<f64>], sign_below_one: f64) -> SortedRoots {
     let mut found = SortedRoots { items: [0.0; HIGHEST_DEGREE], len: 0 };
     if p.len() < 2 {
@@ -81,12 +81,12 @@ fn value(p: &[Sum<f64>], t: f64) -> Sum<f64> {
     p.iter().rev().copied().reduce(|sum, c| sum.times(t).plus(c)).unwrap_or(ZERO)
 }
 
-/// The sign just above 0, which is that of the lowest coefficient that is not zero.
+/// The sign of a polynomial just above 0, which is that of its lowest coefficient that is not zero.
 fn sign_above_zero(p: &[Sum<f64>]) -> f64 {
     p.iter().map(|c| sign(c.hi)).find(|s| *s != 0.0).unwrap_or(0.0)
 }
 
-/// The sign just below 1, which is that of p(1) or, where p(1) is zero, the opposite of that of the slope.
+/// The sign of a polynomial p just below 1: that of p(1) or, where p(1) is zero, the opposite of that of the slope.
 fn sign_below_one(p: &[Sum<f64>]) -> f64 {
     let at_one = sign(value(p, 1.0).hi);
     if at_one != 0.0 || p.len() < 2 {
@@ -131,7 +131,7 @@ fn middle_of(low: f64, high: f64) -> f64 {
     }
 }
 
-/// A number that the coefficients of a [`Cubic`] can be.
+/// A type of number for the coefficients of a [`Cubic`].
 pub(crate) trait Coefficient: Copy + From<Sum<f64>> {
     fn plus(self, other: Self) -> Self;
     /// `self + a b`.
@@ -152,7 +152,7 @@ impl Coefficient for Sum<f64> {
 pub(crate) struct Cubic<C = Sum<f64>>(pub [C; 4]);
 
 impl<C: Coefficient> Cubic<C> {
-    /// The polynomial T.
+    /// The polynomial T itself.
     pub fn tangent() -> Self {
         Self([ZERO, Sum { hi: 1.0, lo: 0.0 }, ZERO, ZERO].map(C::from))
     }
@@ -189,7 +189,7 @@ pub(crate) struct Trig {
 }
 
 impl Trig {
-    /// A constant polynomial.
+    /// A constant polynomial of degree 0 in sine and cosine.
     pub fn of(x: impl Into<Sum<f64>>) -> Self {
         Self { p: vec![x.into()], degree: 0 }
     }

@@ -1,12 +1,12 @@
 //! Zeros and minima of a function of one variable.
 //!
-//! Error: a zero is found to the last digit, or as far as the values of the function allow; a minimum is found to nine
-//! digits of the interval, and its value to the square of that.
+//! Error: a zero is accurate to the last digit, or as far as the values of the function allow. The place of a minimum
+//! is accurate to nine digits of the interval, and its value to the square of that.
 
 use super::SHORT_CODE;
 
-/// The zero of `f` between `a` and `b`, at which the signs of `f` differ: to the last digit, or as far as the values of
-/// `f` allow. The zero is `b` if `fb` is 0.
+/// The zero of `f` between `a` and `b`, at which `f` has the values `fa` and `fb` of different signs: to the last
+/// digit, or as far as the values of `f` allow. The zero is `b` if `fb` is 0.
 pub(crate) fn crossing(mut f: impl FnMut(f64) -> f64, a: f64, b: f64, fa: f64, fb: f64) -> f64 {
     if SHORT_CODE {
         return bracketed(&mut f as &mut dyn FnMut(f64) -> f64, [a, b], [fa, fb]);
@@ -14,7 +14,7 @@ pub(crate) fn crossing(mut f: impl FnMut(f64) -> f64, a: f64, b: f64, fa: f64, f
     bracketed(&mut f, [a, b], [fa, fb])
 }
 
-/// The zero between `a` and `b`; pages have one compiled copy.
+/// The search of [`crossing`]; code for web pages has only one compiled copy of it.
 fn bracketed<F: FnMut(f64) -> f64 + ?Sized>(
     f: &mut F,
     [mut a, mut b]: [f64; 2],

@@ -3,11 +3,11 @@
 //! ```text
 //! sin theta, cos theta   as unevaluated sums hi + lo,   0 <= theta <= pi
 //! ```
-//! The sum `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine and of the cosine, and `hi` within 1.125: the tests
-//! at the end check it. The method is a Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66), with the leading
-//! terms as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2). [`Short`] sums, which maps need by the million,
-//! take half as many operations: their low parts are the rounding errors of the last addition, and the sum is within
-//! 0.4 ulp.
+//! For [`sincos`] the sum `hi + lo` is within 1/8 ulp (2^-53 relative) of the sine or cosine, and `hi` within 1.125
+//! ulp: the tests at the end check it. The method is a Taylor series on [0, pi/4] (Abramowitz and Stegun 4.3.65-66),
+//! with the leading terms as exact sums and products (Dekker 1971, Knuth TAOCP 4.2.2). [`Short`] sums, which maps need
+//! by the million, take half as many operations: their low parts are the rounding errors of the last addition, and the
+//! sum is within 0.4 ulp.
 
 use super::real::Real;
 use super::sum::Sum;
@@ -78,7 +78,7 @@ pub(crate) fn sincos<T: Real>(theta: T) -> SinCos<T> {
     }
 }
 
-/// Sine and cosine in few operations, and the distance of theta from the nearer of 0 and pi/2.
+/// Sine and cosine, computed in few operations, and the distance of theta from the nearer of 0 and pi/2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Short<T> {
     pub sin: Sum<T>,
@@ -140,7 +140,7 @@ fn sin_cos_below_quarter<T: Real>(x: T, x_lo: T) -> [Sum<T>; 2] {
     [s, c]
 }
 
-/// Sine and cosine of an angle in [0, pi], each within 2 ulp (2^-53 relative).
+/// Sine and cosine of an angle in [0, pi] as single numbers, each within 2 ulp (2^-53 relative).
 #[inline(always)]
 pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     let [zero, one] = [0.0, 1.0].map(|x| theta.splat(x));
@@ -162,7 +162,7 @@ pub(crate) fn sin_cos<T: Real>(theta: T) -> (T, T) {
     (side(sin, cos), side(cos, sin) * theta.select_lt(most, one, zero - one))
 }
 
-/// The angle in [0, pi/2] whose tangent is `y` over `x`, both not negative; 0 if both vanish. The error is at
+/// The angle in [0, pi/2] whose tangent is y/x, for y and x that are not negative; 0 if both vanish. The error is at
 /// most 3 ulp.
 #[inline(always)]
 pub(crate) fn arctan2<T: Real>(y: T, x: T) -> T {

@@ -1,6 +1,7 @@
 //! Enumerations whose values are stored in arrays as numbers.
 
-/// An enumeration with a list of its values, and the conversion of a number in an array to the value.
+/// Defines an enumeration with a list of its values and conversions between the values and the numbers that stand for
+/// them in arrays.
 macro_rules! coded {
     ($(#[$about:meta])* pub enum $Name:ident { $($(#[$doc:meta])* $Value:ident = $code:literal,)+ }) => {
         $(#[$about])*
@@ -25,7 +26,7 @@ macro_rules! coded {
         impl TryFrom<u8> for $Name {
             type Error = crate::error::Error;
 
-            /// The value with this code, or `OutOfRange`.
+            /// The value with this code, or the error `OutOfRange` if there is none.
             fn try_from(code: u8) -> Result<Self, Self::Error> {
                 let expected = concat!("the code of a value of ", stringify!($Name));
                 Self::from_code(code).ok_or(Self::Error::OutOfRange { name: "code", value: f64::from(code), expected })
@@ -33,7 +34,7 @@ macro_rules! coded {
         }
 
         impl core::fmt::Display for $Name {
-            /// The name of the value in words, such as "lift off" for `LiftOff`.
+            /// Writes the name of the value in words, such as "lift off" for `LiftOff`.
             fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
                 f.pad(&$crate::numbers::codes::words(&format!("{self:?}")))
             }
@@ -42,7 +43,7 @@ macro_rules! coded {
 }
 pub(crate) use coded;
 
-/// The words of a name: "lift off" for "LiftOff".
+/// The name of a value as lower-case words: "lift off" for "LiftOff".
 pub(crate) fn words(name: &str) -> String {
     let mut all = String::new();
     for letter in name.chars() {

@@ -8,7 +8,7 @@
 
 use super::real::{Real, operators};
 
-/// A value and its derivative with respect to the one independent variable.
+/// A value and its derivative with respect to a single independent variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual<T> {
     pub value: T,

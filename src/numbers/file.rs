@@ -3,7 +3,7 @@
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A number or a word.
+/// A number that is read from a file, as a number or as the word "inf", "-inf" or "NaN".
 pub(crate) struct Written(f64);
 
 impl Serialize for Written {
@@ -42,7 +42,7 @@ pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::
     Written::deserialize(from).map(|x| x.0)
 }
 
-/// Rows of numbers in files, with the same words for infinity and NaN.
+/// Conversion of rows of numbers in files, with the words "inf", "-inf" and "NaN" for infinity and NaN.
 pub(crate) mod rows {
     use super::Written;
     use serde::{Deserialize, Deserializer, Serializer};

@@ -1,4 +1,5 @@
-//! The kinds of numbers: single, in lanes, with twice the digits, dual, and power series; sines, cosines, arc tangents.
+//! The kinds of numbers: single numbers, SIMD lanes, sums with twice the digits, dual numbers and power series; sines,
+//! cosines, arc tangents.
 
 mod angle;
 pub(crate) mod codes;
@@ -25,8 +26,8 @@ pub(crate) use wide::{LANES, Pair};
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The best SIMD level of this machine for which lanes are compiled; None if `SPINCYL_LANES=off` is set in
-/// the environment.
+/// The best SIMD level of this machine for which the code is compiled; None if `SPINCYL_LANES=off` is set in the
+/// environment.
 static LEVEL: LazyLock<Option<Level>> = LazyLock::new(|| {
     let off = std::env::var_os("SPINCYL_LANES").is_some_and(|set| set == "off");
     if off || !cfg!(lanes_of_eight) { None } else { best() }
@@ -37,7 +38,7 @@ fn best() -> Option<Level> {
     Some(Level::new())
 }
 
-/// Without lanes for AVX-512, processors with AVX-512 use their AVX2.
+/// The best SIMD level in a build without AVX-512: processors with AVX-512 then use their AVX2.
 #[cfg(not(any(lanes_of_sixteen, not(any(target_arch = "x86", target_arch = "x86_64")))))]
 fn best() -> Option<Level> {
     Level::new().as_avx2().map(Level::Avx2)
@@ -53,7 +54,7 @@ pub(crate) fn avx2() -> Option<fearless_simd::x86::Avx2> {
     level().and_then(Level::as_avx2)
 }
 
-/// Other processors have no AVX2.
+/// None: processors that are not x86 have no AVX2.
 #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
 pub(crate) fn avx2() -> Option<()> {
     None
@@ -69,8 +70,8 @@ pub(crate) fn sign_or_zero(x: f64) -> f64 {
 }
 
 /// Evaluates `$lanes`, compiled for AVX-512, AVX2 or NEON, on a processor that has it, with the token `$simd`, which
-/// makes lanes; evaluates `$alone` on any other processor. There are no more levels, since each level compiles all of
-/// this code once more.
+/// makes SIMD lanes; evaluates `$alone` on any other processor. There are no more levels, since each level compiles all
+/// of this code once more.
 macro_rules! in_lanes {
     ($level:expr, $simd:pat => $lanes:expr, else $alone:expr) => {
         match $level {
@@ -97,7 +98,7 @@ macro_rules! in_lanes {
 pub(crate) use in_lanes;
 
 /// Evaluates `$work` on single numbers, compiled for AVX2 where the processor has it: a register then holds several
-/// numbers, and a fused product is one instruction. `$plain` gives the same on any other processor.
+/// numbers, and a fused product is one instruction. `$plain` gives the same results on any other processor.
 macro_rules! in_registers {
     ($work:expr) => {
         $crate::numbers::in_registers!($work, else $work)

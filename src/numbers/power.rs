@@ -2,7 +2,7 @@
 
 use super::real::Real;
 
-/// The value at `x`.
+/// The value at `x` of a series, by Horner's rule; 0 for a series without coefficients.
 #[inline(always)]
 pub(crate) fn horner<T: Real>(series: &[T], x: T) -> T {
     let Some((last, rest)) = series.split_last() else { return x.splat(0.0) };
@@ -23,9 +23,9 @@ pub(crate) fn divide<T: Real>(series: &mut [T], root: T) -> T {
     carry
 }
 
-/// Adds to `sum`, the growing product of two series, all products of a coefficient `k` with one up to `k`;
-/// coefficient `k` of `sum` is then complete. These additions do not wait for each other, unlike those of a
-/// sum over all pairs of one coefficient.
+/// Step `k` of the product of the series `a` and `b`, whose coefficients become known one by one: adds to `sum` all
+/// products of a coefficient `k` with one up to `k`, after which coefficient `k` of `sum` is complete. These additions
+/// do not wait for each other, unlike those of a sum over all pairs of one coefficient.
 #[inline(always)]
 pub(crate) fn multiply_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N], b: &[T; N], k: usize) {
     let (of_a, of_b) = (a[k], b[k]);
@@ -37,7 +37,7 @@ pub(crate) fn multiply_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N],
     }
 }
 
-/// [`multiply_on`] for the square of a series.
+/// Step `k` of the square of a series, as [`multiply_on`] does it for a product.
 #[inline(always)]
 pub(crate) fn square_on<T: Real, const N: usize>(sum: &mut [T; N], a: &[T; N], k: usize) {
     let twice = a[k] + a[k];

@@ -1,9 +1,9 @@
 //! Real numbers: every equation of this library is written over the trait of this file.
 //!
-//! An equation is written once over [`Real`] and serves a single state, eight states in lanes, a state with twice the
-//! digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded, also the
-//! fused one on machines without it. Therefore the bits of a lane do not depend on its neighbours, the SIMD width or
-//! the machine. Only [`Real::mac`] differs between a single number and a lane.
+//! An equation is written once over [`Real`] and serves a single state, eight states in SIMD lanes, a state with twice
+//! the digits, and a state with a derivative. Every operation of single numbers and of lanes is correctly rounded, also
+//! the fused one on machines without it. Therefore the bits of a lane do not depend on its neighbours, the SIMD width
+//! or the machine. Only [`Real::mac`] differs between a single number and a lane.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -29,33 +29,32 @@ macro_rules! operators {
 }
 pub(super) use operators;
 
-/// A real number, or eight real numbers in lanes.
+/// A real number, or eight real numbers in SIMD lanes.
 pub(crate) trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The constant `x` in as many lanes as `self` has.
+    /// The constant `x` in as many SIMD lanes as `self` has.
     fn splat(self, x: f64) -> Self;
     /// Square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// The nearest whole number, ties to even.
+    /// The nearest whole number; of two that are equally near, the even one.
     fn round(self) -> Self;
     /// Returns `yes` where `self < other`, `no` elsewhere (also for NaN).
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self;
 
-    /// Whether `self < other` is known for all that this number stands for, so that the other case need not be computed.
+    /// Whether `self < other` is known for all values that this number stands for, so that the other case need not be computed.
     #[inline(always)]
     fn is_lt(self, _: Self) -> bool {
         false
     }
 
-    /// `self * b + c`, rounded once for single numbers and lanes; a product and a sum for other kinds of
-    /// numbers.
+    /// `self * b + c`, rounded once for single numbers and SIMD lanes; for other kinds of numbers a product and a sum.
     #[inline(always)]
     fn fma(self, b: Self, c: Self) -> Self {
         self * b + c
     }
 
-    /// `self * b + c`, rounded once in lanes and twice in a single number, because a processor may lack the
+    /// `self * b + c`, rounded once in SIMD lanes and twice in a single number, because a processor may lack the
     /// instruction.
     #[inline(always)]
     fn mac(self, b: Self, c: Self) -> Self {
@@ -74,32 +73,32 @@ pub(crate) trait Real:
         self.select_lt(zero, zero, self)
     }
 
-    /// The smaller of the two; `other` if `self` is NaN.
+    /// The smaller of the two numbers; `other` if `self` is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         self.select_lt(other, self, other)
     }
 
-    /// The larger of the two; `other` if `self` is NaN.
+    /// The larger of the two numbers; `other` if `self` is NaN.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         other.select_lt(self, self, other)
     }
 }
 
-/// Numbers with comparisons over all lanes: a single number, or eight numbers in lanes.
+/// Numbers with comparisons over all SIMD lanes: a single number, or eight numbers in lanes.
 pub(crate) trait Lane: Real {
-    /// Whether `self < other` in any lane.
+    /// Whether `self < other` in any SIMD lane.
     fn any_lt(self, other: Self) -> bool;
 
-    /// Whether any lane is positive.
+    /// Whether any SIMD lane is positive.
     #[inline(always)]
     fn any(self) -> bool {
         self.splat(0.0).any_lt(self)
     }
 
-    /// Does rare work in a function that is compiled separately, for the same lanes, so that frequent work
-    /// stays compact.
+    /// Calls `work`, which is rarely needed, in a function that is compiled separately for the same SIMD lanes, so that
+    /// frequent work stays compact.
     fn aside<R>(self, work: impl FnOnce() -> R) -> R;
 }
 

@@ -6,10 +6,10 @@
 //! ```
 //! Error: a few roundings of the largest term.
 
-/// Largest number of coefficients.
+/// Largest number of coefficients of a truncated series.
 pub(crate) const TERMS: usize = 18;
 
-/// Coefficients of 1, t, t^2, ...
+/// A truncated power series, by its coefficients of 1, t, t^2, ...
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Series {
     pub at: [f64; TERMS],
@@ -23,25 +23,25 @@ impl Series {
         Self { at }
     }
 
-    /// The first `known` coefficients of a series; the others are 0.
+    /// A series whose first `known` coefficients are those of `of`; the others are 0.
     pub fn first(of: &[f64; TERMS], known: usize) -> Self {
         let mut at = *of;
         at[known..].fill(0.0);
         Self { at }
     }
 
-    /// The integral of the series, with the value `x` at 0.
+    /// The integral of the series from 0 on, plus the constant `x`.
     pub fn integral(&self, x: f64) -> Self {
         let over = |n: usize| self.at[n - 1] / n as f64;
         Self { at: core::array::from_fn(|n| if n == 0 { x } else { over(n) }) }
     }
 
-    /// The value at `t`.
+    /// The value of the series at `t`.
     pub fn value(&self, t: f64) -> f64 {
         self.at.iter().rev().fold(0.0, |sum, a| sum * t + a)
     }
 
-    /// The series of the same function in powers of the distance from `t`.
+    /// The series of this function in powers of the distance from `t`.
     pub fn about(&self, t: f64) -> Self {
         let mut at = self.at;
         for k in 0..TERMS {

@@ -1,19 +1,19 @@
 //! Numbers whose SIMD lanes belong to bodies or motions that are computed side by side; this module contains no physics.
 //!
-//! A single number is the case of one lane, so that code for lanes also serves machines without SIMD.
+//! A single number is the case of one lane, so that code for SIMD lanes also serves machines without SIMD.
 
 use super::{LANES, Lane, Pair};
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdFloat, f32x8, f32x16, f64x8};
 
-/// A number with one lane for each of the tasks that are computed side by side.
+/// A number with one SIMD lane for each of the bodies or motions that are computed side by side.
 pub(crate) trait SideBySide: Lane {
     const COUNT: usize;
-    /// A number with the first values of `of` in its lanes.
+    /// A number whose SIMD lanes are the first values of `of`.
     fn load(self, of: &[f64]) -> Self;
     fn lane(&self, k: usize) -> f64;
-    /// Writes the lanes to the first places of `to`.
+    /// Writes the SIMD lanes to the first places of `to`.
     fn spill(&self, to: &mut [f64]);
-    /// Calls `f` in a separate function that is compiled for these lanes: in one piece the compiler would take minutes.
+    /// Calls `f` in a function that is compiled separately for these SIMD lanes: in one piece the compiler would take minutes.
     fn apart<R>(self, f: impl FnOnce() -> R) -> R;
 }
 
@@ -22,13 +22,13 @@ pub(crate) trait Narrow: SideBySide {
     /// The vector of as many numbers in single precision.
     type Single: Copy;
 
-    /// The number rounded to single precision.
+    /// This number rounded to single precision.
     fn single(self) -> Self::Single;
-    /// Square root, in single precision, of the number rounded to single precision; NaN below zero.
+    /// Square root, in single precision, of this number rounded to single precision; NaN below zero.
     fn single_root(self) -> Self::Single;
-    /// The same number in double precision.
+    /// Converts a number in single precision to double precision.
     fn wide(of: Self::Single) -> Self;
-    /// Writes the lanes to the first places of `to`.
+    /// Writes the SIMD lanes in single precision to the first places of `to`.
     fn spill_single(of: Self::Single, to: &mut [f32]);
 }
 
@@ -162,7 +162,7 @@ impl<S: Simd> Narrow for Pair<f64x8<S>> {
     }
 }
 
-/// The greatest number of lanes.
+/// The greatest number of SIMD lanes that are computed side by side.
 pub(crate) const MOST: usize = 2 * LANES;
 
 /// [`SideBySide::apart`] in a function that is never inlined.
@@ -175,8 +175,8 @@ pub(crate) fn zero<S: Simd>(simd: S) -> f64x8<S> {
     <f64x8<S> as SimdBase<S>>::splat(simd, 0.0)
 }
 
-/// The numbers of `x` from `start` on, and NaN after the last; if `x` has one number, that number in all
-/// lanes.
+/// SIMD lanes with the numbers of `x` from the index `start` on, and NaN after the last number; if `x` has only one
+/// number, this number in all lanes.
 #[inline(always)]
 pub(crate) fn load<T: SideBySide>(like: T, x: &[f64], start: usize) -> T {
     if x.len() == 1 {

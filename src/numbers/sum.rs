@@ -4,9 +4,8 @@
 //! hi + lo,   |lo| <= ulp(hi)/2                          Dekker 1971, Knuth TAOCP 4.2.2
 //! sin x, cos x   Taylor series (Abramowitz and Stegun 4.3.65-66) on |x| <= pi/4, pi/2 and pi taken off first
 //! ```
-//! They serve where a difference of nearly equal numbers decides a whole motion. Error: sums and products
-//! 2^-102 of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end
-//! check it.
+//! Such sums serve where a difference of nearly equal numbers decides a whole motion. Error: sums and products 2^-102
+//! of the larger operand, quotients 2^-100; sine and cosine 2^-101, absolute: the tests at the end check it.
 
 use super::real::{Real, operators};
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -66,7 +65,7 @@ impl<T: Real> Sum<T> {
         Self::ordered(high.hi, self.hi.fma(b.lo, self.lo.fma(b.hi, high.lo)))
     }
 
-    /// The quotient; relative error 2^-100.
+    /// The quotient of this sum and `b`; relative error 2^-100.
     #[cfg_attr(short_code, inline(never))]
     #[cfg_attr(not(short_code), inline(always))]
     fn over(self, b: Self) -> Self {
@@ -145,7 +144,7 @@ pub(crate) fn sin_cos_falls<T: Real>(theta: T) -> [Sum<T>; 4] {
     ]
 }
 
-/// `parts` times pi/2 minus theta, where `from` is the double nearest to `parts` times pi/2.
+/// The angle `parts` pi/2 - theta with twice the digits, where `from` is the double nearest to `parts` pi/2.
 #[inline(always)]
 fn angle_below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
     let zero = theta.splat(0.0);
@@ -153,7 +152,7 @@ fn angle_below<T: Real>(from: f64, parts: f64, theta: T) -> Sum<T> {
     rest.plus(Sum { hi: theta.splat(parts * HALF_PI[1]), lo: zero })
 }
 
-/// Returns `near` up to pi/4, `middle` up to 3 pi/4 and `far` beyond.
+/// Returns `near` for theta up to pi/4, `middle` up to 3 pi/4, and `far` beyond.
 #[inline(always)]
 fn select_by_third<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>) -> Sum<T> {
     let [low, high] = [theta.splat(FRAC_PI_4), theta.splat(3.0 * FRAC_PI_4)];
@@ -163,7 +162,7 @@ fn select_by_third<T: Real>(theta: T, near: Sum<T>, middle: Sum<T>, far: Sum<T>)
     }
 }
 
-/// Sine and cosine of an angle in [0, pi].
+/// Sine and cosine of an angle in [0, pi], each with twice the digits.
 #[inline(always)]
 pub(crate) fn sin_cos(theta: f64) -> [Sum<f64>; 2] {
     let [sin, cos, ..] = sin_cos_falls(theta);

@@ -1,4 +1,4 @@
-//! Power series of all numbers in a law, computed order by order from a record of its operations.
+//! Power series of all intermediate results of a law, computed order by order from a record of its operations.
 //!
 //! ```text
 //! (a b)_n = sum a_j b_(n-j),   (a/b)_n = (a_n - sum_(j<n) (a/b)_j b_(n-j))/b_0,   (r r)_n = a_n for r = sqrt(a)
@@ -15,7 +15,7 @@ use super::series::{Series, TERMS};
 use core::cell::RefCell;
 use core::ops::Range;
 
-/// An operation; the operands are the results of earlier operations.
+/// An operation on numbers in a recorded law; its operands are the results of earlier operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Op {
     Given,
@@ -33,7 +33,7 @@ enum Op {
 }
 
 impl Op {
-    /// The same operation, with `to` applied to the index of each operand.
+    /// This operation with `to` applied to the index of each operand.
     fn with(self, mut to: impl FnMut(u16) -> u16) -> Self {
         match self {
             Self::Given | Self::Constant(_) => self,
@@ -54,26 +54,26 @@ pub(crate) struct Tape {
     ops: RefCell<Vec<Op>>,
 }
 
-/// A number in a recorded law: `scale` times the result of an operation, plus `shift`; or the constant
+/// A number in a recorded law: `scale` times the result of an operation, plus `shift`; or, with `scale` 0, the constant
 /// `shift`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taped<'a> {
     tape: &'a Tape,
     of: Option<u16>,
-    /// The factor of the result, 0 for a constant.
+    /// The factor of the result of the operation; 0 for a constant.
     scale: f64,
     shift: f64,
 }
 
 impl Tape {
-    /// A number whose series the player receives.
+    /// A number that the law is given; the player receives its series.
     pub fn given(&self) -> Taped<'_> {
         let mut ops = self.ops.borrow_mut();
         ops.push(Op::Given);
         self.plain((ops.len() - 1) as u16)
     }
 
-    /// A constant.
+    /// A constant number in the recorded law.
     pub fn number(&self, x: f64) -> Taped<'_> {
         Taped { tape: self, of: None, scale: 0.0, shift: x }
     }
@@ -82,7 +82,8 @@ impl Tape {
         Taped { tape: self, of: Some(result), scale: 1.0, shift: 0.0 }
     }
 
-    /// The index of an operation. An operation that is already recorded is not recorded again, since laws repeat many.
+    /// The index of an operation in the record. An operation that is already recorded is not recorded once more, since
+    /// laws repeat many.
     fn result(&self, op: Op) -> u16 {
         let mut ops = self.ops.borrow_mut();
         let known = ops.iter().rposition(|known| *known == op);
@@ -92,8 +93,8 @@ impl Tape {
         }) as u16
     }
 
-    /// A player of the operations that `first` needs, and of those that only `then` needs, with the given numbers and
-    /// the results in the order of the arguments.
+    /// A player of the operations that the results `first` need, and of those that only the results `then` need. The
+    /// player numbers given numbers and results as in these arguments.
     pub fn player(&self, given: &[Taped], first: &[Taped], then: &[Taped]) -> Player {
         let ids = |of: &[Taped]| of.iter().map(|x| x.index()).collect::<Vec<u16>>();
         let (given, first, then) = (ids(given), ids(first), ids(then));
@@ -137,7 +138,7 @@ impl Tape {
 }
 
 impl Taped<'_> {
-    /// The index of an operation whose result is this number; records one if necessary.
+    /// The index of an operation whose result is this number; one is recorded if necessary.
     fn index(self) -> u16 {
         match self.of {
             None => self.tape.result(Op::Constant(self.shift)),
@@ -221,7 +222,7 @@ impl Real for Taped<'_> {
             Some(_) => self.tape.plain(self.tape.result(Op::Rounded(self.index()))),
         }
     }
-    /// Compares the values at t = 0.
+    /// Selects `yes` or `no` by comparing the values at t = 0.
     fn select_lt(self, other: Self, yes: Self, no: Self) -> Self {
         if self.of.is_none() && other.of.is_none() {
             return if self.shift < other.shift { yes } else { no };
@@ -267,7 +268,7 @@ impl Player {
         self.rows[i].slope = slope;
     }
 
-    /// The coefficients of the given number `i`.
+    /// The coefficients of the series of the given number `i`.
     pub fn given(&self, i: usize) -> &[f64; TERMS] {
         &self.rows[i].at
     }
@@ -299,7 +300,8 @@ impl Player {
         (1..known).for_each(|n| self.order(self.then.clone(), n));
     }
 
-    /// Adds `h` to the coefficient `n` > 0 of the chosen quantity, and updates that coefficient of all `first` results.
+    /// Adds `h` to coefficient `n` > 0 of the quantity that [`Player::lean`] chose, and updates this coefficient of all
+    /// `first` results.
     pub fn turn(&mut self, n: usize, h: f64) {
         let (given, results) = self.rows[..self.first.end].split_at_mut(self.first.start);
         // A constant stays what it is, even if `h` is NaN, so that the next series does not begin with NaN.
@@ -340,8 +342,8 @@ impl Player {
         }
     }
 
-    /// Computes coefficient `n` of each operation. Each order has its own code, whose sums have no loops, except where the
-    /// code has to be short.
+    /// Computes coefficient `n` of the result of each operation in `range`. Each order has its own code, whose sums
+    /// have no loops, except where the code has to be short.
     fn order(&mut self, range: Range<usize>, n: usize) {
         #[cfg(not(short_code))]
         macro_rules! orders {

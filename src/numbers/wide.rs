@@ -1,12 +1,12 @@
 //! Eight numbers in SIMD lanes, and two vectors of such lanes side by side.
 //!
-//! Each lane is computed like a single number, except that `mac` is fused here: the tests of `angle` and of the
+//! Each lane is computed like a single number, except that `mac` is fused in lanes: the tests of `angle` and of the
 //! ensembles compare the bits of lanes and of single numbers.
 
 use super::real::{Lane, Real, operators};
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f64x8};
 
-/// Number of lanes in one vector.
+/// Number of SIMD lanes in one vector.
 pub(crate) const LANES: usize = 8;
 
 impl<S: Simd> Real for f64x8<S> {

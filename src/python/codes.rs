@@ -9,7 +9,7 @@ use crate::states::stability::Region;
 use core::fmt::Debug;
 use pyo3::prelude::*;
 
-/// The names of an enumeration with their codes.
+/// The names of the values of an enumeration, each with its code.
 type Codes = Vec<(String, u8)>;
 
 /// The name of a value as Python writes constants: LIFT_OFF for LiftOff.
@@ -24,8 +24,8 @@ fn constant(value: &impl Debug) -> String {
     name
 }
 
-/// Names and codes of every enumeration, in the order of the codes. Tables and ends of drifts have their own names; a
-/// loss law has the name of its class.
+/// Names and codes of every enumeration, in the order of the codes. A loss law has the name of its Python class; kinds
+/// of contact and ends of drifts have the names of the Python interface.
 #[pyfunction]
 pub fn codes() -> [(&'static str, Codes); 10] {
     let status: Codes = Ending::ALL.iter().map(|x| (constant(x), *x as u8)).collect();

@@ -1,4 +1,4 @@
-//! Columns of numbers, by name.
+//! Columns of numbers in Python dictionaries, by name.
 
 use crate::laws::body::MOST_CIRCLES;
 use crate::many::columns::at;
@@ -8,14 +8,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The columns of a state.
+/// The names of the columns of a state.
 pub const STATE: [&str; 4] = ["theta", "w1", "w2", "w3"];
 
-/// Columns that are read, by name.
+/// Input columns by name.
 pub struct GivenColumns<'py>(Vec<(String, PyReadonlyArray1<'py, f64>)>);
 
 impl<'py> GivenColumns<'py> {
-    /// The columns of a dictionary.
+    /// The input columns of a Python dictionary.
     pub fn of(columns: &Bound<'py, PyDict>) -> PyResult<Self> {
         let all = columns.iter().map(|(name, x)| Ok((name.extract()?, x.extract()?)));
         Ok(Self(all.collect::<PyResult<_>>()?))
@@ -26,14 +26,16 @@ impl<'py> GivenColumns<'py> {
         Ok(found.map(|(_, array)| array.as_slice()).transpose()?)
     }
 
-    /// The columns with these names; None if the first of them is missing.
+    /// The input columns with these names; None if the first of them is missing.
     pub fn some<const N: usize>(&self, names: [&str; N]) -> PyResult<Option<[&[f64]; N]>> {
         let mut all = [&[] as &[f64]; N];
         for (i, name) in names.into_iter().enumerate() {
             match self.column(name)? {
                 Some(column) => all[i] = column,
                 None if i == 0 => return Ok(None),
-                None => return Err(PyValueError::new_err(format!("columns: expected a column {name}"))),
+                None => {
+                    return Err(PyValueError::new_err(format!("columns: expected a column named {name}")));
+                }
             }
         }
         Ok(Some(all))
@@ -41,11 +43,11 @@ impl<'py> GivenColumns<'py> {
 
     pub fn all<const N: usize>(&self, names: [&str; N]) -> PyResult<[&[f64]; N]> {
         self.some(names)?
-            .ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {}", names[0])))
+            .ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {}", names[0])))
     }
 }
 
-/// Columns that are filled, by name; each is handed out once.
+/// Output columns by name; each is handed out only once.
 pub struct FilledColumns<'a>(pub Vec<(&'a str, Option<&'a mut [f64]>)>);
 
 impl<'a> FilledColumns<'a> {
@@ -77,14 +79,14 @@ pub fn circles_of(given: &GivenColumns<'_>) -> PyResult<Vec<CirclesOfRow>> {
     Ok(circles)
 }
 
-/// A column of codes that is filled.
+/// The output column of codes with this name.
 pub fn code_column<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, u8>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {name}")))?.extract()
 }
 
-/// A column of numbers that is filled.
+/// The output column of numbers with this name.
 pub fn numbers<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<PyReadwriteArray1<'py, f64>> {
     let found = columns.get_item(name)?;
-    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column {name}")))?.extract()
+    found.ok_or_else(|| PyValueError::new_err(format!("columns: expected a column named {name}")))?.extract()
 }

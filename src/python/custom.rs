@@ -40,7 +40,7 @@ struct Raised {
 }
 
 impl Raised {
-    /// The error, if there is one.
+    /// Returns the first error that a law has raised, if there is one.
     fn end(&self) -> PyResult<()> {
         self.error.take().map_or(Ok(()), Err)
     }
@@ -55,7 +55,7 @@ impl Raised {
     }
 }
 
-/// A Python function as a law. After the first error of any law no law is called, and their values are NaN.
+/// A Python function as a law. After the first error of any law, laws are no longer called and give NaN.
 struct PythonLaw<'py, 'a> {
     function: Bound<'py, PyAny>,
     raised: &'a Raised,
@@ -117,8 +117,8 @@ impl DriveLaw for PythonLaw<'_, '_> {
         self.is_over()
     }
 
-    /// The function gets the numbers of a moment in their order, and the rows of its axes. It returns the force along x and y
-    /// and the couple.
+    /// Calls the function with the numbers of the moment `now` in their order, and the rows of its axes. It returns the
+    /// force along x and y and the couple.
     fn push(&self, _: &Body, now: &Moment) -> Push {
         let State { theta, w1, w2, w3 } = now.state;
         let ([along, across], at, v) = (now.slip.pair(), now.contact_point, now.velocity);

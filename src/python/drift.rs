@@ -1,4 +1,4 @@
-//! Slow drifts: the functions read and fill columns by name.
+//! Functions for Python that compute slow drifts; they read and fill columns by name.
 
 use super::body_of;
 use super::columns::{GivenColumns, STATE, code_column, numbers};

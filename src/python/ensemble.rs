@@ -1,4 +1,4 @@
-//! Many motions: the functions read and fill columns by name.
+//! Functions for Python that compute many motions; they read and fill columns by name.
 
 use super::columns::{FilledColumns, GivenColumns, STATE, circles_of, code_column};
 use super::custom::with_laws;
@@ -18,10 +18,10 @@ use pyo3::types::PyDict;
 
 const MOTION_BODY: [&str; 5] = ["ell", "i1", "i3", "fillet", "theta_end"];
 const SLIP: [&str; 2] = ["slip_along", "slip_across"];
-/// The names of the coefficients of a contact: mu or c, the static coefficient, and the radius of the patch.
+/// The names of the columns of the coefficients of friction: mu or c, the static coefficient, and the radius of the patch.
 const TABLE: [&str; 3] = ["coefficient", "static", "patch"];
 
-/// Name, unit and description of the columns that are not summaries.
+/// Name, unit and description of the output columns that are not summaries.
 const LABELS: [[&str; 3]; 10] = [
     ["theta", "rad", "inclination"],
     ["w1", "sqrt(g/R)", "angular velocity along e1, phi' sin theta"],
@@ -35,7 +35,7 @@ const LABELS: [[&str; 3]; 10] = [
     ["status", "1", "code of spincyl.sweep.Status"],
 ];
 
-/// Name, unit and description of every column of a result.
+/// Name, unit and description of every output column.
 #[pyfunction]
 pub fn columns() -> Vec<[&'static str; 3]> {
     Summary::ALL.iter().copied().map(Summary::label).chain(LABELS).collect()
@@ -50,9 +50,9 @@ pub fn summaries(table: u8, loses: bool, flies: bool) -> PyResult<Vec<&'static s
 }
 
 /// Fills the columns of `out` from those of `given`, by name; a given column has n numbers or one. The given columns
-/// are the numbers of bodies and states and, if present, of slips, contacts and losses (by their parameters). With
-/// `spread` a column of states has n times as many numbers as there are times. `threads` has the number of threads,
-/// and whether the calling thread is one of them, which then needs a large stack.
+/// are those of bodies and states and, if present, of slips, contacts and losses (by their parameters). With `spread` a
+/// column of states has n times as many numbers as there are times. `threads` has the number of threads, and whether
+/// the calling thread is one of them, which then needs a large stack.
 #[pyfunction]
 pub fn ensemble<'py>(
     py: Python<'py>,
@@ -101,7 +101,8 @@ pub fn ensemble<'py>(
     for &kind in Summary::ALL {
         summary[kind as usize] = wanted.take(kind.label()[0]);
     }
-    let error = wanted.take("error").ok_or_else(|| PyValueError::new_err("out: expected a column error"))?;
+    let error =
+        wanted.take("error").ok_or_else(|| PyValueError::new_err("out: expected a column named error"))?;
     let (method, status) = (method.as_slice_mut()?, status.as_slice_mut()?);
     let out = MotionOutput { states, slips, rims, last, last_slip, last_rim, summary, error, method, status };
     let mut watch = Watch::new(progress);

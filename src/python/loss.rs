@@ -25,16 +25,16 @@ fn losses_of(x: &[f64]) -> (Losses, f64) {
     (Losses { coefficients: core::array::from_fn(|i| x[i]) }, x[COUNT])
 }
 
-/// What Python knows of a loss law, apart from the documentation of its class.
+/// The properties of a loss law for Python, apart from the documentation of its class.
 #[derive(IntoPyObject)]
 pub struct LossRow {
     /// The name of the coefficient.
     parameter: &'static str,
-    /// The exponent with which a thin disk comes to its end.
+    /// The exponent q in theta ~ tau^q of a thin disk, with tau the time before its end; None if it never stops.
     exponent: Option<f64>,
-    /// What the unit of the coefficient measures.
+    /// The quantity that the unit of the coefficient measures.
     measures: &'static str,
-    /// The unit of the coefficient in natural units, in SI, and as it is printed and read.
+    /// The unit of the coefficient: in natural units, in SI, and as it is printed and read.
     natural: &'static str,
     si: &'static str,
     printed: &'static str,
@@ -42,7 +42,7 @@ pub struct LossRow {
     exponents: [f64; 3],
     /// Whether the law also acts on a body in the air.
     in_air: bool,
-    /// The couple in the file of a scene.
+    /// The formula of the couple in a scene file.
     couple: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! The Python module `spincyl._core` converts arguments, releases the GIL and maps the error; it computes nothing.
+//! The Python module `spincyl._core`: converts arguments and errors and releases the GIL, but computes nothing itself.
 
 mod codes;
 mod columns;
@@ -56,22 +56,22 @@ thread_local! {
     static LAST_BODY: std::cell::Cell<Option<([u64; BODY], Body)>> = const { std::cell::Cell::new(None) };
 }
 
-/// A function of a body; `x` begins with the numbers of the body, and the result is NaN if these are invalid.
+/// Evaluates a function of a body; `x` begins with the numbers of the body, and the result is NaN if these are invalid.
 fn of_body(x: &[f64], f: impl Fn(&Body) -> f64) -> f64 {
     or_nan(body_of(x).map(|body| f(&body)))
 }
 
-/// A function of a state and a body: `x` has theta, w1, w2, w3, then the numbers of the body.
+/// Evaluates a function of a state and a body: `x` has theta, w1, w2, w3, then the numbers of the body.
 fn of_state(x: &[f64], f: impl Fn(&State, &Body) -> f64) -> f64 {
     of_body(&x[4..], |body| f(&state_of(x), body))
 }
 
-/// Two numbers of a state with a slip: `x` has theta, w1, w2, w3, the slip, then the numbers of the body.
+/// Evaluates two functions of a state with a slip: `x` has theta, w1, w2, w3, the slip, then the numbers of the body.
 fn of_slip(x: &[f64], f: impl Fn(&Body, &State, Slip) -> [f64; 2]) -> [f64; 2] {
     body_of(&x[6..]).map_or([f64::NAN; 2], |body| f(&body, &state_of(x), Slip::new(x[4], x[5])))
 }
 
-/// The inclination at which a capsule lands on its other side; NaN for any other tube.
+/// The inclination at which a capsule lands on its other end; NaN for any other tube.
 fn capsule_end(tube: &Body) -> f64 {
     if tube.is_ball() && tube.ell() > 0.0 { tube.theta_end() } else { f64::NAN }
 }
@@ -425,7 +425,7 @@ mod _core {
         Ok(())
     }
 
-    /// The rate of one body at one inclination, without NumPy.
+    /// The reduced rate of the steady state with the centre at rest of one body at one inclination, without NumPy.
     #[pyfunction]
     fn rate_of_one(theta: f64, ell: f64, i1: f64, i3: f64, bore: f64, fillet: f64, theta_end: f64) -> f64 {
         let numbers = [ell, i1, i3, bore, fillet, theta_end];
@@ -448,15 +448,15 @@ mod _core {
         Ok((body.i1(), body.i3()))
     }
 
-    /// ell, i1, i3 and theta_end (NaN if it follows from the other numbers) of a tube from half its length, its bore
-    /// and its fillet, or ValueError with the invalid value and the range.
+    /// ell, i1, i3 and theta_end of a tube from half its length, its bore and its fillet, or ValueError with the
+    /// invalid value and the range. theta_end is NaN if it follows from the other numbers.
     #[pyfunction]
     fn check_tube(half_length: f64, bore: f64, fillet: f64) -> PyResult<(f64, f64, f64, f64)> {
         let body = Body::rounded_tube(half_length, bore, fillet)?;
         Ok((body.ell(), body.i1(), body.i3(), capsule_end(&body)))
     }
 
-    /// i1 and theta_end of two balls, or ValueError.
+    /// i1 and theta_end of two equal balls with this separation, or ValueError.
     #[pyfunction]
     fn check_balls(separation: f64) -> PyResult<(f64, f64)> {
         let body = Body::balls(separation)?;
@@ -476,7 +476,7 @@ mod _core {
         Ok(steady::state(&body_of(&body)?, theta)?.into())
     }
 
-    /// theta, w1, w2, w3 of the steady state whose centre runs on a circle, or ValueError.
+    /// theta, w1, w2, w3 of the steady state whose centre moves along a circle, or ValueError.
     #[pyfunction]
     fn circular_state(theta: f64, precession: f64, body: [f64; BODY]) -> PyResult<[f64; 4]> {
         Ok(steady::circular(&body_of(&body)?, theta, precession)?.into())

@@ -1,4 +1,4 @@
-//! Motions: the functions take plain arrays and return a dictionary of plain arrays.
+//! Functions for Python that compute motions; they take plain arrays and return a dictionary of plain arrays.
 
 use super::BODY;
 use super::custom::with_laws;
@@ -30,7 +30,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 
-/// A named array for Python, with its numbers row by row.
+/// An array for Python with its name and its numbers, row by row.
 struct NamedArray {
     pub name: &'static str,
     pub numbers: Vec<f64>,
@@ -75,23 +75,23 @@ type CoupleOfSlip<S> = Box<dyn Fn(&S, [f64; 2]) -> f64>;
 /// A state whose motions can be converted to arrays for Python.
 trait StateArrays: Moving + Sized {
     type Body;
-    /// Whether these bodies have rims, of which two may touch the table.
+    /// Whether bodies of this kind have rims, of which two may touch the table.
     const RIMS: bool;
     /// Adds the arrays of the states, poses and forces.
     fn add_arrays(m: &Motion<Self>, body: &Self::Body, rows: &mut ArrayRows<'_>) -> Result<(), Error>;
-    /// The angular velocity about the vertical.
+    /// The component of the angular velocity about the vertical.
     fn drilling(&self) -> f64;
     /// The normal component of a force.
     fn normal(force: &Self::Force) -> f64;
-    /// The couple of friction on a body on its face, from a state and its slip.
+    /// The couple of friction on a body that stands on its face, as a function of a state and its slip.
     fn couple_on_face(_: &Self::Body, _: &Ask) -> CoupleOfSlip<Self> {
         Box::new(|_, _| f64::NAN)
     }
-    /// What the energy at an index has beside that on a level table at rest; None there.
+    /// The energy at an index minus that on a level table at rest; None on a level table at rest.
     fn beside(_: &Motion<Self>, _: &Self::Body, _: &Ask, _: usize) -> Option<f64> {
         None
     }
-    /// What a body of revolution rests on.
+    /// The part on which a body of revolution rests at the end.
     fn rests_on(_: &Motion<Self>, _: &Self::Body) -> RestsOn {
         RestsOn::None
     }
@@ -205,7 +205,7 @@ impl StateArrays for StoneState {
     }
 }
 
-/// The arrays of a motion for Python; None if `go_on` returns false.
+/// The output arrays of a motion for Python; None if `go_on` returns false.
 #[inline(never)] // its frame is not on the stack of the motion
 fn motion_columns<S: StateArrays>(
     m: &Motion<S>,
@@ -281,7 +281,7 @@ fn motion_columns<S: StateArrays>(
     Ok(rows.goes_on.then_some(rows.columns))
 }
 
-/// The centre of the pressure on the face at the time of an index; NaN while the body is not on its face.
+/// The centre of the pressure on the face at the output time with the index `i`; NaN while the body is not on its face.
 fn pressure_at(body: &Body, path: &Path, (y, force): (State, Force), i: usize) -> [f64; 2] {
     if path.kinds[i] != Kind::OnItsFace {
         return [f64::NAN; 2];
@@ -289,7 +289,7 @@ fn pressure_at(body: &Body, path: &Path, (y, force): (State, Force), i: usize) -
     topple::pressure_centre(&body.told_at(y.theta), y.theta, &force)
 }
 
-/// The numbers of a body of revolution, or of a stone.
+/// The numbers that describe a body of revolution, or a stone.
 #[derive(FromPyObject)]
 pub enum AnyBody {
     Rim((f64, f64, f64, f64, f64, f64)),
@@ -303,9 +303,8 @@ pub enum AnyState {
     Stone([f64; 6]),
 }
 
-/// The motion of a body or of a stone. `asked` may have t0, slip, table with its two coefficients, losses (of each
-/// law), step, tol, beyond, restitution, pose, force; without step and tol the motion is computed to the accuracy of
-/// double precision.
+/// Computes the motion of a body or of a stone. `asked` has the options by name (see `motion_options`), such as t0,
+/// slip, table and losses; without step and tol the motion is computed to the accuracy of double precision.
 #[pyfunction]
 pub fn roll<'py>(
     py: Python<'py>,
@@ -360,7 +359,7 @@ pub fn roll<'py>(
     }
 }
 
-/// The motion of a body or a stone under user-defined laws, of which only functions of Python need the GIL.
+/// Computes the motion of a body or a stone under user-defined laws; only laws that are Python functions need the GIL.
 fn under_own_laws<'py, S: StateArrays + Send + Sync>(
     py: Python<'py>,
     (body, asked): (&S::Body, &MotionAsked),
@@ -385,7 +384,7 @@ where
     dictionary(py, (&m, body), columns, rubs(ask))
 }
 
-/// The least spin with which a top turns over within a time, with the friction of a table, or ValueError.
+/// The least spin with which a top turns over within a time, with friction on the table, or ValueError.
 #[pyfunction]
 pub fn turning_spin(
     py: Python<'_>,
@@ -402,7 +401,7 @@ pub fn turning_spin(
     found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
 
-/// The least spin with which a lying egg rises, with the friction of a table within a time, or by Jellett's number, or
+/// The least spin with which a lying egg rises within a time, with friction on the table, or by Jellett's number, or
 /// ValueError.
 #[pyfunction]
 pub fn rising_spin(
@@ -422,7 +421,7 @@ pub fn rising_spin(
     found.ok_or_else(|| PyRuntimeError::new_err("the search was interrupted"))
 }
 
-/// Whether a motion has a slip and phases.
+/// Whether a motion is computed under a law of friction, and so has a slip and phases.
 fn rubs(ask: &Ask) -> bool {
     ask.table.rubs() || ask.restitution.is_some()
 }
@@ -548,7 +547,7 @@ fn dictionary<'py, S: StateArrays>(
     Ok(out)
 }
 
-/// The bounds of the errors of a motion by name; see `Bounds::of` for the numbers.
+/// The bounds of the errors of a motion by name; `Bounds::of` explains the arguments.
 #[pyfunction]
 pub fn bounds(errors: [f64; 3], size: [f64; 2], most: [f64; 3]) -> BTreeMap<&'static str, f64> {
     let of = Bounds::of(errors, size, most);
@@ -563,14 +562,14 @@ pub fn bounds(errors: [f64; 3], size: [f64; 2], most: [f64; 3]) -> BTreeMap<&'st
     ])
 }
 
-/// The arrays that the dictionary itself contains; all others are in its `_extra`.
+/// The arrays that are entries of the dictionary itself; all other arrays are in its entry `_extra`.
 const FIELDS: [&str; 3] = ["t", "theta", "w"];
 
 /// The largest number of rows that are copied; longer vectors are passed to NumPy.
 const FEW: usize = 64;
 
-/// Period, least and greatest theta, phi and psi per period, drift per period and the radius of its circle, error of
-/// the period. The last five are NaN for a motion without a period.
+/// The eight numbers of a nutation: period, least and greatest theta, phi and psi per period, drift per period, radius
+/// of the circle of the drift, and error of the period. The last five are NaN for a motion without a period.
 #[pyfunction]
 pub fn swing(body: [f64; BODY], state: [f64; 4], contact: u8) -> PyResult<[f64; 8]> {
     let swing = Swing::with_pose(&Body::of_numbers(body)?, &State::from(state), contact_of(contact)?)?;

@@ -52,19 +52,19 @@ macro_rules! options {
 }
 
 options! {
-    /// The options of a motion, or of many motions.
+    /// The options of a motion, or of many motions, as Python gives them.
     pub struct MotionAsked {
         t0: f64 = 0.0,
-        /// Of a body on its face without one, the centre is at rest under friction.
+        /// The slip; without one, the centre of a body on its face is at rest under friction.
         slip: Option<[f64; 2]> = None,
-        /// Rows of radius, height and fillet of a body that has several circles.
+        /// Rows of radius, height and fillet for each circle of a body with several circles.
         circles: Vec<[f64; 3]> = Vec::new(),
         table: u8 = TableKind::Rolling as u8,
-        /// Mu or c, the static coefficient, and the radius of the patch.
+        /// The coefficient mu or c, the static coefficient, and the radius of the patch.
         coefficients: [f64; 3] = [f64::INFINITY, 0.0, 0.0],
         face: u8 = Face::Ring as u8,
         losses: Option<[f64; COUNT]> = None,
-        /// Whether rolling resistance acts while the contact point slips, too.
+        /// Whether rolling resistance also acts while the contact point slips.
         while_slipping: bool = true,
         step: Option<f64> = None,
         tol: Option<f64> = None,
@@ -72,9 +72,10 @@ options! {
         restitution: Option<f64> = None,
         /// The name of another law of restitution than Stronge's, and the coefficient of tangential restitution.
         impact_law: Option<(String, f64)> = None,
-        /// The height and the vertical velocity of an initial state in the air.
+        /// The height and the vertical velocity of the lowest point at the start, in the air; None on the table.
         aloft: Option<[f64; 2]> = None,
-        /// The slope of the table, phi and the place of the contact point at the start.
+        /// The slope of the table; `turning` is its rate of turning, `heading` is phi, and `place` the contact point,
+        /// at the start.
         slope: f64 = 0.0,
         turning: f64 = 0.0,
         heading: f64 = 0.0,
@@ -83,10 +84,10 @@ options! {
         max_nfev: Option<u64> = None,
         pose: bool = false,
         force: bool = false,
-        /// User-defined laws: a couple, and a coefficient of friction.
+        /// The user-defined couple and the user-defined coefficient of friction; None without such a law.
         couple: Option<GivenLaw> = None,
         friction: Option<GivenLaw> = None,
-        /// A Python function that drives the body.
+        /// A Python function that gives the force and the couple that drive the body.
         drive: Option<Py<PyAny>> = None,
         /// Whether the states of many motions are returned at all times, not only at the end.
         spread: bool = false,
@@ -101,7 +102,7 @@ pub fn motion_options() -> [&'static str; MotionAsked::NAMES.len()] {
     MotionAsked::NAMES
 }
 
-/// The law of restitution of this name.
+/// The law of restitution with this name, and its coefficient of tangential restitution.
 fn impact_law_of((name, tangential): &(String, f64)) -> PyResult<ImpactLaw> {
     Ok(match name.as_str() {
         "Newton" => ImpactLaw::Newton,
@@ -121,7 +122,7 @@ impl MotionAsked {
         self.couple.is_some() || self.friction.is_some() || self.drive.is_some()
     }
 
-    /// Whether a user-defined law is a function of Python, for which the GIL is needed.
+    /// Whether a user-defined law is a Python function, for which the GIL is needed.
     pub fn calls_python(&self) -> bool {
         let given = [&self.couple, &self.friction].into_iter().flatten();
         self.drive.is_some() || given.into_iter().any(|law| law.function().is_some())

@@ -1,11 +1,11 @@
-//! Bodies put together from parts or circles, for Python.
+//! Functions for Python that make bodies from parts or circles.
 
 use crate::laws::body::parts::{Amount, Assembled, BodyPart, Form, assembled};
 use crate::laws::body::{Body, CircleBorder, circles_of_rows};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The code of a form, its numbers, and its mass, or its density if the last value is true.
+/// A part: the code of its form, the numbers of the form, and its mass, or its density if the last value is true.
 type Given = (u8, Vec<f64>, f64, bool);
 
 fn form(kind: u8, numbers: &[f64]) -> Option<Form> {
@@ -32,7 +32,7 @@ fn numbers_of(body: &Body) -> NumbersOfBody {
     ([body.ell(), body.i1(), body.i3(), bore, body.fillet(), body.theta_end()], rows)
 }
 
-/// The body of these circles, and whether a circle was left out that lies in line with two others; or ValueError.
+/// The body of these circles, and whether a circle was left out because it lies in line with two others; or ValueError.
 #[pyfunction]
 pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(NumbersOfBody, bool)> {
     let circles = circles_of_rows(&rows);
@@ -40,8 +40,8 @@ pub fn check_profile(rows: Vec<[f64; 3]>, i1: f64, i3: f64) -> PyResult<(Numbers
     Ok((numbers_of(&body), body.passes_over(&circles)))
 }
 
-/// The circles of a body, and for each two neighbours the inclination at which both touch the table, the distance of both
-/// points of contact, three numbers of `Apex`, and whether the body rests on both.
+/// The circles of a body; and for each two neighbours the inclination at which both touch the table, the distance of
+/// the two contact points, three numbers of `Apex`, and whether the body can rest on both circles.
 #[pyfunction]
 pub fn body_circles(body: [f64; 6], rows: ToldCircles<3>) -> PyResult<(ToldCircles<3>, ToldCircles<6>)> {
     let body = Body::of_rows(body, &rows)?;
@@ -53,25 +53,25 @@ pub fn body_circles(body: [f64; 6], rows: ToldCircles<3>) -> PyResult<(ToldCircl
     Ok((body.rows().collect(), borders.collect()))
 }
 
-/// A uniform frustum, or ValueError.
+/// The numbers of a uniform frustum, or ValueError.
 #[pyfunction]
 pub fn frustum(bottom: f64, top: f64, height: f64, wall: Option<f64>) -> PyResult<NumbersOfBody> {
     Ok(numbers_of(&Body::frustum(bottom, top, height, wall)?))
 }
 
-/// A uniform solid with this outline, or ValueError.
+/// The numbers of a uniform solid with this outline, or ValueError.
 #[pyfunction]
 pub fn lathe(points: Vec<[f64; 2]>) -> PyResult<NumbersOfBody> {
     Ok(numbers_of(&Body::lathe(&points)?))
 }
 
-/// Two balls of these radii, or ValueError.
+/// The numbers of two balls with these radii, or ValueError.
 #[pyfunction]
 pub fn unequal_balls(radii: [f64; 2], separation: f64) -> PyResult<NumbersOfBody> {
     Ok(numbers_of(&Body::unequal_balls(radii, separation)?))
 }
 
-/// The body of these parts, its mass, its R, and the height of its centre of mass, or ValueError.
+/// The numbers of the body of these parts, its mass, its unit of length R, and the height of its centre of mass, or ValueError.
 #[pyfunction]
 #[pyo3(name = "assembled")]
 pub fn of_parts(given: Vec<Given>) -> PyResult<(NumbersOfBody, [f64; 3])> {

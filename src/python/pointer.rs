@@ -11,7 +11,7 @@ use core::mem::transmute;
 use core::num::NonZeroUsize;
 use pyo3::prelude::*;
 
-/// A user-defined law as Python gives it: an address with the units of its numbers, or a function of Python.
+/// A user-defined law as Python gives it: the address of a C function with the units of its numbers, or a Python function.
 #[derive(FromPyObject)]
 pub enum GivenLaw {
     Address((NonZeroUsize, [f64; 3])),
@@ -28,7 +28,7 @@ impl GivenLaw {
     }
 }
 
-/// The couple and the friction of a motion, where these are C functions.
+/// The couple and the friction of a motion, as far as they are C functions.
 pub struct PointedLaws {
     couple: Option<PointedLaw>,
     friction: Option<PointedLaw>,
@@ -49,8 +49,8 @@ impl PointedLaws {
     }
 }
 
-/// A C function as a law. `units` are those of its numbers: of angular velocities, forces and couples, or of the speed of
-/// a slip.
+/// A C function as a law. `units` convert its numbers: the units of angular velocities, forces and couples, or of the
+/// speed of a slip.
 #[derive(Clone, Copy)]
 struct PointedLaw {
     address: NonZeroUsize,

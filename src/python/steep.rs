@@ -1,4 +1,4 @@
-//! What holds a body on a slope, for Python.
+//! Functions for Python: the friction, the losses and the width that hold a body on a slope.
 
 use super::options::table_of;
 use super::parts::NumbersOfBody;
@@ -7,7 +7,7 @@ use crate::laws::loss::{COUNT, Losses};
 use crate::laws::steep::{Incline, Posture, shares, slip_slope, tip_slope};
 use pyo3::prelude::*;
 
-/// The slopes beyond which a body of several circles slips and tips, or ValueError.
+/// The slopes, in radians, beyond which a body of several circles slips and tips, or ValueError.
 #[pyfunction]
 pub fn slopes_of_circles(
     body: NumbersOfBody,
@@ -20,7 +20,8 @@ pub fn slopes_of_circles(
     Ok([slip_slope(&body, theta, mu, on, phi)?, tip_slope(&body, theta, on, phi)?])
 }
 
-/// The shares of what holds a body at rest against slipping, rolling and tipping, or ValueError.
+/// The shares of friction, losses and width that a body needs to stay at rest against slipping, rolling and tipping, or
+/// ValueError.
 #[pyfunction]
 pub fn shares_on_slope(
     body: NumbersOfBody,

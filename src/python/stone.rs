@@ -1,4 +1,4 @@
-//! Stones: their numbers, their constructors, the rocking of an upright spin, and many motions.
+//! Functions for Python: the numbers and constructors of stones, the rocking of an upright spin, and many motions.
 
 use super::columns::{GivenColumns, code_column, numbers};
 use super::custom::with_laws;
@@ -14,20 +14,20 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArra
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Number of inputs that describe a stone: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the
-/// offset, theta_end.
+/// Number of inputs that describe a stone: three semi-axes, the moments 11, 22, 33, 23, 13 and 12, the three numbers of
+/// the offset, and theta_end.
 pub const STONE: usize = 13;
 
 pub fn stone_of(x: &[f64; STONE]) -> Result<Ellipsoid, Error> {
     Ellipsoid::of_numbers(*x)
 }
 
-/// The numbers of a stone, and its largest semi-axis in the unit of the given lengths.
+/// The 13 numbers of a stone in natural units, and its largest semi-axis in the unit of the given lengths.
 fn numbers_and_unit(stone: &Ellipsoid) -> ([f64; STONE], f64) {
     (stone.numbers(), stone.unit())
 }
 
-/// The first of several results of an elementwise function; the others are NaN.
+/// The results of an elementwise function as an array of fixed length, whose other elements are NaN.
 fn first_results<const N: usize>(found: [f64; N]) -> [f64; MOST] {
     core::array::from_fn(|k| found.get(k).copied().unwrap_or(f64::NAN))
 }
@@ -42,12 +42,12 @@ fn state(x: &[f64]) -> StoneState {
     StoneState { vertical: [x[0], x[1], x[2]], w: [x[3], x[4], x[5]] }
 }
 
-/// The vertical in the axes of a tilted stone: `x` has pitch and roll.
+/// The vertical along the axes of a tilted stone: `x` has the angles pitch and roll, in radians.
 pub fn vertical_of_tilt(x: &[f64]) -> [f64; MOST] {
     first_results(StoneState::spinning(0.0, x[0], x[1]).vertical)
 }
 
-/// The angles between the vertical and the axes of a stone.
+/// The angles, in radians, from the vertical to the axes of a stone: `x` has the vertical along these axes.
 pub fn inclinations(x: &[f64]) -> [f64; MOST] {
     first_results(StoneState { vertical: [x[0], x[1], x[2]], w: [0.0; 3] }.inclinations())
 }
@@ -62,7 +62,7 @@ pub fn lever(x: &[f64]) -> [f64; MOST] {
     of_stone(x, |stone, y| stone.lowest_point([y[0], y[1], y[2]]))
 }
 
-/// The slip of a stone whose centre of mass rests: `x` has the numbers of the stone, a vertical and w.
+/// The slip of a stone whose centre of mass is at rest: `x` has the numbers of the stone, a vertical and w.
 pub fn slip(x: &[f64]) -> [f64; MOST] {
     of_stone(x, |stone, y| stone.slip(&state(y), [0.0; 2]).pair())
 }
@@ -73,11 +73,11 @@ pub fn stone_names() -> [&'static str; STONE] {
     Ellipsoid::NAMES
 }
 
-/// Number of inputs from which a stone is made: three semi-axes, the tensor of inertia row by row, the
-/// offset, theta_end.
+/// Number of inputs from which a stone is made: three semi-axes, the tensor of inertia row by row, the three numbers of
+/// the offset, and theta_end.
 const GIVEN: usize = 16;
 
-/// The stone with these numbers, with lengths in any unit.
+/// The stone with these 16 numbers, with lengths in any unit.
 fn given_stone(numbers: &[f64; GIVEN]) -> Result<Ellipsoid, Error> {
     let [a, b, c, tensor @ .., x, y, z, end] = *numbers;
     let [i, j, k, l, m, n, o, p, q] = tensor;
@@ -111,13 +111,13 @@ pub fn check_stones<'py>(
     PyArray1::from_vec(py, found).reshape([given.shape()[0], STONE + 2])
 }
 
-/// The numbers of a uniform ellipsoid.
+/// The 13 numbers of a uniform ellipsoid, and its largest semi-axis in the unit of the given lengths.
 #[pyfunction]
 pub fn uniform_stone(axes: [f64; 3]) -> PyResult<([f64; STONE], f64)> {
     Ok(numbers_and_unit(&Ellipsoid::uniform(axes)?))
 }
 
-/// The numbers of a rattleback.
+/// The 13 numbers of a rattleback, and its largest semi-axis in the unit of the given lengths.
 #[pyfunction]
 pub fn rattleback(
     axes: [f64; 3],
@@ -128,7 +128,7 @@ pub fn rattleback(
     Ok(numbers_and_unit(&Ellipsoid::rattleback(axes, moments, twist, offset)?))
 }
 
-/// The numbers of an egg.
+/// The 13 numbers of an egg, and its largest semi-axis in the unit of the given lengths.
 #[pyfunction]
 pub fn egg(radius: f64, half_length: f64, offset: f64) -> PyResult<([f64; STONE], f64)> {
     Ok(numbers_and_unit(&Ellipsoid::egg(radius, half_length, offset)?))
@@ -152,7 +152,7 @@ pub fn rocking(stone: [f64; STONE], spin: f64) -> PyResult<[f64; 12]> {
     Ok(all)
 }
 
-/// The spins at which a stone that spins upright becomes stable or unstable.
+/// The rates of spin, in sqrt(g/a), at which a stone that spins upright becomes stable or unstable.
 #[pyfunction]
 pub fn spin_limits(stone: [f64; STONE]) -> PyResult<Vec<f64>> {
     Ok(stone_of(&stone)?.spin_limits()?)
@@ -169,7 +169,7 @@ pub fn stone_energies(stone: [f64; STONE], states: Vec<[f64; 8]>, smooth: bool) 
     Ok(states.iter().map(energy).collect())
 }
 
-/// The coefficients of the loss laws that act on stones.
+/// The names of the coefficients of the loss laws that act on stones.
 #[pyfunction]
 pub fn stone_losses() -> Vec<&'static str> {
     let acts = |law: &Law| Losses::of(*law, 1.0).check_for_stone().is_ok();
@@ -209,8 +209,8 @@ pub fn stone_columns() -> Vec<[&'static str; 3]> {
         .collect()
 }
 
-/// Computes the motions of many stones from many initial states to the last of the times, and writes the wanted
-/// columns.
+/// Computes the motions of many stones from many initial states to the last of the times, and writes the output columns
+/// that `out` contains.
 #[pyfunction]
 pub fn stones<'py>(
     py: Python<'py>,

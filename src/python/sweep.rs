@@ -1,4 +1,4 @@
-//! Sweeps: the functions fill arrays with the GIL released, and Ctrl-C stops them.
+//! Functions for Python that compute maps: they fill arrays with the GIL released, and Ctrl-C stops them.
 
 use crate::error::room;
 use crate::many::maps::{self as sweep, Cell};
@@ -10,10 +10,10 @@ use pyo3::types::PyDict;
 use super::columns::GivenColumns;
 use super::watch::Watch;
 
-/// The names of the inputs of a map.
+/// The names of the input columns of a map.
 const AXES: [&str; 4] = ["theta", "ell", "bore", "fillet"];
 
-/// The array of this name in `out`, to be filled; None if `out` has no such array.
+/// The output array with this name in `out`; None if `out` has no such array.
 fn filled<'py, T: Element>(
     out: &Bound<'py, PyDict>,
     name: &str,
@@ -26,7 +26,7 @@ fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyR
     Ok(array.as_mut().map(|a| a.as_slice_mut()).transpose()?)
 }
 
-/// Opens the arrays of a map for `fill`; all its floating-point arrays have one precision.
+/// Calls `fill` with the output arrays of a map; all its floating-point arrays have one precision.
 fn with_portrait<F: Element + Cell>(
     out: &Bound<'_, PyDict>,
     fill: impl FnOnce(sweep::Portrait<'_, F>) -> PyResult<()>,
@@ -43,7 +43,7 @@ fn with_portrait<F: Element + Cell>(
     })
 }
 
-/// The tubes of a map, each None if its numbers are invalid; None for the whole map after Ctrl-C.
+/// The tubes of a map, each None if its numbers are invalid. The whole result is None after Ctrl-C.
 fn tubes(of: [&[f64]; 3], watch: &mut Watch) -> Result<Option<Vec<Option<Body>>>, Error> {
     let [half, bore, fillet] = of;
     let mut tubes = room(half.len())?;
@@ -116,8 +116,8 @@ pub fn areas<'py>(
     Ok(PyArray1::from_vec(py, found.unwrap_or_default().into_flattened().into_flattened()))
 }
 
-/// Minimum and maximum of those of the squared rate, both kappas and the energy that are `wanted`, each as (value,
-/// index of theta, index of the body).
+/// Minimum and maximum of the requested quantities among squared rate, kappa in rolling, kappa on a smooth table and
+/// energy, each as (value, index of theta, index of the body).
 #[pyfunction]
 pub fn extrema<'py>(
     py: Python<'py>,

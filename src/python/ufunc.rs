@@ -58,11 +58,12 @@ impl Quantity {
 }
 
 pub enum Value {
-    /// A quantity of theta and a body, computed in lanes.
+    /// A quantity of the steady state at an inclination theta of a body, computed in SIMD lanes.
     AtRest(Quantity),
-    /// A function of any inputs that gives one number.
+    /// A function of any inputs that returns one number.
     One(fn(&[f64]) -> f64),
-    /// The last input (0, 1, ...) picks one of the results of the other inputs; equal neighbours share the results.
+    /// A function with several results, of which the last input (0, 1, ...) picks one; neighbouring elements with equal
+    /// other inputs share the results.
     Pick(fn(&[f64]) -> [f64; steady::MOST]),
 }
 
@@ -72,7 +73,7 @@ pub struct ArrayFunction {
     pub value: Value,
 }
 
-/// The inputs and the output of one inner loop.
+/// The inputs and the output of one call of an inner loop.
 #[derive(Clone, Copy)]
 struct Loop {
     base: [*mut c_char; MOST + 1],
@@ -82,7 +83,7 @@ struct Loop {
 }
 
 impl Loop {
-    /// Input `k` of element `i < count`.
+    /// Input `k` of element `i`, where `i < count`.
     fn get(&self, k: usize, i: isize) -> f64 {
         debug_assert!(k < self.inputs && i < self.count);
         // SAFETY: NumPy promises `count` elements `step` apart, here doubles (the type table in
@@ -167,7 +168,7 @@ unsafe extern "C" fn inner(
     if done { 0 } else { -1 }
 }
 
-/// Approximate time of one element, in nanoseconds, by which the checks for Ctrl-C are spaced.
+/// Approximate times of one element of each kind, in nanoseconds, by which the checks for Ctrl-C are spaced.
 const AT_REST: u64 = 20;
 const ONE: u64 = 200;
 const PICKED: u64 = 10_000;

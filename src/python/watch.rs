@@ -19,12 +19,12 @@ impl Watch {
         Self { progress, asked: Instant::now(), interrupt: None }
     }
 
-    /// Whether to go on; frequent calls are cheap, because Python is called at most once in `CHECK_PERIOD`.
+    /// Whether the work should continue. Frequent calls are cheap, because Python is called at most once in `CHECK_PERIOD`.
     pub fn still(&mut self) -> bool {
         self.asked.elapsed() < CHECK_PERIOD || self.go_on(f64::NAN)
     }
 
-    /// Whether to go on; reports the finished share of the work.
+    /// Whether the work should continue; also reports the finished share of the work.
     pub fn go_on(&mut self, share: f64) -> bool {
         self.asked = Instant::now();
         let answer = Python::attach(|py| {
@@ -51,8 +51,8 @@ thread_local! {
     static LAST_CHECK: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
-/// Whether the loop of a ufunc is to go on with work of about `work` nanoseconds; if not, Python's error is
-/// set. The time of the last check is kept here, because the loop keeps no data between its calls.
+/// Whether the loop of a ufunc should continue with work of about `work` nanoseconds; if not, Python's error is set.
+/// The time of the last check is kept in this function, because the loop keeps no data between its calls.
 pub fn still(work: u64) -> bool {
     let done = WORK_SINCE_CHECK.get() + work;
     WORK_SINCE_CHECK.set(done);

@@ -1,22 +1,23 @@
-//! The trajectory of an engine beside the known motion, at the times of the engine.
+//! Comparison of an engine's trajectory with the known motion, at the times of the engine.
 //!
 //! ```text
 //! position   |x - x_known|
 //! angle      4 asin(|q -+ q_known|/2), the angle of the rotation from the known orientation to that of the engine
 //! theta      the inclination of axis 3 in the engine minus the known one
 //! ```
-//! Error: that of the known motion, which the comparison tells.
+//! Error: that of the known motion, which the result of the comparison contains.
 
 use super::natural::KnownMotion;
 use super::{Natural, Scene, SceneError, inclination};
 use nalgebra::{Point3, UnitQuaternion};
 
-/// A quaternion whose length differs from 1 by more than this is none of an orientation.
+/// A quaternion whose length differs from 1 by more than this is not that of an orientation.
 const UNIT: f64 = 1e-3;
-/// The angle at time 0 from the initial orientation above which the quaternions are doubted.
+/// Largest angle, in radians, from the initial orientation to that at time 0; a larger angle suggests quaternions in
+/// another order.
 const DOUBTED: f64 = 0.1;
-/// Ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre from the origin,
-/// above which the units are doubted.
+/// Largest ratio of the last time to the end of the scene, and of the first deviation to the distance of the centre
+/// from the origin; a larger ratio suggests other units.
 const LONG: f64 = 10.0;
 const FARTHEST: f64 = 30.0;
 
@@ -40,7 +41,7 @@ impl TrajectoryRow {
     }
 }
 
-/// The deviation of an engine at one time.
+/// The deviation of an engine from the known motion at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Deviation {
@@ -54,15 +55,15 @@ pub struct Deviation {
     pub theta: f64,
 }
 
-/// A probable mistake in the units or the order of an engine's numbers, rather than in the engine.
+/// A probable mistake in the units or in the order of an engine's numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Doubt {
-    /// The orientation at time 0 is not the initial one: are the numbers of the quaternions in another order?
+    /// The orientation at time 0 is not the initial one: the numbers of the quaternions may be in another order.
     Orientation,
-    /// The times go far beyond the end of the scene: are they in milliseconds?
+    /// The times go far beyond the end of the scene: they may be in milliseconds.
     Times,
-    /// The first position is far from the known one: are the positions in millimetres?
+    /// The first position is far from the known one: the positions may be in millimetres.
     Positions,
 }
 
@@ -81,8 +82,8 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// The largest distance, the largest angle and the largest difference of the inclinations, whatever its sign; with the
-    /// last time.
+    /// The largest distance, the largest angle, and the largest absolute difference of the inclinations; the time is
+    /// the last one.
     #[must_use]
     pub fn largest(&self) -> Deviation {
         let most =
@@ -97,12 +98,12 @@ impl Comparison {
 }
 
 impl Scene {
-    /// The known motion at these times since the initial state, in ascending seconds, and up to its end: it is computed at
-    /// them, also after the last time of the scene.
+    /// The known motion at these times since the initial state, in seconds and in ascending order, up to its end. The
+    /// motion is computed at these times, also after the last time of the scene.
     ///
     /// # Errors
-    /// Those of the motion; [`SceneError::Row`] for times that do not ascend; and [`SceneError::Motion`] for a file that does
-    /// not tell what its answer is computed from.
+    /// Those of the motion; [`SceneError::Row`] for times that do not ascend; and [`SceneError::Motion`] for a file
+    /// without the body, the start and the options from which its answer is computed.
     pub fn at(&self, seconds: &[f64]) -> Result<Vec<TrajectoryRow>, SceneError> {
         let (answer, scale) = (self.answer(seconds)?, self.scale()?);
         let rows = answer.rows.iter().zip(seconds);

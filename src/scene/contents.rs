@@ -1,4 +1,4 @@
-//! The contents of the file of a scene, with the names of its keys.
+//! The contents of a scene file, with the names of its keys.
 //!
 //! All numbers are in SI, along the axes of the table. A number that does not exist is null in the file, and here NaN, or
 //! `None` where it may be infinite.
@@ -7,18 +7,18 @@ use super::natural::Natural;
 use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// The contents of the file of a scene.
+/// The contents of a scene file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Contents {
-    /// The version of the format.
+    /// The version of the format of the file.
     #[serde(rename = "spincyl-scene")]
     pub version: u32,
     pub(super) units: String,
     pub(super) axes: String,
     /// The natural units.
     pub scale: NaturalUnits,
-    /// The acceleration of gravity, in m/s^2.
+    /// The acceleration of gravity as a vector along the axes of the table, in m/s^2.
     pub gravity: Vector3<f64>,
     /// The body.
     pub body: SceneBody,
@@ -30,7 +30,8 @@ pub struct Contents {
     pub expected: Expected,
     /// Bounds of the errors of the known answer at any time.
     pub error: SceneErrors,
-    /// The body, the start and the options from which the answer is computed, in natural units, also at other times.
+    /// The body, the start and the options of the motion in natural units, from which the answer can be computed, also
+    /// at other times.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub natural: Option<Natural>,
 }
@@ -39,7 +40,7 @@ pub struct Contents {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct NaturalUnits {
-    /// The radius R in metres, for a stone the largest semi-axis.
+    /// The radius R in metres; for a stone the largest semi-axis.
     #[serde(rename = "R")]
     pub radius: f64,
     /// The mass M in kilograms.
@@ -56,7 +57,7 @@ pub struct NaturalUnits {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneBody {
-    /// The body in words.
+    /// The name of the body in words.
     pub name: String,
     /// The mass in kilograms.
     pub mass: f64,
@@ -77,9 +78,9 @@ pub struct SceneBody {
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum SceneShape {
-    /// An ellipsoid.
+    /// The shape is an ellipsoid.
     Ellipsoid(EllipsoidShape),
-    /// The hull of circles about axis 3.
+    /// The shape is the hull of circles about axis 3, swollen by a distance.
     Circles(CirclesShape),
 }
 
@@ -108,19 +109,19 @@ pub struct CirclesShape {
     pub kind: ShapeKind,
     /// The unit of length R, in metres.
     pub radius: f64,
-    /// The radius of the bore of a tube; `None` for a body of another kind, whose inside is not known.
+    /// The radius of the bore of a tube in metres; `None` for a body of another kind, whose inside is not known.
     pub inner_radius: Option<f64>,
     /// The circles, from the lower end up.
     pub circles: Vec<SceneCircle>,
-    /// The distance from the hull of all circles; `None` if each circle has its own.
+    /// The distance of the surface from the hull of all circles, in metres; `None` if each circle has its own distance.
     pub swollen_by: Option<f64>,
-    /// Half the length of a body with two equal rims, in metres.
+    /// Half the length of a body with two equal rims, in metres; `None` for other bodies.
     pub half_length: Option<f64>,
     /// The inclination, in radians, at which a part other than the lowest circle lands.
     pub lands_at: f64,
     #[serde(rename = "is")]
     pub(super) explained: String,
-    /// Radius and height of points of a profile whose convex hull shows the body; empty where an engine has a shape for it.
+    /// Points (radius, height) in metres of a profile for drawing the body; empty where engines have a shape for this body.
     #[serde(default)]
     pub outline: Vec<[f64; 2]>,
 }
@@ -140,7 +141,7 @@ pub enum ShapeKind {
     Balls,
     /// One ball.
     Ball,
-    /// Any other circles.
+    /// Circles of any other arrangement.
     Circles,
 }
 
@@ -152,7 +153,7 @@ pub struct SceneCircle {
     pub height: f64,
     /// The radius of the circle; 0 for a ball or a tip.
     pub radius: f64,
-    /// The radius of the fillet, where the circles differ in it.
+    /// The radius of the fillet of this circle; `None` if all circles have the same fillet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub swollen_by: Option<f64>,
 }
@@ -180,17 +181,17 @@ pub struct SceneTable {
 #[serde(tag = "law", rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum SceneFriction {
-    /// The contact point is at rest.
+    /// Rolling: the contact point is at rest.
     #[non_exhaustive]
     Rolling {
-        /// A coefficient with which the body rolls.
+        /// A coefficient of friction with which the body rolls during the whole motion.
         mu: f64,
-        /// The least coefficient that rolling needs; `None` if impacts need more than any.
+        /// The least coefficient of friction that rolling needs; `None` if impacts would need an infinite one.
         needed: Option<f64>,
         /// The formula of the friction, as text.
         force: String,
     },
-    /// No friction.
+    /// A frictionless table.
     #[non_exhaustive]
     Smooth {
         /// The coefficient of friction, which is 0.
@@ -198,7 +199,7 @@ pub enum SceneFriction {
         /// The formula of the friction, as text.
         force: String,
     },
-    /// Dry friction.
+    /// Coulomb's dry friction.
     #[non_exhaustive]
     Coulomb {
         /// The coefficient of sliding friction.
@@ -206,7 +207,7 @@ pub enum SceneFriction {
         /// The coefficient of static friction; `None` if it is infinite.
         #[serde(rename = "static")]
         fixed: Option<f64>,
-        /// The radius of the patch of contact in metres.
+        /// The radius of the patch of contact in metres; 0 for a point.
         patch: f64,
         /// The formula of the friction, as text.
         force: String,
@@ -214,7 +215,7 @@ pub enum SceneFriction {
     /// A viscous film.
     #[non_exhaustive]
     Viscous {
-        /// The coefficient in s/m.
+        /// The coefficient: the force over normal force and velocity, in s/m.
         c: f64,
         /// The unit of the coefficient, s/m.
         unit: String,
@@ -229,7 +230,7 @@ pub enum SceneFriction {
 pub struct SceneLoss {
     /// The name of the law.
     pub law: String,
-    /// The name of its coefficient.
+    /// The name of the coefficient of the law.
     pub coefficient: String,
     /// The coefficient in SI.
     pub value: f64,
@@ -243,13 +244,13 @@ pub struct SceneLoss {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneStart {
-    /// The centre of mass in metres.
+    /// The position of the centre of mass in metres.
     pub position: Point3<f64>,
     /// The rotation from the axes of the body to those of the table; x, y, z, w in the file.
     pub orientation: UnitQuaternion<f64>,
     /// The velocity of the centre of mass in m/s.
     pub velocity: Vector3<f64>,
-    /// The angular velocity in rad/s.
+    /// The angular velocity along the axes of the table, in rad/s.
     pub angular_velocity: Vector3<f64>,
     /// The angular velocity along the axes of the body, in rad/s.
     pub angular_velocity_in_body_axes: Vector3<f64>,
@@ -259,15 +260,15 @@ pub struct SceneStart {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Expected {
-    /// The times in seconds; the first is 0.
+    /// The times since the initial state in seconds; the first is 0.
     pub time: Vec<f64>,
-    /// The centre of mass in metres.
+    /// The position of the centre of mass in metres.
     pub position: Vec<Point3<f64>>,
     /// The rotation from the axes of the body to those of the table.
     pub orientation: Vec<UnitQuaternion<f64>>,
     /// The velocity of the centre of mass in m/s.
     pub velocity: Vec<Vector3<f64>>,
-    /// The angular velocity in rad/s.
+    /// The angular velocity along the axes of the table, in rad/s.
     pub angular_velocity: Vec<Vector3<f64>>,
     /// The angle from the vertical to axis 3 in radians.
     pub theta: Vec<f64>,
@@ -279,7 +280,7 @@ pub struct Expected {
     /// The force of the table in newtons; NaN where the body touches it with both rims.
     #[serde(with = "nulls")]
     pub contact_force: Vec<Vector3<f64>>,
-    /// The contact point in metres; NaN where there is none or more than one.
+    /// The position of the contact point in metres; NaN where there is no contact point or more than one.
     #[serde(with = "nulls")]
     pub contact_point: Vec<Vector3<f64>>,
     /// The heat of friction up to each time in joules, under a law of friction.
@@ -290,18 +291,18 @@ pub struct Expected {
     pub lost_by_losses: Option<Vec<f64>>,
     pub(super) theta_is: String,
     pub(super) contact_is: String,
-    /// The height of the lowest point in metres, with a restitution.
+    /// The height of the lowest point of the body in metres; only with a coefficient of restitution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height: Option<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) height_is: Option<String>,
-    /// The energy lost in impacts before each time in joules, with a restitution.
+    /// The energy lost in impacts before each time in joules; only with a coefficient of restitution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lost_in_impacts: Option<Vec<f64>>,
-    /// The impacts, with a restitution.
+    /// The impacts, in order; only with a coefficient of restitution.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts: Option<Vec<SceneImpact>>,
-    /// The phases and the times at which they begin.
+    /// The phases of the motion, each with the time at which it begins.
     pub phases: Vec<ScenePhase>,
     /// The ending of the known motion, with its time and its reason.
     pub ending: SceneEnding,
@@ -311,9 +312,9 @@ pub struct Expected {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneImpact {
-    /// The time in seconds.
+    /// The time of the impact in seconds.
     pub time: f64,
-    /// The motion of the contact point in the impact.
+    /// The motion of the contact point in the impact, in words.
     pub kind: String,
     /// The normal impulse in N s.
     pub normal_impulse: f64,
@@ -325,9 +326,9 @@ pub struct SceneImpact {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ScenePhase {
-    /// The time at which it begins, in seconds.
+    /// The time at which the phase begins, in seconds.
     pub time: f64,
-    /// The kind in words, such as "rolling".
+    /// The kind of the phase in words, such as "rolling".
     pub kind: String,
 }
 
@@ -337,7 +338,7 @@ pub struct ScenePhase {
 pub struct SceneEnding {
     /// The name of the ending, such as `DONE` or `FACE`.
     pub kind: String,
-    /// The time in seconds.
+    /// The time of the ending in seconds.
     pub time: f64,
     /// The reason why the motion ends, in words.
     pub why: String,
@@ -375,7 +376,7 @@ pub struct SceneErrors {
     pub(super) explained: String,
 }
 
-/// A matrix by its rows.
+/// Conversion of a matrix to and from its rows in a file.
 mod rows {
     use nalgebra::Matrix3;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -390,7 +391,7 @@ mod rows {
     }
 }
 
-/// Vectors whose missing numbers are null in the file and NaN here.
+/// Conversion of vectors whose missing numbers are null in a file and NaN in memory.
 mod nulls {
     use nalgebra::Vector3;
     use serde::{Deserialize, Deserializer, Serializer};
@@ -406,7 +407,7 @@ mod nulls {
     }
 }
 
-/// A number that is null in the file and NaN here.
+/// Conversion of a number that may be null in a file and is then NaN in memory.
 mod null_number {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -419,7 +420,7 @@ mod null_number {
     }
 }
 
-/// Numbers of which some are null in the file and NaN here.
+/// Conversion of numbers some of which are null in a file and NaN in memory.
 mod null_numbers {
     use serde::{Deserialize, Deserializer, Serializer};
 

@@ -1,4 +1,4 @@
-//! The contents of a scene from the body, the start and the options of its motion.
+//! Computes the contents of a scene from the body, the start and the options of its motion.
 
 use super::contents::*;
 use super::natural::{KnownMotion, Natural};
@@ -23,11 +23,12 @@ const ROLLS: &str = "what keeps the contact point at rest; any coefficient from 
 const FILM: &str = "-c N u at the contact point, where u is its velocity over the table";
 const PATCH: &str = "-mu p(r) (u + (w.n) n x r)/|u + (w.n) n x r| per area of a disk of radius `patch`, and its \
                      moment about n: p = 3 N/(2 pi patch^2) sqrt(1 - r^2/patch^2)";
-/// Least error of the times of phases and impacts and of lost energies, in natural units.
+/// Least error that is stated for times of phases and impacts and for lost energies, in natural units.
 const LEAST: f64 = 1e-11;
-/// Friction of a scene of rolling without a coefficient: least value, ratio to the needed value, largest.
+/// The coefficient of friction of a rolling scene without a given one: its least value, its ratio to the coefficient
+/// that rolling needs, and its largest value.
 const MU: [f64; 3] = [1.0, 1.5, 1e3];
-/// Number of intervals at whose ends the friction that rolling needs is looked at.
+/// Number of intervals of time at whose ends the friction that rolling needs is computed.
 const LOOKS: u32 = 4000;
 
 fn reason(ending: Ending) -> &'static str {
@@ -111,7 +112,7 @@ fn body_of(natural: &Natural, scale: &Scale) -> SceneBody {
     }
 }
 
-/// The principal moments in ascending order, and their axes, which are right-handed.
+/// The principal moments of inertia in ascending order, and their axes, which are right-handed.
 fn principal(inertia: &Matrix3<f64>) -> ([f64; 3], [Vector3<f64>; 3]) {
     let found = inertia.symmetric_eigen();
     let mut order = [0, 1, 2];
@@ -137,14 +138,14 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
             },
         },
         Table::Rubs(Friction::Viscous { c }) => {
-            // A coefficient per speed.
+            // The coefficient c is a force per normal force and velocity.
             SceneFriction::Viscous { c: scale.speed(c), unit: "s/m".into(), force: FILM.into() }
         }
         Table::Smooth => SceneFriction::Smooth { mu: 0.0, force: "none".into() },
         Table::Rolling { mu } => {
             let needed = if ask.restitution.is_none() { needed(natural, last)? } else { f64::INFINITY };
             let [least, over, most] = MU;
-            // What is unknown needs as much as can be.
+            // Where the needed friction is unknown, it counts as infinite.
             let enough = if needed.is_nan() { most } else { (over * needed).max(least).min(most) };
             SceneFriction::Rolling {
                 mu: if mu.is_finite() { mu } else { enough },
@@ -174,13 +175,13 @@ fn table_of(natural: &Natural, scale: &Scale, last: f64) -> Result<SceneTable, S
     })
 }
 
-/// The coefficient of friction that rolling needs up to the last time.
+/// The coefficient of friction that rolling needs up to the time `last`.
 fn needed(natural: &Natural, last: f64) -> Result<f64, SceneError> {
     let times: Vec<f64> = (0..=LOOKS).map(|i| last * f64::from(i) / f64::from(LOOKS)).collect();
     Ok(natural.answer(&times)?.rows.iter().map(|now| now.needed).fold(0.0, larger_or_nan))
 }
 
-/// What the coefficient of restitution is under this law.
+/// The meaning of the coefficient of restitution under this law of restitution, in words.
 fn restitution_is(law: ImpactLaw) -> String {
     match law {
         ImpactLaw::Stronge => {

@@ -4,10 +4,11 @@
 //! laws that MuJoCo does not have, and the couple to apply instead.
 //!
 //! A cylinder with a fillet is a smaller cylinder with a margin: contact begins when plane and cylinder are two fillets
-//! apart, and MuJoCo puts the contact point half way between them. So the plane is one fillet below the table, and the shape
-//! is exact, without facets. A single circle is a cylinder whose half thickness is a millionth of the radius. Of several
-//! circles each is such a cylinder, or a ball, and a tip is a tiny ball. Where a ball passes into an edge at a smooth joint,
-//! the whole ball would be the lowest: there the mesh for display touches.
+//! apart, and MuJoCo puts the contact point half way between them. So the plane is one fillet below the table, and the
+//! shape is exact, without facets. A single circle is a cylinder whose half thickness is a millionth of the radius. Of
+//! several circles each is such a cylinder, or a ball, and a tip is a tiny ball. Where a ball passes into an edge at a
+//! smooth joint, the rest of the ball would touch before the edge does; such a body touches the plane with its mesh for
+//! display.
 
 use super::contents::{
     CirclesShape, Contents, SceneCircle, SceneFriction, SceneShape, SceneTable, ShapeKind,
@@ -18,9 +19,9 @@ use core::fmt::Write;
 
 const SEEN: &str = r#"contype="0" conaffinity="0""#;
 const UNSEEN: &str = r#"contype="0" conaffinity="0" group="3""#;
-/// Half the thickness of a circle, over the radius.
+/// Half the thickness of the thin cylinder that stands for a circle, over its radius.
 pub(super) const THIN: f64 = 1e-6;
-/// Torsional friction of an evenly turning patch under the pressure of Hertz, over mu times its radius.
+/// Torsional friction of a patch that only turns, under the pressure of Hertz, over mu times its radius.
 const TURNS: f64 = 3.0 * PI / 16.0;
 /// Number of points round the axis of a mesh for display.
 const AROUND: u32 = 48;
@@ -32,8 +33,8 @@ struct EngineGrip {
     torsion: f64,
 }
 
-/// What the geoms of a scene have in common: the dimension and the stiffness of contacts, both with the friction, and the size
-/// of a plane.
+/// The attributes that the geoms of a scene share: the dimension and the stiffness of contacts, both also with the
+/// friction, and the size of a plane.
 struct Attributes {
     dim: String,
     stiff: String,
@@ -41,7 +42,7 @@ struct Attributes {
     size: String,
 }
 
-/// The geoms of a scene.
+/// The parts of a model that describe the geoms of a scene.
 #[derive(Default)]
 struct Geometry {
     table: String,
@@ -51,7 +52,7 @@ struct Geometry {
     notes: Vec<String>,
 }
 
-/// The model of a scene.
+/// The MJCF model of a scene, as text.
 pub(super) fn mjcf(of: &Contents) -> String {
     let (body, start, metre) = (&of.body, &of.start, of.scale.radius);
     let (grip, mut said) = laws(&of.table);
@@ -112,7 +113,7 @@ pub(super) fn mjcf(of: &Contents) -> String {
     )
 }
 
-/// The friction for MuJoCo, and notes on the laws for the comment.
+/// The friction for MuJoCo, and notes for the comment on the laws of the table.
 fn laws(table: &SceneTable) -> (EngineGrip, Vec<String>) {
     let mut notes = Vec::new();
     let (mut mu, mut torsion) = (0.0, 0.0);
@@ -156,7 +157,7 @@ fn laws(table: &SceneTable) -> (EngineGrip, Vec<String>) {
     (EngineGrip { mu, torsion }, notes)
 }
 
-/// The geoms of table and body, the mesh for display, the contact of their pair, and notes on them.
+/// The geoms of table and body, the mesh for display, the contacts between them, and notes for the comment.
 fn geometry(of: &Contents, grip: EngineGrip) -> Geometry {
     let EngineGrip { mu, torsion } = grip;
     let (metre, second) = (of.scale.radius, of.scale.second);

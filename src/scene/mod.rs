@@ -55,9 +55,9 @@ pub use contents::{
 use nalgebra::{UnitQuaternion, Vector3};
 pub use natural::Natural;
 
-/// An answer may differ from itself by this much where its error is below rounding, in R or radians.
+/// Smallest allowed difference of an answer from the motion that is computed anew, in R or radians, where its error is smaller.
 const ROUNDING: f64 = 1e-13;
-/// The version of the format.
+/// The version of the format of scene files.
 const VERSION: u32 = 1;
 
 /// The reason why there is no scene, or no comparison.
@@ -90,13 +90,13 @@ pub struct Scene {
     contents: Contents,
 }
 
-/// The inclination of axis 3.
+/// The inclination of axis 3, in radians, at an orientation.
 fn inclination(of: &UnitQuaternion<f64>) -> f64 {
     let axis = of * Vector3::z();
     axis.x.hypot(axis.y).atan2(axis.z)
 }
 
-/// The times of a scene, from its start on.
+/// The times of a scene since its start, with 0 put before them if it is missing; an error if they do not ascend.
 fn from_start(seconds: &[f64]) -> Result<Vec<f64>, SceneError> {
     let mut all = Vec::with_capacity(seconds.len() + 1);
     if seconds.first() != Some(&0.0) {
@@ -177,7 +177,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Returns an error for an answer that is not that of what it is computed from.
+    /// Returns an error for a file whose answer is not that of its body, start and options.
     fn check_answer(&self) -> Result<(), SceneError> {
         let (known, error, metre) =
             (&self.contents.expected, &self.contents.error, self.contents.scale.radius);
@@ -208,13 +208,13 @@ impl Scene {
         serde_json::to_string(&self.contents).expect("every part of a scene is written")
     }
 
-    /// Everything in the file.
+    /// The contents of the scene file: body, table, start and answer.
     #[must_use]
     pub fn contents(&self) -> &Contents {
         &self.contents
     }
 
-    /// Returns this scene with another name of its body, which files and models tell.
+    /// Returns this scene with another name of its body, which appears in files and models.
     #[must_use]
     pub fn with_name(mut self, name: impl Into<String>) -> Self {
         self.contents.body.name = name.into();
@@ -228,8 +228,8 @@ impl Scene {
         mjcf::mjcf(&self.contents)
     }
 
-    /// The body in the format URDF: mass, inertia, and what touches the table. URDF has no friction, no initial state and no
-    /// table; the engine takes these from the file.
+    /// The body in the format URDF: its mass, its inertia, and the shape with which it touches the table. URDF has no
+    /// friction, no initial state and no table; the engine takes these from the scene file.
     ///
     /// # Errors
     /// [`SceneError::Motion`] for a body whose shape URDF does not have: one with a fillet, an ellipsoid, or several circles
@@ -262,7 +262,8 @@ impl Scene {
         self.couple_of(|ask| ask.losses, orientation, angular_velocity, normal_force)
     }
 
-    /// The same while the contact point slips, without a rolling resistance that acts only while it does not
+    /// The couple of [`couple`](Self::couple) while the contact point slips: without a rolling resistance that acts
+    /// only while the contact point does not slip
     /// ([`Resistance::WhileRolling`](crate::loss::Resistance::WhileRolling)).
     ///
     /// # Errors

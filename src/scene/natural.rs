@@ -1,4 +1,4 @@
-//! What the known answer of a scene is computed from, and the answer itself, in natural units.
+//! The body, start and options from which the known answer of a scene is computed, and the answer itself, in natural units.
 //!
 //! ```text
 //! v = u + w x (centre - contact point)        of a stone; u is the slip and the lift of the lowest point
@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 const UNTOLD: SceneError = SceneError::Motion("motion: its poses or forces are unknown at one of its times");
 
-/// The roundings of a height, in ulp of the numbers from which it is computed.
+/// The rounding error of a height, in ulp of the numbers from which it is computed.
 const HEIGHT_ROUNDINGS: f64 = 16.0;
 
 /// The body or stone of a scene with its start and options, all in natural units.
@@ -33,7 +33,7 @@ pub enum Natural {
     Body {
         /// The body.
         body: Body,
-        /// Its start, at time 0.
+        /// The initial state, at time 0.
         start: Start,
         /// The options of its motion.
         ask: Ask,
@@ -43,7 +43,7 @@ pub enum Natural {
     Stone {
         /// The stone.
         stone: Ellipsoid,
-        /// Its start, at time 0.
+        /// The initial state, at time 0.
         start: Start<StoneState>,
         /// The options of its motion.
         ask: Ask,
@@ -58,15 +58,15 @@ pub(super) struct Known {
     pub velocity: Vector3<f64>,
     pub w: Vector3<f64>,
     pub energy: f64,
-    /// The largest ratio of friction to normal force.
+    /// The largest ratio of friction to normal force so far.
     pub needed: f64,
     /// The normal force of all points of contact together.
     pub normal: f64,
-    /// NaN on both rims.
+    /// The contact force; NaN on both rims.
     pub force: Vector3<f64>,
-    /// NaN where there is not one point of contact.
+    /// The contact point; NaN where there is none or more than one.
     pub point: Vector3<f64>,
-    /// The height of the lowest point.
+    /// The height of the lowest point of the body.
     pub height: f64,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct KnownImpact {
     pub lost: f64,
 }
 
-/// A known motion.
+/// A known motion: its rows, impacts, phases and errors, in natural units.
 pub(super) struct KnownMotion {
     pub rows: Vec<Known>,
     pub bounds: Bounds,
@@ -86,7 +86,7 @@ pub(super) struct KnownMotion {
     pub pose_error: f64,
     pub force_error: f64,
     pub ending: Ending,
-    /// The time of the event that ended the motion.
+    /// The time of the event that ended the motion; None without such an event.
     pub end: Option<f64>,
     pub phases: Vec<(f64, Kind)>,
     pub impacts: Vec<KnownImpact>,
@@ -95,12 +95,12 @@ pub(super) struct KnownMotion {
 }
 
 impl Natural {
-    /// A body with its start at time 0.
+    /// A body of revolution with its initial state at time 0 and its options.
     pub(super) fn of_body(body: Body, start: Start, ask: Ask) -> Self {
         Self::Body { body, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
 
-    /// A stone with its start at time 0.
+    /// A stone with its initial state at time 0 and its options.
     pub(super) fn of_stone(stone: Ellipsoid, start: Start<StoneState>, ask: Ask) -> Self {
         Self::Stone { stone, start: start.with_time(0.0), ask: ask.with_pose().with_force() }
     }
@@ -120,16 +120,17 @@ impl Natural {
         }
     }
 
-    /// The motion at these times, of which the first is 0.
+    /// Computes the motion at these times, of which the first is 0.
     pub(super) fn answer(&self, times: &[f64]) -> Result<KnownMotion, SceneError> {
         if self.ask().turning != 0.0 {
-            return Err(SceneError::Motion("turning: a scene needs a table that does not turn"));
+            return Err(SceneError::Motion("turning: expected 0, a table that does not turn"));
         }
         match self {
             Self::Body { body, start, ask } => {
                 let ask = ask.with_pose().with_force();
                 let m = motion::roll_with(body, *start, times, &ask, || true)?;
-                let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
+                let m =
+                    m.ok_or(SceneError::Motion("motion: expected a motion that advances from its start"))?;
                 let rows: Option<_> = (0..m.states.len()).map(|i| body_at(&m, body, &ask, i)).collect();
                 let bounds = m.bounds(body);
                 told(m, rows.ok_or(UNTOLD)?, bounds, &ask)
@@ -137,7 +138,8 @@ impl Natural {
             Self::Stone { stone: of, start, ask } => {
                 let ask = ask.with_pose().with_force();
                 let m = stone::roll(of, *start, times, &ask, || true)?;
-                let m = m.ok_or(SceneError::Motion("motion: it does not advance from its start"))?;
+                let m =
+                    m.ok_or(SceneError::Motion("motion: expected a motion that advances from its start"))?;
                 let rows: Option<Vec<Known>> =
                     (0..m.states.len()).map(|i| stone_at(&m, of, &ask, i)).collect();
                 let rows = rows.ok_or(UNTOLD)?;
@@ -205,7 +207,7 @@ fn told<S: Moving>(
     })
 }
 
-/// What the contact is at a time: on the table, on both rims, on a face, in the air.
+/// The contact at one time: whether the body is on the table, on both rims, on a face, or in the air.
 struct TouchNow {
     both: bool,
     point: bool,
@@ -220,7 +222,7 @@ impl TouchNow {
         Self { both, point: !(both || stands || flies), flies }
     }
 
-    /// The force of the table: none where it would pull, since the body then leaves the table at once.
+    /// The force of the table; zero where N would be negative, since the body then leaves the table at once.
     fn force(&self, normal: f64, force: Vector3<f64>) -> Vector3<f64> {
         match () {
             () if self.both => Vector3::repeat(f64::NAN),
@@ -234,13 +236,14 @@ impl TouchNow {
     }
 }
 
-/// The velocity that a centre has gained on its fall along a smooth slope; `None` where the slip is known.
+/// The velocity that the centre of mass has gained on a smooth slope; `None` where the slip is known.
 fn fall(ask: &Ask, time: f64) -> Option<f64> {
     (ask.table == Table::Smooth && ask.restitution.is_none()).then(|| ask.slope.sin() * time)
 }
 
-/// The height of the lowest point, from that of the rim and from the centre and how far the body reaches below it. One that is
-/// negative by rounding is 0; any other negative one, or NaN, is told as it is.
+/// The height of the lowest point of the body, from that of its rim, or from the centre and the distance `extent` of
+/// the lowest point below it. A height that is negative by rounding is 0; any other negative height, or NaN, is
+/// returned unchanged.
 fn lowest(rim: f64, centre: f64, extent: f64) -> f64 {
     let other = centre - extent;
     let found = if rim < other { rim } else { other };

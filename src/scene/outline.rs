@@ -1,25 +1,26 @@
-//! What a body of revolution touches the table with, and the outline by which an engine draws it.
+//! The shape with which a body of revolution touches the table, and the outline with which an engine draws the body.
 //!
-//! An outline is drawn for a body without a shape of its own in most engines: one with a fillet, or one of several circles.
-//! A quarter of a fillet has eight flat pieces whose corners lie on the circle. The inside of a body is known only if its
-//! moments are those of a uniform tube.
+//! An outline is made for a body whose shape most engines lack: one with a fillet, or with several circles. A quarter
+//! of a fillet has eight flat pieces whose corners lie on the circle. The inside of a body is known only if its moments
+//! are those of a uniform tube.
 
 use super::contents::{CirclesShape, SceneCircle, ShapeKind};
 use crate::laws::body::Body;
 use crate::methods::search;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Pieces of a quarter of a circle, and how many of them become one.
+/// Pieces of a quarter of a circle, and the number of pieces that are joined into one for drawing.
 const QUARTER: usize = 32;
 const PIECES: usize = 4;
-/// Moments that differ by less than this share count as equal.
+/// Relative difference below which moments of inertia count as equal.
 const ALIKE: f64 = 1e-12;
 const EXPLAINED: &str = "all within swollen_by of the convex hull of the circles, which are about axis 3, at these \
                          heights over the centre of mass; at the inclination lands_at something else touches the table";
 const OF_SEVERAL: &str = "the convex hull of the circles, each with all within its swollen_by, about axis 3 at these \
                           heights over the centre of mass; at the inclination lands_at the second one touches the table";
 
-/// The ratio of inner to outer radius of the uniform tube with the moments of a body; `None` if there is no such tube.
+/// The ratio of inner to outer radius of the uniform tube that has the moments of inertia of a body; `None` if there is
+/// no such tube.
 fn bore(body: &Body) -> Option<f64> {
     let moments = |bore: f64| {
         Body::tube_on(body.ell().max(0.0), bore, body.fillet()).ok().map(|tube| [tube.i1(), tube.i3()])
@@ -39,7 +40,7 @@ fn bore(body: &Body) -> Option<f64> {
     moments(found).is_some_and(alike).then_some(found)
 }
 
-/// The shape of a body of revolution, whose unit of length has this many metres.
+/// The shape of a body of revolution; `metre` is its unit of length R in metres.
 pub(super) fn shape_of(body: &Body, metre: f64) -> CirclesShape {
     let body = &body.standing_on(0);
     let scaled = |outline: Vec<[f64; 2]>| outline.into_iter().map(|at| at.map(|x| metre * x)).collect();
@@ -85,7 +86,7 @@ pub(super) fn shape_of(body: &Body, metre: f64) -> CirclesShape {
     }
 }
 
-/// Points on a circle, from one latitude to another.
+/// Points (radius, height) on an arc of a circle, from one latitude to another.
 fn arc([r, z]: [f64; 2], radius: f64, [start, stop]: [f64; 2], pieces: usize) -> Vec<[f64; 2]> {
     let step = (stop - start) / pieces as f64;
     let corner = |k: usize| {
@@ -105,7 +106,7 @@ fn thinned(points: &[[f64; 2]], n: usize) -> Vec<[f64; 2]> {
 /// The outline of a body with one or two equal fillets.
 fn rounded(body: &Body, bore: Option<f64>) -> Vec<[f64; 2]> {
     let (ell, fillet, rim) = (body.ell(), body.fillet(), body.rim());
-    // A body that goes on beyond pi/2 although its centre is above its rim has nothing in the way above.
+    // A body that can be inclined beyond pi/2 although its centre is above its rim has nothing in the way above.
     let lower = bore.is_none() && body.theta_end() > FRAC_PI_2 + 1e-9;
     let (middle, wall) = if lower { (-ell, 0.0) } else { (0.0, ell) };
     let mut round = arc([rim, middle - wall], fillet, [-FRAC_PI_2, 0.0], QUARTER);

@@ -19,7 +19,7 @@ fn sphere(radius: f64) -> String {
     format!(r#"<sphere radius="{}"/>"#, shortest(radius))
 }
 
-/// What touches the table: heights and shapes.
+/// The parts of a body that touch the table: the height and the shape of each.
 fn parts(shape: &CirclesShape) -> Result<Vec<(f64, String)>, SceneError> {
     let metre = shape.radius;
     let of = |circle: &SceneCircle| circle.swollen_by.or(shape.swollen_by).unwrap_or(0.0);
@@ -43,7 +43,7 @@ fn parts(shape: &CirclesShape) -> Result<Vec<(f64, String)>, SceneError> {
     Ok(all)
 }
 
-/// The model of the body of a scene.
+/// The URDF model of the body of a scene, as text.
 pub(super) fn urdf(of: &Contents) -> Result<String, SceneError> {
     let SceneShape::Circles(shape) = &of.body.shape else { return Err(SceneError::Motion(NO_SHAPE)) };
     let i = |row: usize, column: usize| shortest(of.body.inertia[(row, column)]);

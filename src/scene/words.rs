@@ -1,6 +1,6 @@
 //! Numbers as Python writes them, so that the models of a scene have one text in both languages.
 
-/// The shortest digits that give the number again, as `repr` of Python writes them.
+/// The fewest digits that determine the number, as `repr` of Python writes them.
 pub(super) fn shortest(x: f64) -> String {
     let told = format!("{x:e}");
     let Some((digits, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?)))
@@ -10,7 +10,7 @@ pub(super) fn shortest(x: f64) -> String {
     placed(digits, power, (-4, 16), true)
 }
 
-/// The number with this many digits, as `:.6g` of Python writes it.
+/// The number with this many significant digits, as `:.6g` of Python writes it with six.
 pub(super) fn general(x: f64, digits: usize) -> String {
     let told = format!("{x:.*e}", digits - 1);
     let Some((mut kept, power)) = told.split_once('e').and_then(|(d, p)| Some((d, p.parse::<i32>().ok()?)))
@@ -23,7 +23,7 @@ pub(super) fn general(x: f64, digits: usize) -> String {
     placed(kept, power, (-4, digits as i32), false)
 }
 
-/// Digits with one before the point, times a power of ten, in plain notation for powers within the range.
+/// A number from its digits and a power of ten, in plain notation for powers within the range, else in scientific notation.
 fn placed(digits: &str, power: i32, (low, high): (i32, i32), point: bool) -> String {
     if !(low..high).contains(&power) {
         let sign = if power < 0 { '-' } else { '+' };
@@ -46,7 +46,7 @@ fn placed(digits: &str, power: i32, (low, high): (i32, i32), point: bool) -> Str
     format!("{sign}{told}")
 }
 
-/// Numbers with a blank between them.
+/// Numbers as text, separated by blanks.
 pub(super) fn words(numbers: impl IntoIterator<Item = f64>) -> String {
     numbers.into_iter().map(shortest).collect::<Vec<_>>().join(" ")
 }
@@ -55,7 +55,7 @@ pub(super) fn words(numbers: impl IntoIterator<Item = f64>) -> String {
 mod tests {
     use super::*;
 
-    /// What Python 3 writes.
+    /// Checks the texts against those that Python 3 writes.
     #[test]
     fn numbers_are_written_as_python_writes_them() {
         for (x, told, six) in [

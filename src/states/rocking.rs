@@ -1,4 +1,4 @@
-//! A stone that spins upright, and its rocking.
+//! A stone that spins upright, and its rocking: the small oscillations about this steady spin.
 //!
 //! ```text
 //! (w1, w2, n1, n2)' = A (w1, w2, n1, n2)
@@ -28,8 +28,8 @@ use core::ops::{Add, Mul, Sub};
 
 type Long = Sum<f64>;
 
-/// Relative sizes below which a leading coefficient, the last change of a root, and the imaginary part of a root count
-/// as zero.
+/// Relative sizes below which numbers count as zero: a leading coefficient, the last change of a root, and the
+/// imaginary part of a root.
 const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 
 /// The two modes of rocking of a stone that spins upright, the slower one first.
@@ -38,14 +38,14 @@ const ZEROS: [f64; 3] = [1e-28, 1e-26, 1e-24];
 pub struct Rocking {
     /// The rate at which each mode grows (the larger one of two real rates), in sqrt(g/a).
     pub growth: [f64; 2],
-    /// The angular frequency of each mode; 0 for a mode that grows or decays without oscillation.
+    /// The angular frequency of each mode, in sqrt(g/a); 0 for a mode that grows or decays without oscillation.
     pub frequency: [f64; 2],
-    /// The four eigenvalues.
+    /// The four eigenvalues of the matrix A of the rocking, in sqrt(g/a).
     pub eigenvalues: [nalgebra::Complex<f64>; 4],
 }
 
 impl Rocking {
-    /// Whether neither mode grows.
+    /// Whether neither mode of rocking grows.
     pub fn is_stable(&self) -> bool {
         self.growth.iter().all(|x| *x <= 0.0)
     }
@@ -88,7 +88,7 @@ impl Complex {
         self.re.hi.hypot(self.im.hi)
     }
 
-    /// The root with a positive real part, or on the positive imaginary axis.
+    /// The square root that has a positive real part, or lies on the positive imaginary axis.
     fn root(self) -> Self {
         let zero = Long::from(0.0);
         let size = (self.re * self.re + self.im * self.im).sqrt();
@@ -105,7 +105,7 @@ impl Complex {
     }
 }
 
-/// The coefficients a0, a1, a2 and a3.
+/// The coefficients a0, a1, a2 and a3 of a characteristic polynomial, whose leading coefficient is 1.
 type Quartic = [Long; 4];
 
 impl Ellipsoid {
@@ -121,7 +121,7 @@ impl Ellipsoid {
         Ok(self.modes(&self.quartic(spin), spin))
     }
 
-    /// The spins, in ascending order, at which a stone that spins upright becomes stable or unstable.
+    /// The rates of spin, in sqrt(g/a) and in ascending order, at which a stone that spins upright becomes stable or unstable.
     ///
     /// # Errors
     /// Those of [`rocking`](Self::rocking) for the stone.
@@ -183,7 +183,7 @@ impl Ellipsoid {
         Ok(limits)
     }
 
-    /// Returns an error for a stone that cannot spin upright about axis 3.
+    /// Returns an error for a stone that cannot spin steadily upright about axis 3.
     fn is_upright(&self) -> Result<(), Error> {
         let [.., d, e, _] = self.inertia.0;
         within(
@@ -197,17 +197,17 @@ impl Ellipsoid {
         Ok(())
     }
 
-    /// Whether both directions of spin are equivalent.
+    /// Whether the rocking is the same for both directions of spin, as for an untwisted stone.
     fn is_even(&self) -> bool {
         self.inertia.0[5] == 0.0 || self.axes[0] == self.axes[1]
     }
 
-    /// The characteristic polynomial of the rocking at a spin.
+    /// The characteristic polynomial of the rocking of a stone that spins at the rate `spin`.
     fn quartic(&self, spin: f64) -> Quartic {
         characteristic(&self.linear(spin))
     }
 
-    /// The matrix A of the rocking.
+    /// The matrix A of the rocking of a stone that spins at the rate `spin`.
     fn linear(&self, spin: f64) -> [[Long; 4]; 4] {
         let long = Long::from;
         let ([a, b, c, _, _, f], [.., below]) = (self.inertia.0.map(long), self.offset.map(long));
@@ -232,7 +232,7 @@ impl Ellipsoid {
         all
     }
 
-    /// The modes of a characteristic polynomial.
+    /// The two modes of rocking, from the roots of their characteristic polynomial.
     fn modes(&self, quartic: &Quartic, spin: f64) -> Rocking {
         let mut all = if self.is_even() || spin == 0.0 {
             roots_of_even_quartic(quartic)
@@ -256,7 +256,7 @@ impl Ellipsoid {
     }
 }
 
-/// The characteristic polynomial of a matrix (Faddeev and LeVerrier).
+/// The characteristic polynomial of a matrix (by the method of Faddeev and LeVerrier).
 fn characteristic(a: &[[Long; 4]; 4]) -> Quartic {
     let zero = Long::from(0.0);
     let mut c = [zero; 4];
@@ -278,7 +278,7 @@ fn characteristic(a: &[[Long; 4]; 4]) -> Quartic {
     c
 }
 
-/// The real roots of c0 + c1 x + c2 x^2.
+/// The real roots of the polynomial c0 + c1 x + c2 x^2.
 fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
     let size = c.hi.abs().max(b.hi.abs()).max(a.hi.abs());
     if a.hi.abs() <= ZEROS[0] * size {
@@ -293,7 +293,7 @@ fn roots([c, b, a]: [Long; 3]) -> Vec<f64> {
     if far.hi == 0.0 { vec![0.0] } else { vec![(far / a).hi, (c / far).hi] }
 }
 
-/// The roots of a polynomial without odd powers.
+/// The four roots of a quartic without odd powers.
 fn roots_of_even_quartic(&[a0, _, a2, _]: &Quartic) -> [Complex; 4] {
     let (zero, half) = (Long::from(0.0), Long::from(0.5));
     let square = a2 * a2 * half * half - a0;

@@ -1,4 +1,4 @@
-//! The drift of a body that spins steadily on a slope: across it, not down.
+//! The drift of a body that spins steadily on a slope, which is across the slope, not down.
 //!
 //! ```text
 //! theta - theta0 = -sin(beta) C cos phi                                 it leans a little more on one side of its circle
@@ -6,12 +6,12 @@
 //! C = (Z + (S3 I1 A - S1 I3 L)/(D Om))/(J (kappa - Om^2)),   W = -(I3 L/(D Om) + (w1_t - ct w1) C)/s
 //! S1 = -2 I1 ct w1 + I3 w3 + (Z/s)(V - L w1),   S3 = I3 w1 + (Z/s) A w1        d(J w2')/d(w1, w3)
 //! ```
-//! This is the steady rolling to first order in the slope beta: Om is the precession, V the velocity of the centre along e2, and
-//! w1_t, w3_t, V_t are derivatives with respect to theta along the lines of `contact::reduced`, where A, L, J, D and ct are explained, too;
-//! Z is the height of the centre. At kappa = Om^2 the nutation is in resonance with the precession, and the body runs downhill. With
-//! kappa < 0 it leaves the steady state.
+//! These formulas hold for steady rolling to first order in the slope beta. Om is the precession, V the velocity of the
+//! centre along e2; w1_t, w3_t, V_t are derivatives with respect to theta along the lines of `contact::reduced`, which
+//! also explains A, L, J, D and ct; Z is the height of the centre. At kappa = Om^2 the nutation is in resonance with
+//! the precession, and the body runs downhill. With kappa < 0 the body leaves the steady state.
 //!
-//! Error: 64 ulp of the largest term; of second order in the slope as a law of motions.
+//! Error: 64 ulp of the largest term; the formulas themselves are exact to first order in the slope.
 //!
 //! ```
 //! use spincyl::{Body, State, sideways::slope_drift, steady};
@@ -31,7 +31,7 @@ use crate::laws::contact::Contact;
 use crate::laws::contact::rolling::centre_velocity;
 use crate::laws::state::{State, drilling_of};
 
-/// How a body that spins steadily drifts on a small slope.
+/// The drift of a body that spins steadily on a small slope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SlopeDrift {
@@ -41,8 +41,8 @@ pub struct SlopeDrift {
     pub resonance: f64,
 }
 
-/// The drift of a body in a steady state of rolling; both numbers are NaN for a state that is not steady in rolling, and
-/// that does not precess.
+/// The drift of a body in a steady state of rolling; both numbers are NaN for a state that is not steady in rolling or
+/// does not precess.
 ///
 /// ```
 /// use spincyl::{Body, sideways::slope_drift, steady};

@@ -211,7 +211,7 @@ fn a_body_of_several_circles_comes_back_from_a_file_to_the_last_bit() {
     };
     assert_eq!(from_str::<Body>(&cup(1.1).to_string()).unwrap().circles().len(), 2);
     for (file, why) in [
-        (cup(1.2), "ell = 1.1: expected the number of the first of the circles"),
+        (cup(1.2), "ell = 1.1: expected the number of the first circle in `circles`"),
         (cup(-1.2), "circles = "),
         (
             json!({"ell": 0.0, "i1": 0.5, "i3": 0.4, "circles": []}),

@@ -5,9 +5,9 @@
 //! J = I1 c^2 + I3 s^2 + Z^2,   F_h = Z tan(theta_k) Om^2 towards the apex
 //! N_k = (-g_o - ct J w_h^2)/D,   N_o = (g_k + ct J w_h^2)/D,   ct = cot theta_k
 //! ```
-//! The circle at the narrow end, which is the lower one for theta_k < pi/2, carries nothing at Om^2 = |g|/(J tan theta_k),
-//! with g of the wide one. There the friction is Z |g|/J per weight; with less friction the body slides away from the apex
-//! before that end rises.
+//! The circle at the narrow end, which is the lower one for theta_k < pi/2, carries nothing at Om^2 = |g|/(J tan
+//! theta_k), with g of the wide circle. At this rate the friction is Z |g|/J per weight; with less friction the body
+//! slides away from the apex before the narrow end rises.
 
 use super::{Body, Border, Circle, CircleBorder, landing_angle};
 
@@ -55,8 +55,8 @@ impl Body {
         })
     }
 
-    /// The circles on which, together with the next one, the body lies at rest: its centre of mass is between both points
-    /// of contact.
+    /// The indices k for which the body lies at rest on the circles k and k + 1: its centre of mass is between both
+    /// contact points.
     pub fn rests(&self) -> Vec<usize> {
         (0..self.borders().len()).filter(|k| self.rests_on(*k)).collect()
     }

@@ -3,29 +3,30 @@
 //! ```text
 //! from the other end   theta -> pi - theta,  l -> -l,  w2, w3, psi -> -,  phi + pi,  the row of circles reversed
 //! ```
-//! The walk sees one circle as a body of its own, with the circle that lands next at theta_end. It turns the body where the
-//! other border of that circle is near, so that each landing is one at theta_end. Results are told from the lower end.
+//! A motion treats one circle as a body with a single rim: the circle on which the body stands, with the circle that
+//! lands next at theta_end. It turns the body end for end where the inclination nears the other end of this circle's
+//! range, so that each landing is at theta_end. Results refer to the lower end of the body.
 //!
-//! Error: none; the borders are those of `profile`.
+//! Error: none beyond that of the inclinations from `profile`.
 
 use super::profile::{CircleRow, Landings};
 use super::{Body, Circle, Rim};
 use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Where one circle of a body follows another, while the body leans on.
+/// The place where the contact passes from one circle of a body to the next as the inclination grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct CircleBorder {
     /// The inclination at which both circles touch the table, in radians.
     pub theta: f64,
-    /// The distance of both points of contact there, in R; 0 at a smooth joint.
+    /// The distance between the two contact points at this inclination, in R; 0 at a smooth joint.
     pub span: f64,
 }
 
 impl Body {
-    /// The inclinations at which the contact passes from one circle of the body to the next, in ascending order, and the
-    /// distances of the two points of contact there.
+    /// The inclinations at which the contact passes from one circle of the body to the next, in ascending order, each
+    /// with the distance between the two contact points at this inclination.
     ///
     /// ```
     /// let can = spincyl::Body::solid(2.0)?; // it lies on both rims at pi/2
@@ -41,7 +42,7 @@ impl Body {
         }
     }
 
-    /// This body on the circle of a row that carries.
+    /// This body on the current circle of a row of circles.
     pub(super) fn on(self, row: CircleRow) -> Self {
         let Circle { radius, depth, fillet } = row.here();
         let [low, theta_end] = row.range();
@@ -66,7 +67,7 @@ impl Body {
         }
     }
 
-    /// Whether one of these circles, of which the body is made, lies in line with two others, with which it touches the table.
+    /// Whether one of the given circles, from which the body was made, touches the table together with two others.
     pub(crate) fn passes_over(&self, given: &[Circle]) -> bool {
         self.row.is_some_and(|row| row.passes_over(given))
     }
@@ -84,19 +85,20 @@ impl Body {
         }
     }
 
-    /// The circle that lands at theta_end; without one, the mirror image of the circle that carries.
+    /// The circle that lands at theta_end; if there is none, the mirror image of the circle on which the body stands.
     pub(crate) fn next_rim(&self) -> Rim<f64> {
         let here = self.shape().rim;
         let next = self.row.as_ref().and_then(CircleRow::next);
         next.map_or(Rim { ell: -here.ell, ..here }, Circle::rim)
     }
 
-    /// The circle that carries, and the one that lands at theta_end or its mirror image.
+    /// The circle on which the body stands, and the circle that lands at theta_end or, without one, the mirror image of
+    /// the first.
     pub(crate) fn rims(&self) -> [Rim<f64>; 2] {
         [self.shape().rim, self.next_rim()]
     }
 
-    /// The circles that may land.
+    /// The circles of the body that may land.
     pub(crate) fn landings(&self) -> Landings {
         match &self.row {
             Some(row) => row.landings(),
@@ -104,40 +106,40 @@ impl Body {
         }
     }
 
-    /// The number of the circle that carries, as seen from the same end.
+    /// The index of the circle on which the body stands, counted from the end to which the state refers.
     pub(crate) fn here_is(&self) -> usize {
         self.row.map_or(0, |row| row.here_is())
     }
 
-    /// The body with this circle carrying, by its number as seen from the same end, as seen from the other end.
+    /// The body as seen from its other end, standing on circle `at`, an index that is counted from the present end.
     pub(crate) fn turned_on(&self, at: usize) -> Self {
         self.row.and_then(|row| row.at(at)).map_or(*self, |row| self.on(row.turned()))
     }
 
-    /// Whether the body is seen from the end that is farther from a circle at an end, whose face then is at theta = pi.
+    /// Whether the body stands on an end circle and is seen from the opposite end, so that its face is at theta = pi.
     pub(crate) fn is_seen_from_afar(&self) -> bool {
         self.low > 0.0 && self.theta_end == PI
     }
 
-    /// The body with the circle carrying that lands at theta_end, as seen from the other end.
+    /// The body as seen from its other end, standing on the circle that lands at theta_end.
     pub(crate) fn beyond(&self) -> Self {
         self.turned_on(self.here_is() + 1)
     }
 
-    /// The body as seen from its other end, with the same circle carrying.
+    /// The body as seen from its other end, standing on the same circle.
     pub(crate) fn turned(&self) -> Self {
         self.row.map_or(*self, |row| self.on(row.turned()))
     }
 
-    /// The body with this circle carrying, by its number as seen from the same end. It is seen from the other end if
-    /// that is nearer to a circle at an end, whose face then is at theta = 0.
+    /// The body on circle `at`, an index that is counted from the present end. If `at` is an end circle, the result is
+    /// seen from that end, so that the face is at theta = 0.
     pub(crate) fn on_circle(&self, at: usize) -> Self {
         let Some(row) = self.row.and_then(|row| row.at(at)) else { return *self };
         let body = self.on(row);
         if body.is_seen_from_afar() { body.turned() } else { body }
     }
 
-    /// The body with the circle carrying that does so at this inclination, told from the lower end of the body.
+    /// The body on the circle that touches the table at `theta`, an inclination of the lower end of the body.
     pub(crate) fn at(&self, theta: f64) -> Self {
         let Some(mut row) = self.row else { return *self };
         if row.is_over() {
@@ -166,7 +168,7 @@ impl Body {
         row.and_then(|row| row.at(usize::from(circle))).map_or(*self, |row| self.on(row))
     }
 
-    /// This body, standing on the circle that touches the table at this inclination.
+    /// This body, seen from its lower end, on the circle that touches the table at this inclination.
     pub(crate) fn told_at(&self, theta: f64) -> Self {
         self.standing_on(self.at(theta).view().circles.map_or(0, |[here, _]| here))
     }
@@ -180,7 +182,7 @@ impl Body {
         )
     }
 
-    /// Where the circle that carries stands in the body.
+    /// The circle on which the body stands: its place in the body, and the inclinations at which it touches the table.
     pub(crate) fn view(&self) -> View {
         let Some(row) = &self.row else { return View::default() };
         let number = |row: &CircleRow| row.number() as u8;
@@ -196,12 +198,12 @@ impl Body {
         self.row.is_some()
     }
 
-    /// Whether the circle that carries touches the next one at a smooth joint.
+    /// Whether the circle on which the body stands touches the next one at a smooth joint.
     pub(crate) fn joins_next(&self) -> bool {
         self.row.is_some_and(|row| row.joins_next())
     }
 
-    /// Whether one of several circles lands at this inclination, told from the lower end of the body.
+    /// Whether a circle lands at `theta`, an inclination of the lower end of the body; false for a body without a row of circles.
     pub(crate) fn lands_at(&self, theta: f64) -> bool {
         self.row.is_some_and(|row| row.borders().any(|[border, span]| span > 0.0 && theta == border))
     }
@@ -211,27 +213,27 @@ impl Body {
         self.row.is_some_and(|row| row.borders().any(|[_, span]| span == 0.0))
     }
 
-    /// The inclinations within which the circle that carries does so.
+    /// The inclinations between which the body stands on its present circle, in radians.
     pub(crate) fn carries(&self) -> [f64; 2] {
         [self.low, self.theta_end]
     }
 }
 
-/// How the circle that carries is seen, and its place in the body.
+/// The end from which a body is seen, the circle on which it stands, and the inclinations between which it does so.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub(crate) struct View {
     /// Whether the state refers to the upper end of the body.
     pub over: bool,
-    /// The numbers of the circle that carries and of the one that lands at theta_end; None for a body with one circle or
-    /// two equal rims.
+    /// The indices, from the lower end of the body, of the circle on which it stands and of the circle that lands at
+    /// theta_end; None for a body with one circle or two equal rims.
     pub circles: Option<[u8; 2]>,
-    /// Both borders of the circle, for inclinations as in the state and for inclinations of the lower end.
+    /// The least and the largest inclination of the circle, each as [inclination of the state, inclination of the lower end].
     pub borders: [[f64; 2]; 2],
 }
 
 impl View {
-    /// The inclination of the lower end of the body.
+    /// The inclination of the lower end of the body, from the inclination `theta` of the upper end.
     pub fn tells(&self, theta: f64) -> f64 {
         let border = self.borders.iter().find(|[seen, _]| *seen == theta);
         border.map_or(PI - theta, |[_, told]| *told)

@@ -5,7 +5,7 @@ use crate::error::{Error, within};
 use crate::numbers::Sum;
 use serde::{Deserialize, Serialize};
 
-/// The numbers of a body. The last two may be missing and then follow from the others.
+/// The numbers of a body in a file. `excess` and `circles` may be missing and then follow from the others.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyFile {
@@ -51,7 +51,7 @@ impl TryFrom<BodyFile> for Body {
                 ("fillet", of.fillet, body.fillet),
                 ("theta_end", ends, body.theta_end),
             ] {
-                within(name, given, (own, own), "the number of the first of the circles")?;
+                within(name, given, (own, own), "the number of the first circle in `circles`")?;
             }
             body
         } else {

@@ -29,17 +29,17 @@ pub(super) struct Edge {
 const ALIKE: f64 = 1e-12;
 
 impl Edge {
-    /// The edge of this radius, height and fillet, alone: it touches at every inclination.
+    /// A single edge with this radius, height and fillet; it touches the table at every inclination.
     pub fn of(r: f64, z: f64, rho: f64) -> Self {
         Self { r, z, rho, from: 0.0, to: PI }
     }
 
-    /// The radius of the outermost circle.
+    /// The outer radius of the edge, with its fillet.
     pub fn outer(&self) -> f64 {
         self.r + self.rho
     }
 
-    /// The edge as it would be at the same distance above a height as this one is below it.
+    /// The mirror image of the edge in the horizontal plane at a height.
     pub fn mirrored(&self, height: f64) -> Self {
         Self { z: 2.0 * height - self.z, ..*self }
     }
@@ -48,16 +48,16 @@ impl Edge {
         self.r * theta.sin() - self.z * theta.cos() + self.rho
     }
 
-    /// Derivative of the depth.
+    /// Derivative of the depth of the edge with respect to the inclination.
     fn lever(&self, theta: f64) -> f64 {
         self.r * theta.cos() + self.z * theta.sin()
     }
 }
 
-/// The edges of a body.
+/// The edges of a body that can touch the table.
 pub(super) struct Hull {
     edges: Vec<Edge>,
-    /// Lengths below this one count as zero.
+    /// Lengths below `small` count as zero.
     small: f64,
 }
 
@@ -102,7 +102,7 @@ impl Hull {
     pub fn sequence(&self) -> Vec<Edge> {
         let mut all: Vec<Edge> = self.rim().into_iter().collect();
         let mut from = 0.0;
-        // Each edge can carry once, and a ball between its cuts again.
+        // Each edge can touch the table once, and a ball between its cuts twice.
         while let Some(last) = all.last().filter(|_| all.len() <= 2 * self.edges.len()) {
             let (end, next) = self.after(last, from);
             let Some(next) = next else { break };
@@ -112,13 +112,13 @@ impl Hull {
         all
     }
 
-    /// The inclination up to which an edge carries the body from the inclination `from` on, and the edge that touches the
-    /// table there; pi and None if no other one does.
+    /// The inclination up to which the body stands on `rim`, from the inclination `from` on, and the edge that touches
+    /// the table at its end; pi and None if no other edge lands.
     pub fn after(&self, rim: &Edge, from: f64) -> (f64, Option<Edge>) {
         let others = || self.edges.iter().filter(|edge| !self.same(edge, rim));
         let passes = others().filter_map(|other| self.passes(rim, other));
         let end = passes.filter(|theta| *theta >= from - ALIKE).fold(rim.to, f64::min);
-        // Of several that touch at once the body goes on to the one that becomes deepest.
+        // Of several edges that touch at once the body goes on to the one that becomes deepest.
         let touches = |edge: &&Edge| {
             (edge.depth(end) - rim.depth(end)).abs() <= self.small && end <= edge.to && end >= edge.from
         };

@@ -3,10 +3,10 @@
 //! ```text
 //! m = int r^2,   I3 = int r^4/2 / m,   I1 = int (r^4/4 + r^2 z^2)/m - z0^2,   z0 = int r^2 z / m
 //! ```
-//! The integrals are those of `body::parts`, whose rule is exact on each straight piece of the outline. A piece that goes
-//! down takes away what is within it.
+//! `body::parts` computes the integrals; its rule is exact on each straight piece of the outline. For a piece that goes
+//! down, the volume between this piece and the axis is subtracted.
 //!
-//! Error: a few roundings of the largest integral that is added or taken away.
+//! Error: a few roundings of the largest integral that is added or subtracted.
 
 use super::Body;
 use super::hull::Edge;
@@ -40,7 +40,7 @@ impl Body {
             None => Form::Solid { radii, bores: [0.0; 2], ends, fillet: 0.0 },
             Some(0.0) => Form::Wall { radii, ends },
             Some(wall) => {
-                within("wall", wall, (0.0, bottom.min(top)), "a wall of at most the smaller radius")?;
+                within("wall", wall, (0.0, bottom.min(top)), "0 <= wall <= the smaller of bottom and top")?;
                 Form::Solid { radii, bores: radii.map(|r| r - wall), ends, fillet: 0.0 }
             }
         };
@@ -50,7 +50,7 @@ impl Body {
     /// Uniform cone that stands on its tip, of this height over the radius R of its base.
     ///
     /// # Errors
-    /// Those of [`frustum`](Self::frustum), for this height.
+    /// Those of [`frustum`](Self::frustum), whose argument `height` is this height.
     pub fn cone(height: f64) -> Result<Self, Error> {
         Self::frustum(0.0, 1.0, height, None)
     }
@@ -121,7 +121,7 @@ impl Body {
     }
 }
 
-/// The body of forms that are added, or taken away with the sign -1.
+/// The body of a sum of forms, each with the sign 1, or -1 for a form that is taken away.
 fn of_forms(forms: &[(Form, f64)], edges: Vec<Edge>) -> Result<Body, Error> {
     let masses: Vec<_> = forms.iter().map(|(form, sign)| form.mass().times(*sign)).collect();
     Ok(of_masses(&masses, edges, widest)?.body)

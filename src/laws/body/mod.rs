@@ -48,7 +48,7 @@ pub(crate) use rim::{Border, CircleDown, Rim, Shape};
 pub(crate) use tube::{Wall, rounded_tube, tube, tube_or_nan};
 
 const ELL: (f64, f64) = (0.0, 1e150);
-/// A smaller moment would need a mass within 3 % of R of the centre; such a number usually is a moment in kg m^2.
+/// Least and largest I1. A smaller moment would need a mass within 3 % of R of the centre; it usually is a moment in kg m^2.
 const I1: (f64, f64) = (1e-3, 1e300);
 const I3: (f64, f64) = (1e-150, 1e150);
 const FILLET: (f64, f64) = (0.0, 1.0);
@@ -71,14 +71,14 @@ pub struct Body {
     rim: Sum<f64>,
     excess: Sum<f64>,
     theta_end: f64,
-    /// The inclination at which the circle before the one that carries lands; 0 without one.
+    /// The least inclination at which the body stands on its present circle, where the circle before it lands; 0 without one.
     low: f64,
     /// The circles of the body, if they are neither one circle nor two equal rims.
     row: Option<CircleRow>,
 }
 
 impl Body {
-    /// Solid cylinder of aspect ratio `ell` in [0, 1e150]; `ell = 0` is the thin disk.
+    /// Uniform solid cylinder of aspect ratio `ell` (length over diameter) in [0, 1e150]; `ell = 0` is the thin disk.
     ///
     /// # Errors
     /// `OutOfRange` for an `ell` outside [0, 1e150].
@@ -86,8 +86,8 @@ impl Body {
         Self::tube(ell, 0.0)
     }
 
-    /// Uniform tube of aspect ratio `ell` in [0, 1e150]. Its `bore` in [0, 1] is the ratio of inner to outer radius: 0
-    /// is a solid cylinder, 1 a thin wall (a hoop for `ell = 0`).
+    /// Uniform tube of aspect ratio `ell` (length over diameter) in [0, 1e150]. Its `bore` in [0, 1] is the ratio of
+    /// inner to outer radius: 0 is a solid cylinder, 1 a thin wall (a hoop for `ell = 0`).
     ///
     /// # Errors
     /// `OutOfRange` for an `ell` outside [0, 1e150] or a `bore` outside [0, 1].
@@ -114,7 +114,7 @@ impl Body {
         if body.is_ball() && body.ell > 0.0 { body.with_theta_end(FRAC_PI_2) } else { Ok(body) }
     }
 
-    /// Uniform tube whose centre is at the height `ell` above the circle of the rim: half its length minus the fillet.
+    /// Uniform tube whose centre of mass is at the height `ell` above the circle of the rim: half the length minus the fillet.
     pub(crate) fn tube_on(ell: f64, bore: f64, fillet: f64) -> Result<Self, Error> {
         if fillet == 0.0 {
             return Self::tube(ell, bore);
@@ -179,8 +179,9 @@ impl Body {
         if theta_end.is_nan() { Ok(body) } else { body.with_theta_end(theta_end) }
     }
 
-    /// The body with these rows of radius, height above the centre of mass, and fillet, from the lower end up; rows with a
-    /// radius of NaN do not count. Without a row it is the body of these numbers, of which else only i1 and i3 count.
+    /// The body with these rows of radius, height above the centre of mass, and fillet, from the lower end up; rows
+    /// with a radius of NaN do not count. Of `numbers`, as in `of_numbers`, only i1 and i3 are then used. Without a row
+    /// it is the body of `numbers`.
     pub(crate) fn of_rows(numbers: [f64; 6], rows: &[[f64; 3]]) -> Result<Self, Error> {
         let circles = circles_of_rows(rows);
         if circles.is_empty() {
@@ -210,7 +211,7 @@ impl Body {
         Self::rounded(offset, i1, i3, 1.0)
     }
 
-    /// Returns this body with another end of its motion: the inclination `theta_end` in (0, pi], in radians, at which a
+    /// Returns this body with a motion that ends at the inclination `theta_end` in (0, pi], in radians, at which a
     /// stem, a cap or the shoulder of a bottle lands.
     ///
     /// # Errors
@@ -296,7 +297,7 @@ impl Body {
         }
     }
 
-    /// Returns the body if its moments are those of a real body.
+    /// Returns the body, or an error if no real body has its moments of inertia.
     fn of_this_world(self) -> Result<Self, Error> {
         let Self { i1, i3, .. } = self;
         if i3 > 2.0 * i1 {
@@ -396,12 +397,12 @@ impl Body {
         search::crossing(left, 0.0, FRAC_PI_2, pull.hi, -ell)
     }
 
-    /// Sine and cosine of theta_end.
+    /// Sine and cosine of theta_end, the inclination at which another circle lands.
     pub(crate) fn border_angle(&self) -> (f64, f64) {
         landing_angle(self.theta_end)
     }
 
-    /// The circle of the body that lands at theta_end, and the one before it.
+    /// The circle on which the body stands and the circle that lands at theta_end, both at the inclination theta_end.
     pub(crate) fn border(&self) -> Border<f64> {
         Border::between([self.shape().rim, self.next_rim()], landing_angle(self.theta_end))
     }
@@ -457,7 +458,7 @@ impl Body {
         if self.rim.hi == 0.0 && self.fillet == 0.0 { 0.0 } else { self.range() }
     }
 
-    /// The numbers of the body that enter the equations of motion.
+    /// The numbers of the body that enter the equations of motion: its rim and its moments of inertia.
     #[inline(always)]
     pub(crate) fn shape(&self) -> Shape<f64> {
         let rim = Rim { ell: self.ell, a: self.rim.hi, rho: self.fillet };
@@ -478,11 +479,11 @@ pub(crate) fn beyond<T: Real>(ell: T, fillet: T) -> T {
     zero.select_lt(ell, fillet.select_lt(one, level, round), round)
 }
 
-/// Whether a body at this inclination is beyond the `range` in which its circle carries, or is at a border of it and does
-/// not tilt away from there, where it tilts with w2, or with w2' if w2 vanishes.
+/// Whether an inclination is outside `range`, within which the body stands on its present circle, or at an end of the
+/// range without moving back into it. It moves with w2, or with w2' if w2 vanishes.
 ///
-/// Where a circle rises because its normal force has vanished, w2' vanishes but for a rounding error, too. At a border that is
-/// no right angle theta does not show the difference.
+/// Where a circle rises because its normal force has vanished, w2' vanishes too, but for a rounding error. At an end of
+/// the range that is no right angle, theta does not show the difference.
 pub(crate) fn leaves([low, high]: [f64; 2], theta: f64, [w2, rate]: [f64; 2]) -> bool {
     const STANDS: f64 = 1e-14;
     let beyond = |by: f64, border: f64, way: f64| {
@@ -492,34 +493,35 @@ pub(crate) fn leaves([low, high]: [f64; 2], theta: f64, [w2, rate]: [f64; 2]) ->
     high < PI && beyond(high - theta, high, 1.0) || low > 0.0 && beyond(theta - low, low, -1.0)
 }
 
-/// The border of the `range` that is nearest to an inclination.
+/// The end of the `range` that is nearest to an inclination.
 pub(crate) fn border_at([low, high]: [f64; 2], theta: f64) -> f64 {
     if low > 0.0 && theta - low < high - theta { low } else { high }
 }
 
-/// The sine of the angle that is left to a border.
+/// The sine of the angle from `angle` to (s, c), both given by sine and cosine.
 pub(crate) fn tilt((s, c): (f64, f64), angle: (f64, f64)) -> f64 {
     s * angle.1 - c * angle.0
 }
 
-/// Inclinations change more slowly than this where a body just leaves a border.
+/// Largest rate of the inclination, in sqrt(g/R), at which a body counts as just leaving an end of the range of its circle.
 const LEAVES: f64 = 1e-9;
 
-/// How far beyond a border an inclination may be by the roundings of its sine and cosine, where it leaves the border at the
-/// rate `away` and has not landed there again. At a right angle the cosine has all its digits.
+/// How far beyond `border`, an inclination at which a circle lands, an inclination may be by rounding its sine and
+/// cosine, if it leaves at the rate `away` and no circle has landed since. At a right angle the cosine has all its
+/// digits.
 pub(crate) fn rounding_at<T: Real>(border: f64, away: T) -> T {
     let leaves = border != FRAC_PI_2 && away.splat(-LEAVES).is_lt(away);
     away.splat(if leaves { 4.0 * f64::EPSILON } else { 0.0 })
 }
 
-/// Sine and cosine of an inclination at which something lands; those of a right angle are exact.
+/// Sine and cosine of an inclination at which a circle lands; those of a right angle are exact.
 pub(crate) fn landing_angle(theta: f64) -> (f64, f64) {
     if theta == FRAC_PI_2 { (1.0, 0.0) } else { theta.sin_cos() }
 }
 
 impl core::fmt::Display for Body {
-    /// The numbers of the body in its natural units; of a body of several circles, those of the one on which it stands.
-    /// The fillet of a sharp rim is left out, and so is a theta_end of pi/2 or pi.
+    /// Writes the numbers of the body in natural units; for a body of several circles, those of the circle on which it
+    /// stands. The fillet of a sharp rim is left out, and so is a theta_end of pi/2 or pi.
     ///
     /// ```
     /// use spincyl::Body;

@@ -8,7 +8,7 @@
 //! nodes is exact. `hull` computes on which of their edges the body stands, and the inclination at which another one
 //! touches the table.
 //!
-//! Error: a few roundings of the moments about a point within the body; theta_end has as many.
+//! Error: a few roundings of the moments about a point within the body, and as many of theta_end.
 //!
 //! ```
 //! use spincyl::body::parts::{Amount, BodyPart, Form, assembled};
@@ -124,7 +124,7 @@ pub struct Assembled {
     pub centre: f64,
 }
 
-/// Mass, first and second moment of z, and the moment of inertia about the axis.
+/// Mass of a part or of a body, its centre along the axis, and its second moments along and about the axis.
 #[derive(Clone, Copy)]
 pub(super) struct Mass {
     whole: f64,
@@ -141,10 +141,10 @@ const NODES: [[f64; 2]; 4] = [
     [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
     [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
 ];
-/// The least theta_end of a body.
+/// The least theta_end of an assembled body, in radians.
 const LEAST_END: f64 = 1e-6;
-/// Largest height of a part over the largest radius; for a body farther from the origin rounding would spoil the
-/// heights.
+/// Largest distance of an edge from the origin of the heights, over the largest outer radius: for a body farther away
+/// rounding would spoil the heights.
 const FARTHEST: f64 = 1e5;
 /// Allowed lengths, masses and densities.
 const SIZE: (f64, f64) = (0.0, 1e100);
@@ -283,7 +283,7 @@ impl Form {
     }
 }
 
-/// The mass of a thin disk per height at density 1, and its mean square of the radius.
+/// The mass of a thin disk per unit of height at density 1, and the mean square of the distance from the axis.
 fn disk(outer: f64, inner: f64) -> [f64; 2] {
     [PI * (outer - inner), 0.5 * (outer + inner)]
 }
@@ -303,7 +303,8 @@ impl Mass {
         })
     }
 
-    /// The mass of slices along a line between two heights, each with its mass per share of the line.
+    /// The mass of slices along a line between two heights. `slice` gives, at a share of the line from 0 to 1, the mass
+    /// per share and the mean squared radius.
     fn along(ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]) -> Self {
         let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
             NODES
@@ -324,7 +325,7 @@ impl Mass {
         }
     }
 
-    /// This mass without a part of it.
+    /// This mass without `inner`, which is a part of it.
     fn without(self, inner: Self) -> Self {
         let whole = self.whole - inner.whole;
         let height = (self.whole * self.height - inner.whole * inner.height) / whole;
@@ -375,7 +376,8 @@ pub fn assembled(parts: &[BodyPart]) -> Result<Assembled, Error> {
     of_masses(&masses, edges, |circles| circles[0].outer())
 }
 
-/// The body of these masses with these edges, whose unit of length is chosen among the circles on which it stands.
+/// The body of these masses, which touches the table with these edges. `unit` chooses its unit of length R from the
+/// edges on which it stands one after the other.
 pub(super) fn of_masses(
     masses: &[Mass],
     edges: Vec<Edge>,

@@ -1,4 +1,4 @@
-//! The profile of a body: a row of circles, one after the other of which carries the body as it tilts over.
+//! The profile of a body: a row of circles on which the body stands one after the other as it tilts over.
 //!
 //! ```text
 //! Z_k(theta) = l_k c + a_k s + rho_k       height of the centre above the table where circle k carries
@@ -12,7 +12,7 @@
 //! of the circle that carries it: from the other end theta, l, w2, w3 and psi change to pi - theta, -l, -w2, -w3 and -psi,
 //! phi to phi + pi, and the row is reversed.
 //!
-//! Error: a few roundings of the angle, divided by sqrt(1 - (drho/m)^2), which is 1 for two sharp circles.
+//! Error of theta_k: a few roundings, divided by sqrt(1 - (drho/m)^2), which is 1 for two sharp circles.
 
 use super::{landing_angle, rim::Rim};
 use crate::error::{Error, within};
@@ -20,7 +20,7 @@ use core::f64::consts::PI;
 
 /// The largest number of circles of a body.
 pub(crate) const MOST_CIRCLES: usize = 8;
-/// m and |drho| that differ by less than this share of m are equal.
+/// m and |drho| (see the top of this file) count as equal if they differ by less than this share of m.
 const JOINED: f64 = 1e-12;
 
 /// A circle with which a body of revolution touches the table, rounded by a fillet. All lengths are in one unit.
@@ -40,13 +40,13 @@ impl Circle {
         Rim { ell: self.depth, a: self.radius, rho: self.fillet }
     }
 
-    /// The height of the centre of mass above the table where this circle carries the body, at an inclination.
+    /// The height of the centre of mass above the table where this circle touches the table at the inclination `theta`.
     pub fn height(self, theta: f64) -> f64 {
         self.rim().height(theta.sin_cos())
     }
 
-    /// The border between this circle and the next one, and the distance D of their contacts there; None where one lies
-    /// inside the other.
+    /// The inclination at which this circle and `next` both touch the table, and the distance D of their contact
+    /// points; None where one circle lies inside the other.
     fn border(&self, next: &Self) -> Option<[f64; 2]> {
         let [a, l, rho] = [self.radius - next.radius, self.depth - next.depth, self.fillet - next.fillet];
         let (far, turn) = (a.hypot(l), a.atan2(l));
@@ -60,21 +60,22 @@ impl Circle {
     }
 }
 
-/// The circles that may land, as seen from the end from which the body is seen.
+/// The circles of a body that may land, as seen from the end to which the state refers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Landings {
     pub rims: [Rim<f64>; MOST_CIRCLES],
-    /// The first and the last of the circles that smooth joints connect; those of the circle that carries come first.
+    /// The indices of the first and the last circle of each group that smooth joints connect; the first group holds the
+    /// circle on which the body stands.
     groups: [[u8; 2]; MOST_CIRCLES],
-    /// The numbers of the groups and of the circles.
+    /// The number of groups, and the number of circles.
     pub count: usize,
     pub circles: usize,
-    /// Cosines of the upper borders.
+    /// Cosines of the inclinations up to which each circle touches the table.
     tops: [f64; MOST_CIRCLES],
 }
 
 impl Landings {
-    /// One circle, or two.
+    /// The landings of a body with one circle, `here`, or with two.
     pub fn of(here: Rim<f64>, there: Option<Rim<f64>>) -> Self {
         let mut groups = [[0; 2]; MOST_CIRCLES];
         groups[1] = [1; 2];
@@ -83,19 +84,19 @@ impl Landings {
         Self { rims, groups, count, circles: count, tops: [-1.0; MOST_CIRCLES] }
     }
 
-    /// The circle of a group that is the lowest one of these at an inclination with this cosine.
+    /// The index of the circle of a group that is lowest at the inclination with this cosine.
     pub fn lowest(&self, group: usize, cosine: f64) -> usize {
         let [first, last] = self.groups[group].map(usize::from);
         (first..last).find(|k| cosine >= self.tops[*k]).unwrap_or(last)
     }
 
-    /// The circles of a group.
+    /// The circles of the group with this index.
     pub fn group(&self, group: usize) -> &[Rim<f64>] {
         let [first, last] = self.groups[group].map(usize::from);
         &self.rims[first..=last]
     }
 
-    /// The least angle from an inclination to a joint of the group of the circle that carries.
+    /// The least angle, in radians, from an inclination to a smooth joint in the group of the circle on which the body stands.
     pub fn away_from_joint(&self, angle: (f64, f64)) -> f64 {
         let [first, last] = self.groups[0].map(usize::from);
         let joint = |k: usize| (self.tops[k].acos() - angle.0.atan2(angle.1)).abs();
@@ -103,12 +104,12 @@ impl Landings {
     }
 }
 
-/// The circles of a body in the order in which they carry it, as seen from one end.
+/// The circles of a body in the order in which they touch the table as the inclination grows, as seen from one end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CircleRow {
     circles: [Circle; MOST_CIRCLES],
     count: usize,
-    /// The circle that carries.
+    /// The index of the circle on which the body stands.
     at: usize,
     /// Whether the states refer to the upper end of the body.
     over: bool,
@@ -127,7 +128,10 @@ impl CircleRow {
             while row.count > 0 {
                 let last = row.circles[row.count - 1];
                 let Some([border, _]) = last.border(circle) else {
-                    return refuse(k as f64, "circles with fillets that do not lie inside each other");
+                    return refuse(
+                        k as f64,
+                        "circles of which none, with its fillet, lies inside another one; this value is the index of one",
+                    );
                 };
                 // One that touches only at an end, as the inner edge of a tube does, never carries.
                 if (border - PI).abs() < JOINED {
@@ -155,13 +159,13 @@ impl CircleRow {
                 "circles",
                 row.border(k - 1),
                 (f64::MIN_POSITIVE, PI.next_down()),
-                "circles in order, from the lower end up",
+                "circles in order, from the lower end up; two of them meet at this inclination",
             )?;
         }
         Ok(row)
     }
 
-    /// Whether one of these circles, which is not in the row, touches the table together with two that are.
+    /// Whether one of the given circles, which is left out of the row, touches the table together with two that are in it.
     pub fn passes_over(&self, given: &[Circle]) -> bool {
         let touches = |circle: &Circle, k: usize| {
             let (angle, here) = (landing_angle(self.border(k)), self.circles[k].rim());
@@ -172,12 +176,12 @@ impl CircleRow {
         others.into_iter().any(|circle| (1..self.count).any(|k| touches(circle, k - 1)))
     }
 
-    /// The circle that carries.
+    /// The circle on which the body stands.
     pub fn here(&self) -> Circle {
         self.circles[self.at]
     }
 
-    /// The circle that carries at larger inclinations.
+    /// The circle on which the body stands at larger inclinations; None for the last one.
     pub fn next(&self) -> Option<Circle> {
         (self.at + 1 < self.count).then(|| self.circles[self.at + 1])
     }
@@ -186,19 +190,20 @@ impl CircleRow {
         self.circles[k].border(&self.circles[k + 1]).unwrap_or([f64::NAN; 2])
     }
 
-    /// The inclination at which circle k + 1 follows circle k.
+    /// The inclination at which the contact passes from circle k to circle k + 1.
     fn border(&self, k: usize) -> f64 {
         self.both(k)[0]
     }
 
-    /// The borders of the circle that carries the body, as inclinations of the lower end; 0 and pi at the ends.
+    /// The least and the largest inclination, of the lower end, at which the body stands on its present circle; 0 and
+    /// pi at the ends.
     pub fn told(&self) -> [f64; 2] {
         let row = if self.over { self.turned() } else { *self };
         let low = if row.at == 0 { 0.0 } else { row.border(row.at - 1) };
         [low, if row.at + 1 < row.count { row.border(row.at) } else { PI }]
     }
 
-    /// The inclinations between which the current circle carries the body.
+    /// The least and the largest inclination at which the body stands on its present circle, as seen from the present end.
     pub fn range(&self) -> [f64; 2] {
         let [low, high] = self.told();
         let back = |theta: f64| if theta == PI { 0.0 } else { PI - theta };
@@ -210,7 +215,8 @@ impl CircleRow {
         &self.circles[..self.count]
     }
 
-    /// The inclinations at which one circle follows another, and the distances of both contacts there, 0 at a smooth joint.
+    /// The inclinations at which the contact passes from one circle to the next, each with the distance of the two
+    /// contact points, 0 at a smooth joint.
     pub fn borders(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         (1..self.count).map(|k| self.both(k - 1))
     }
@@ -223,17 +229,17 @@ impl CircleRow {
         row
     }
 
-    /// The row with the circle of this number as the one that carries; None if there is no such circle.
+    /// The row with the body standing on the circle of this index; None if there is no such circle.
     pub fn at(&self, at: usize) -> Option<Self> {
         (at < self.count).then_some(Self { at, ..*self })
     }
 
-    /// The number of the circle that carries the body, from the end at which the row begins.
+    /// The index of the circle on which the body stands, from the end at which the row begins.
     pub fn here_is(&self) -> usize {
         self.at
     }
 
-    /// The number of the circle that carries, from the lower end of the body.
+    /// The index of the circle on which the body stands, from the lower end of the body.
     pub fn number(&self) -> usize {
         if self.over { self.count - 1 - self.at } else { self.at }
     }
@@ -243,7 +249,7 @@ impl CircleRow {
         self.over
     }
 
-    /// The circles that may land.
+    /// The circles that may land, in groups that smooth joints connect.
     pub fn landings(&self) -> Landings {
         let row = if self.over { self.turned() } else { *self };
         let mut all = Landings { circles: self.count, ..Landings::of(self.here().rim(), None) };
@@ -270,7 +276,7 @@ impl CircleRow {
         all
     }
 
-    /// Whether the circle that carries touches the next one at a smooth joint.
+    /// Whether the circle on which the body stands touches the next one at a smooth joint.
     pub fn joins_next(&self) -> bool {
         self.at + 1 < self.count && self.both(self.at)[1] == 0.0
     }

@@ -66,8 +66,8 @@ impl<T: Real> Rim<T> {
         self.ell * c + self.a * s
     }
 
-    /// This rim less another one, circle by circle. The other one is that much higher, deeper, wider and farther from the
-    /// centre at each inclination, with all digits where both are equal.
+    /// Differences ell, a and rho of this rim and another one. The circle of contact, depth, height and lever of the
+    /// result are those of this rim less those of the other one, with all digits where both are equal.
     #[inline(always)]
     pub fn less(&self, other: &Self) -> Self {
         Self { ell: self.ell - other.ell, a: self.a - other.a, rho: self.rho - other.rho }
@@ -91,16 +91,16 @@ pub(crate) struct CircleDown<T> {
     pub lever: T,
 }
 
-/// Two neighbouring circles at the inclination at which both touch the table.
+/// Two neighbouring circles of a body at the inclination at which both touch the table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Border<T> {
     /// Sine and cosine of that inclination.
     pub angle: (T, T),
     /// Height Z of the centre of mass.
     pub height: T,
-    /// The circle that touches at smaller inclinations, and the other one.
+    /// The circle that touches the table at smaller inclinations, and the circle that touches it at larger inclinations.
     pub circles: [CircleDown<T>; 2],
-    /// Whether both touch with the same radius A.
+    /// Whether both circles touch the table with the same radius A.
     pub even: bool,
 }
 
@@ -118,7 +118,7 @@ impl Border<f64> {
 }
 
 impl<T: Real> Border<T> {
-    /// The distance D of the two points of contact.
+    /// The distance D of the two contact points.
     pub fn span(&self) -> T {
         self.circles[0].lever - self.circles[1].lever
     }
@@ -132,7 +132,7 @@ impl<T: Real> Border<T> {
     }
 }
 
-/// The numbers of one body, or of eight in lanes, that enter the equations of motion: the rim and the moments.
+/// The numbers of one body, or of eight in SIMD lanes, that enter the equations of motion: the rim and the moments of inertia.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shape<T> {
     pub rim: Rim<T>,

@@ -8,9 +8,9 @@
 //!   q1 = rho^2 f/2 + 2 a rho^3/3 + rho^4/4,  q2 = rho^3 f/3 + pi a rho^4/8 + 2 rho^5/15
 //! sharp, rho = 0:  I3 = (1 + q^2)/2,   I1 = I3/2 + ell^2/3
 //! ```
-//! These formulas are volume integrals; see Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the sharp rim. The
-//! inertia excess is exact to 2^-100 of the larger moment: the tests at the end check it. `test_rounded_reference`
-//! checks the moments of rounded edges to four ulp.
+//! The formulas of m, I3 and I1 are volume integrals; see Jackson et al., Am. J. Phys. 87, 85 (2019), Sec. II, for the
+//! sharp rim. The inertia excess is exact to 2^-100 of the larger moment: the tests at the end check it.
+//! `test_rounded_reference` checks the moments of rounded edges to four ulp.
 
 use super::ELL;
 use crate::numbers::{Real, Sum};
@@ -25,7 +25,7 @@ pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
     ([i1, i3], wall.excess(ell))
 }
 
-/// The numbers that all uniform tubes of one bore share.
+/// Functions of the bore q alone, shared by all uniform tubes of one bore.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<T> {
     /// 1 + q^2 (`size`) and 3 (1 + q^2) (`three`).
@@ -90,7 +90,7 @@ pub(crate) fn rounded_tube<T: Real>(ell: T, bore: T, fillet: T) -> ([T; 2], Sum<
     ([i1.hi, i3.hi], (transverse - axial * number(0.5)) / axial)
 }
 
-/// Returns `ell` where a tube with these numbers exists, NaN elsewhere.
+/// Returns `ell` if a tube with this aspect ratio and bore exists, else NaN.
 #[inline(always)]
 pub(crate) fn tube_or_nan<T: Real>(ell: T, bore: T) -> T {
     let (zero, nan) = (ell.splat(0.0), ell.splat(f64::NAN));

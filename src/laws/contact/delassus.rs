@@ -1,4 +1,4 @@
-//! The inverse inertia of a point of contact: how its velocity changes with an impulse there.
+//! The inverse inertia of a contact point: the change of its velocity per impulse that acts on the point.
 //!
 //! ```text
 //! u' - u = W P,   W = [[A, b], [b, a_n]]       A of the two horizontal axes, b the coupling to the normal impulse
@@ -6,26 +6,26 @@
 //!                 d turns by f = d x (b - mu A d) per |u| dp,   df/dalpha = -d.(b - mu A d) - mu e.A e,   e across d
 //! held:           |A^-1 b| <= mu_s;   else it leaves along the one d with b - mu A d = lam d, lam > 0
 //! ```
-//! W is symmetric and positive for every body and every contact point (Delassus 1917; Routh 1860), and the two horizontal
-//! axes may be any. For every mu the slip at each p is unique, since (u - v).A^-1 (u - v) of two solutions never grows;
-//! so there is one way out of rest.
+//! W is symmetric and positive for every body and every contact point (Delassus 1917; Routh 1860), and the two
+//! horizontal axes may be any. For every mu the slip at each p is unique, since (u - v).A^-1 (u - v) of two solutions
+//! never grows; so a slip can begin from rest in only one way.
 //!
-//! Error: a few roundings; the direction of a slip is known to one.
+//! Error: a few roundings; the direction of a slip has an error of one rounding.
 
 use crate::methods::search::crossing;
 
 /// The velocity that a unit impulse gives the point of contact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Delassus {
-    /// A, the velocity along the two horizontal axes per impulse along them.
+    /// A, the horizontal velocity per horizontal impulse, along the two horizontal axes.
     pub level: [[f64; 2]; 2],
-    /// b, the velocity along these axes per normal impulse.
+    /// b, the horizontal velocity per normal impulse, along the two horizontal axes.
     pub couples: [f64; 2],
     /// a_n, the normal velocity per normal impulse.
     pub normal: f64,
 }
 
-/// The speed of a slip.
+/// The speed |u| of a slip with these two components.
 pub(super) fn speed([u, v]: [f64; 2]) -> f64 {
     u.hypot(v)
 }
@@ -64,8 +64,9 @@ impl Delassus {
         (values, [[cos, sin], [-sin, cos]])
     }
 
-    /// Whether a slip that friction stops before the normal impulse begins lifts the point on the way. It dies out along the
-    /// principal axes as s^k and as s, with s from 1 to 0.
+    /// Whether a contact point leaves the table during a slip that friction stops before the normal impulse begins;
+    /// `lift` is the normal velocity. Along the principal axes of A the slip dies out as s^k and as s, with s from 1 to
+    /// 0.
     pub fn lifts_on_the_way(&self, slip: [f64; 2], lift: f64) -> bool {
         let ([a, b], axes) = self.principal();
         let along = |axis: [f64; 2]| inner(axis, slip) * inner(axis, self.couples);
@@ -75,35 +76,35 @@ impl Delassus {
         s < 1.0 && lift - slow * (1.0 - s) - fast * (1.0 - s.powf(power)) >= 0.0
     }
 
-    /// Whether a slip across the first axis does not change the normal velocity, as for a rim, whose first axis is e_h.
+    /// Whether a slip along the second axis does not change the normal velocity, as for a rim, whose first axis is e_h.
     pub fn is_lean(&self) -> bool {
         self.level[0][1] == 0.0 && self.couples[1] == 0.0
     }
 
-    /// du/dp of a slip along `way` under this friction.
+    /// The change du/dp of a slip along the unit vector `way` per normal impulse, under the coefficient of friction `mu`.
     fn changes(&self, way: [f64; 2], mu: f64) -> [f64; 2] {
         let held = self.level(way);
         [self.couples[0] - mu * held[0], self.couples[1] - mu * held[1]]
     }
 
-    /// The rate at which a slip along `way` grows, per normal impulse.
+    /// The rate d|u|/dp at which a slip along `way` grows, per normal impulse p.
     pub fn growth(&self, way: [f64; 2], mu: f64) -> f64 {
         inner(way, self.changes(way, mu))
     }
 
-    /// The angle per |u| dp by which the direction of a slip along `way` turns, its derivative with respect to that
-    /// direction, and e.A e.
+    /// The angle per |u| dp by which the direction of a slip along `way` turns, the derivative of this rate with
+    /// respect to the direction, and e.A e, with e across the slip.
     pub fn turning(&self, way @ [x, y]: [f64; 2], mu: f64) -> [f64; 3] {
         let ([along, aside], across) = (self.changes(way, mu), [-y, x]);
         let light = inner(across, self.level(across));
         [x * aside - y * along, -(x * along + y * aside) - mu * light, light]
     }
 
-    /// The direction in which a slip begins that friction cannot hold.
+    /// The direction in which a slip begins from rest if friction cannot hold the contact point.
     pub fn way_out(&self, mu: f64) -> [f64; 2] {
         let [[a, ab], [_, b]] = self.level;
         let pushed = |lam: f64| solved([[mu * a + lam, mu * ab], [mu * ab, mu * b + lam]], self.couples);
-        // The one root lies below |b|, as A is positive.
+        // The single root lies below |b|, as A is positive.
         let most = speed(self.couples);
         let left = |lam: f64| speed(pushed(lam)) - 1.0;
         let way = pushed(crossing(left, 0.0, most, left(0.0).min(f64::MAX), left(most)));

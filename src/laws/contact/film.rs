@@ -4,8 +4,8 @@
 //! u_i = b_i/(c a_i) + (u_i0 - b_i/(c a_i)) exp(-c a_i p)      along the principal axes of A
 //! u_n and the work of the normal force are its integrals over the normal impulse p
 //! ```
-//! u_n may rise through 0 and fall again once; the end of compression and that of the impact are zeros between the places
-//! where it is monotone. Error: a few roundings.
+//! u_n may rise through 0 and later fall once. The end of compression and that of the impact are zeros, found between
+//! the places where u_n' changes sign. Error: a few roundings.
 
 use super::delassus::Delassus;
 use super::impact::ImpactCourse;
@@ -13,8 +13,8 @@ use super::restitution::ImpactLaw;
 use crate::methods::search::crossing;
 
 impl ImpactCourse {
-    /// The whole impact on a viscous film, whose force is c u times the normal force. Along the principal axes of A each part
-    /// of the slip falls to that which the normal impulse drives, as one exponential function.
+    /// Computes the whole impact on a viscous film, whose force is c u times the normal force. Along each principal
+    /// axis of A the slip tends exponentially to the value that the normal impulse drives.
     pub fn film(&mut self, c: f64, slip: [f64; 2], light: &Delassus) {
         let (level, axes) = light.principal();
         let along = |v: [f64; 2]| axes.map(|[x, y]| x * v[0] + y * v[1]);
@@ -32,7 +32,7 @@ impl ImpactCourse {
                 all - c * b * u * twice - b * b / a * (0.5 * p * p - twice)
             })
         };
-        // u_n' is a constant less two exponential functions, which has two zeros at most, with one bend between them.
+        // u_n' is a constant minus two exponential functions: it has at most two zeros, and one extremum between them.
         let held = parts.iter().fold(light.normal, |all, (a, b, _)| all - b * b / a);
         let falls = parts.map(|(a, b, u)| b / a * (c * a * u - b));
         let rate = |p: f64| held - (0..2).map(|i| falls[i] * (-c * level[i] * p).exp()).sum::<f64>();
@@ -74,7 +74,7 @@ impl ImpactCourse {
     }
 }
 
-/// The zeros of a function that is monotone between these places and after them, where it ends positive.
+/// The zeros of a function that is monotone between successive places and after the last one, and is positive far beyond it.
 fn zeros(f: &dyn Fn(f64) -> f64, places: &[f64]) -> Vec<f64> {
     let mut found = Vec::new();
     for (i, &from) in places.iter().enumerate() {

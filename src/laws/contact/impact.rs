@@ -40,9 +40,9 @@ coded! {
     pub enum Hit {
         /// The contact point slips until the impact ends.
         Slips = 0,
-        /// The slip stops, and the contact point sticks.
+        /// The slip stops, and the contact point then sticks.
         Sticks = 1,
-        /// The slip stops, and begins again, since friction cannot hold the contact point.
+        /// The slip stops and then begins in another direction, since friction cannot hold the contact point.
         SlipsOn = 2,
         /// There is no friction.
         Smooth = 3,
@@ -62,21 +62,21 @@ pub(crate) struct PointImpact {
     pub slip: [f64; 2],
     pub lift: f64,
     pub light: Delassus,
-    /// The patch of contact; None for a point.
+    /// The patch of contact at this point; None for a point.
     pub patch: Option<PatchedPoint>,
     /// The law of restitution.
     pub law: ImpactLaw,
-    /// Tolerance of a step along an impact whose slip turns, at least 3e-14, and the factor by which the first step is
-    /// longer.
+    /// Tolerance of a step along an impact whose slip turns, at least 3e-14; and the factor by which the first step is
+    /// longer than usual.
     pub tol: f64,
     pub longer: f64,
 }
 
-/// The impulses P_h, P_2 and P_n, and the velocity of the lowest point after the impact.
+/// The result of an impact: the impulses P_h, P_2 and P_n, and the velocity of the contact point after it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Struck {
     pub impulse: [f64; 3],
-    /// The impulse of the couple about the normal.
+    /// The impulse of the couple about the normal, which a patch of contact exerts.
     pub couple: f64,
     pub slip: [f64; 2],
     pub lift: f64,
@@ -98,7 +98,7 @@ pub(crate) fn lightness(shape: &Shape<f64>, angle: (f64, f64)) -> Delassus {
     }
 }
 
-/// The patch of this radius on a rim that drills as fast as this.
+/// The patch of contact of the given radius on a rim that drills at the rate `drilling`.
 pub(crate) fn patched(shape: &Shape<f64>, angle: (f64, f64), radius: f64, drilling: f64) -> PatchedPoint {
     let (Shape { rim, i1, i3 }, (s, c)) = (shape, angle);
     let across = s * rim.depth(angle) / i1 - c * rim.radius(angle) / i3;
@@ -118,23 +118,23 @@ pub(crate) fn turned(shape: &Shape<f64>, angle: (f64, f64), w: [f64; 3], struck:
 /// Largest number of steps along an impact.
 const IMPACT_STEPS: u64 = 5_000;
 
-/// The impact so far, with all velocities in units of the first normal velocity, or of the slip where that is zero.
+/// The state along an impact, with all velocities in units of the first normal velocity, or of the slip where that is zero.
 pub(super) struct ImpactCourse {
     pub impulse: [f64; 3],
     couple: f64,
     pub lift: f64,
-    /// The work of the normal force in compression, or since its end.
+    /// The work of the normal force since the beginning of compression, or since its end.
     pub work: f64,
-    /// The end of restitution; None in compression.
+    /// The end of restitution; None while compression lasts.
     restores: Option<Restored>,
-    /// The normal velocity before.
+    /// The normal velocity before the impact.
     first: f64,
     pub e: f64,
     pub law: ImpactLaw,
 }
 
 impl ImpactCourse {
-    /// Ends compression.
+    /// Ends compression and begins restitution.
     fn turns_round(&mut self) {
         self.restores = Some(match self.law {
             ImpactLaw::Newton => Restored::at(LIFT, self.e * -self.first),
@@ -144,8 +144,8 @@ impl ImpactCourse {
         (self.lift, self.work) = (0.0, 0.0);
     }
 
-    /// Ends another compression, with this work since the end of the first one: the lowest work so far counts, or the whole
-    /// impulse.
+    /// Ends a second compression, where `work` has been done since the end of the first one. The lowest work so far
+    /// then counts; for Poisson's law the whole impulse so far.
     fn lowers(&mut self, work: f64) {
         let left = (1.0 - self.e) * (1.0 + self.e);
         self.restores = self.restores.map(|Restored { number, value }| {
@@ -158,8 +158,8 @@ impl ImpactCourse {
         });
     }
 
-    /// Continues in a constant direction, in which the normal velocity grows at the rate `k`, for at most the normal
-    /// impulse `most`. Returns whether the impact ends.
+    /// Continues the impact with a constant direction of slip, in which the normal velocity grows at the rate `k`, for
+    /// at most the normal impulse `most`. Returns whether the impact ends.
     fn straight(&mut self, k: f64, push: [f64; 3], mut most: f64) -> bool {
         if self.restores.is_none() {
             let end = if k > 0.0 { -self.lift / k } else { f64::INFINITY };
@@ -187,7 +187,7 @@ impl ImpactCourse {
             _ if self.lift > 0.0 => 2.0 * left / (self.lift + square.max(0.0).sqrt()),
             _ => (square.max(0.0).sqrt() - self.lift) / k,
         };
-        // Friction may press the body down again before that.
+        // Friction may press the body down once more before restitution ends.
         let pressed = match number {
             PUSHED => self.lift + k * end < 0.0,
             LIFT => k <= 0.0,
@@ -202,8 +202,8 @@ impl ImpactCourse {
         end <= most
     }
 
-    /// The whole impact of a ball whose slip turns back where friction grips it, by an impulse of at most mu times the normal
-    /// one.
+    /// The whole impact of a ball whose slip turns back where friction grips it, by a horizontal impulse of at most mu
+    /// times the normal impulse.
     fn ball(&mut self, slip: [f64; 2], light: &Delassus, mu: f64) -> Along {
         let (p, [a, _]) = (-(1.0 + self.e) * self.lift / light.normal, light.level[0]);
         let wanted = (1.0 + self.law.tangential()) / a;
@@ -213,7 +213,7 @@ impl ImpactCourse {
         if wanted <= most { Along::Back } else { Along::Slip }
     }
 
-    /// Adds the normal impulse `p` in a constant direction.
+    /// Adds the normal impulse `p` with a constant direction of slip, in which the normal velocity grows at the rate `k`.
     fn moves(&mut self, k: f64, [p_1, p_2, couple]: [f64; 3], p: f64) {
         self.couple += couple * p;
         self.work += p * (self.lift + 0.5 * k * p);
@@ -223,10 +223,10 @@ impl ImpactCourse {
 }
 
 impl PointImpact {
-    /// The impact under this law of contact with the restitution `e`. None for a rolling contact without a solution,
-    /// whose friction would lift the body before the slip has stopped or would exceed mu times the normal impulse, and
-    /// after too many steps.
-    /// Along the impact the coefficient of `own` is that at the current speed.
+    /// The impact under this law of contact with the restitution `e`. The result is None for a rolling contact without
+    /// a solution, whose friction would lift the body before the slip has stopped or would exceed mu times the normal
+    /// impulse, and after too many steps. If `own` makes the coefficient depend on the speed, it is that of the current
+    /// speed along the impact.
     pub fn on(&self, table: &Table, e: f64, own: &impl SpeedLaw) -> Option<Struck> {
         let big = if self.lift < 0.0 { -self.lift } else { speed(self.slip) };
         let (lift, slip) = (self.lift / big, self.slip.map(|u| u / big));
@@ -246,7 +246,7 @@ impl PointImpact {
                 course.ball(slip, &self.light, mu)
             }
             Table::Rolling { .. } => {
-                // The slip is stopped before the normal impulse begins.
+                // Friction stops the slip before the normal impulse begins.
                 let stops = self.light.pushes(slip.map(|u| -u));
                 course.impulse = [stops[0], stops[1], 0.0];
                 course.lift += self.light.lifts(stops);
@@ -304,7 +304,7 @@ impl PointImpact {
             Along::Creep => ([u, v], Hit::Creeps),
             Along::Rest | Along::Held => ([0.0; 2], Hit::Sticks),
             Along::Back => (self.slip.map(|u| 0.0 - law.tangential() * u), Hit::TurnsBack),
-            // A slip that has stopped has no direction left but this one.
+            // A slip that has stopped can only begin in this direction.
             Along::On([x, y]) => ([x, y].map(|to| to * (x * u + y * v)), Hit::SlipsOn),
             Along::Off => ([u, v], Hit::SlipsOn),
         };
@@ -316,7 +316,7 @@ impl PointImpact {
         Some(Struck { impulse: [p_1, p_2, p_n], couple, slip, lift, hit, lost })
     }
 
-    /// The impact under dry friction, up to a rest of the slip. None after too many steps.
+    /// The impact under dry friction, up to the stop of the slip. None after too many steps.
     fn rubs(
         &self,
         course: &mut ImpactCourse,
@@ -357,8 +357,8 @@ impl PointImpact {
         Some(Along::On(way))
     }
 
-    /// A slip under dry friction from these numbers. Returns those up to which steps have followed it, and whether the impact
-    /// ends before the slip stops; None after too many steps.
+    /// The slip under dry friction from the variables `begin`. Returns the variables where the integration ends, and
+    /// whether the impact ends before the slip stops; None after too many steps.
     fn slides(
         &self,
         course: &mut ImpactCourse,
@@ -425,16 +425,16 @@ impl PointImpact {
 enum Along {
     Ice,
     Slip,
-    /// The slip follows the drilling of the patch.
+    /// The slip is the creep that follows from the drilling of the patch.
     Creep,
     Rest,
     /// Slip and drilling of the patch have stopped, and friction holds both.
     Held,
-    /// They have stopped, and friction cannot hold both.
+    /// Slip and drilling of the patch have stopped, and friction cannot hold both.
     Off,
     /// The slip of a ball that is gripped turns back.
     Back,
-    /// It slips on along this direction.
+    /// The contact point slips on along this direction after its slip had stopped.
     On([f64; 2]),
 }
 

@@ -19,7 +19,7 @@
 //! impulse of compression at each rim (Poisson). For these normal impulses Moreau's friction leaves the least energy,
 //! not more than if e Q were given back, which would leave at most e^2 of the energy taken: no bounce of both rims
 //! gains energy. One rim bounces as in `contact::impact`. Without friction both stay if -g g' >= I1; with friction if
-//! -g g' - g Z Q'_h/P' >= I1. With g g' > 0 the body always goes on on the circle that lands.
+//! -g g' - g Z Q'_h/P' >= I1. With g g' > 0 the body always continues on the circle that lands.
 //!
 //! Under a coefficient that depends on the speed, mu is that of the slip after the impact: this too takes energy, since
 //! the impulse opposes that slip.
@@ -53,7 +53,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The body lies on both rims, which slip or roll.
+    /// The body lies on both rims, each of which slips or is at rest.
     Lies,
     /// The body rises at once on the rim on which it moved before.
     Rises,
@@ -103,8 +103,8 @@ pub fn launch(body: &Body, y: &State, slip: Slip, mu: f64) -> f64 {
     launch_on(body, 0, y, slip.pair(), mu)
 }
 
-/// The launch number (K - Z Fh)/g of a body that lies on two circles, of which this one alone carries it; above 1 the
-/// other one rises. `slip` is that of this circle.
+/// The launch number (K - Z Fh)/g of a body that lies on two circles, if `circle` alone carries the body; above 1 the
+/// other circle rises. `slip` is the slip of `circle`.
 fn launch_on(body: &Body, circle: usize, y: &State, slip: [f64; 2], mu: f64) -> f64 {
     let Border { angle: (s, c), height, circles, .. } = body.border();
     let (on, turns, speed) = (circles[circle], y.w1 / s, slip[0].hypot(slip[1]));
@@ -148,8 +148,8 @@ pub fn land(body: &Body, y: &State, slip: Slip, mu: f64) -> Result<Landed, Error
 }
 
 /// The plastic landing with any law of friction, also for a body whose lower rim comes down at the same time, at the
-/// velocity `lift` <= 0. A viscous film takes the impulse c P u, with the slip u after the impact, as dry friction
-/// does. A coefficient that depends on the speed, of `own`, is that of the slip after the impact.
+/// velocity `lift` <= 0. The impulse of a viscous film is c P u, with the slip u after the impact, as for dry friction.
+/// If `own` makes the coefficient depend on the speed, it is that of the slip after the impact.
 pub(crate) fn land_at(
     body: &Body,
     y: &State,
@@ -192,8 +192,9 @@ pub(crate) fn land_at(
     })
 }
 
-/// A landing of both rims at once that bounce with the restitution `e`: the state, the slip and the vertical velocity
-/// of the lower rim, which comes down at `lift` < 0, and the energy lost. Arguments and errors as for [`land_at`].
+/// A landing of both rims at once, which bounce with the restitution `e`: the state, the slip and the vertical velocity
+/// of the lower rim, which comes down at `lift` < 0, and the energy lost. The other arguments and the errors are those
+/// of [`land_at`].
 pub(crate) fn bounced(
     body: &Body,
     y: &State,
@@ -212,22 +213,24 @@ pub(crate) fn bounced(
     Ok((after.y, after.slips[0], after.lift, lost))
 }
 
-/// A face that falls on the opposite point of its ring, or after it has. All directions are seen from above: to that point, and
-/// to the left of it.
+/// The motion of a face just before or after the point of its rim opposite to the contact point lands. Directions are
+/// seen from above: `along` to the point that lands, and `across` to the left of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FallingFace {
-    /// The rate at which it leans towards that point, and the rates about the direction to it and about the vertical.
+    /// The rate at which the face leans towards the landing point, and the rates about the direction to this point and
+    /// about the vertical.
     pub leans: f64,
     pub turns: f64,
     pub spins: f64,
-    /// The slip and the vertical velocity of the point on which it turns before; after the landing, of the one that has landed.
+    /// The slip and the vertical velocity: before the landing of the point on which the face turns, after it of the
+    /// point that has landed.
     pub slip: [f64; 2],
     pub lift: f64,
 }
 
-/// The landing of a face of radius a, the centre of mass Z above it, and the energy lost. It then leans on beyond the point that
-/// has landed, back, or not at all. Both points bounce with the restitution `e` if both come down. None where there is no
-/// unique outcome.
+/// The landing of a face of radius a with the centre of mass Z above it: the motion after it and the energy lost. The
+/// face then leans on beyond the point that has landed, or back, or not at all. Both points bounce with the restitution
+/// `e` if both come down. None where there is no unique outcome.
 pub(crate) fn falls_flat(
     body: &Body,
     [radius, height]: [f64; 2],
@@ -238,7 +241,7 @@ pub(crate) fn falls_flat(
     let circle = |lever: f64| CircleDown { radius: -lever, depth: height, lever };
     let border =
         Border { angle: (0.0, 1.0), height, circles: [circle(radius), circle(-radius)], even: false };
-    // Seen as another circle that lands, which lies at smaller levers.
+    // The face is treated like another circle that lands, with smaller levers.
     let (y, slip) = (State { theta: 0.0, w1: -turns, w2: -leans, w3: spins }, [-along, -across]);
     let landing = Landing { body, border, y, slip, lift, friction, own };
     let Compressed { here, there, mut end } = landing.compressed().ok()?;
@@ -254,7 +257,7 @@ pub(crate) fn falls_flat(
     Some((FallingFace { leans: -w2, turns: -w1, spins: w3, slip: end.slips[1].map(|u| -u), lift }, lost))
 }
 
-/// The end of a compression, and which circles remain on the table: the one that carried, and the one that landed.
+/// The end of a compression, and whether each circle remains on the table: the previous one, and the one that landed.
 struct Compressed {
     here: bool,
     there: bool,
@@ -266,11 +269,12 @@ fn coefficient(own: &impl SpeedLaw, mu: f64, speed: impl Fn() -> f64) -> f64 {
     if own.varies() { own.coefficient_at(speed()) } else { mu }
 }
 
-/// The state and the slip after the last impact of a rattle on both rims, whose rim comes down or rises at `lift`.
-/// Impulses of either sign, each with the friction of its slip, take the rest of w2 and of the vertical velocity. A slip
-/// that is hardly faster than they are has no direction: without friction the body then gains no energy.
+/// The state and the slip after the last of many ever smaller impacts of both rims, of which the lower one has the
+/// vertical velocity `lift`. Impulses of either sign, each with the friction of its slip, remove the rest of w2 and of
+/// the vertical velocity. A slip that is hardly faster than these velocities has no direction: friction is then left
+/// out, so that no energy is gained.
 ///
-/// Error: the square of those velocities, or the velocities themselves at a rim that slips so slowly, or sticks.
+/// Error: the square of those velocities; the velocities themselves at a rim that sticks, or slips as slowly as that.
 pub(crate) fn settled(
     body: &Body,
     y: &State,
@@ -295,8 +299,8 @@ pub(crate) fn settled(
     (after, if slip == [0.0; 2] { slip } else { landing.slips(impulses, 0.0)[0] })
 }
 
-/// The state and the slip of the circle that lands at theta_end, seen from that circle, whose face is at theta = 0: phi
-/// becomes phi + pi, and psi becomes -psi.
+/// The state and the slip of the circle that lands at theta_end, seen from the other end of the body, where its face is
+/// at theta = 0: phi becomes phi + pi, and psi becomes -psi.
 fn seen_from_next(y: &State, [along, across]: [f64; 2]) -> (State, [f64; 2]) {
     let theta = if y.theta == FRAC_PI_2 { y.theta } else { PI - y.theta };
     (State { theta, w1: y.w1, w2: 0.0 - y.w2, w3: 0.0 - y.w3 }, [0.0 - along, 0.0 - across])
@@ -312,7 +316,7 @@ pub fn mirrored(body: &Body, y: &State, slip: Slip) -> (State, Slip) {
     (state, slip.into())
 }
 
-/// Kinetic energy at theta_end, from the state, and the slip and the vertical velocity of the circle that carries.
+/// Kinetic energy at theta_end, from the state and from the slip and the vertical velocity of the circle to which it refers.
 fn energy(border: &Border<f64>, body: &Body, y: &State, [along, across]: [f64; 2], lift: f64) -> f64 {
     let here = border.circles[0];
     let forth = along + border.height * y.w2;
@@ -322,18 +326,18 @@ fn energy(border: &Border<f64>, body: &Body, y: &State, [along, across]: [f64; 2
     0.5 * (forth * forth + aside * aside + up * up + turning)
 }
 
-/// The normal impulses of an impact.
+/// The condition that gives the normal impulses of an impact.
 #[derive(Clone, Copy, PartialEq)]
 enum Carries {
-    /// Those that keep both circles on the table.
+    /// Both circles remain on the table.
     Both,
-    /// That which keeps this circle on the table, while the other one leaves it.
+    /// This circle remains on the table, while the other one leaves it.
     One(usize),
-    /// These, of both circles.
+    /// The normal impulses of both circles are given.
     Given([f64; 2]),
 }
 
-/// A landing: the state before it, and the slip and the vertical velocity of the circle that carries.
+/// A landing: the state before it, with the slip and the vertical velocity of the circle to which the state refers.
 #[derive(Clone, Copy)]
 struct Landing<'a, L> {
     body: &'a Body,
@@ -367,15 +371,15 @@ impl<L: SpeedLaw> Landing<'_, L> {
         coefficient(self.own, self.friction.strength(), || speed)
     }
 
-    /// The compression, by the one of its outcomes that is consistent.
+    /// The compression with the outcome that is consistent; an error if there is none, or more than one.
     fn compressed(&self) -> Result<Compressed, Error> {
         let comes = self.y.w2 < 0.0 || self.lift < 0.0;
         let lies = self.solved(Carries::Both);
         let rocks = if comes { self.solved(Carries::One(1)) } else { None };
-        // Where the circle that carried barely stays, both solutions are the same motion up to rounding, and one is
+        // Where the previous circle barely stays, both solutions are the same motion up to rounding, and one is
         // dropped.
         let rocks = rocks.filter(|after| lies.is_none() || after.y.w2 < SAME * self.y.w2);
-        // If both come down, it may also be the other one that leaves the table.
+        // If both circles come down, the one that landed may also leave the table.
         let alone = self.lift < 0.0 && lies.is_none() && rocks.is_none();
         let stands = if alone { self.solved(Carries::One(0)) } else { None };
         match (lies, rocks, stands) {
@@ -409,7 +413,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
         }
     }
 
-    /// The state after the impact.
+    /// The state after an impact with the friction impulses `q` and the angular velocity `w2`.
     fn turned(&self, q: &Impulses, w2: f64) -> State {
         let ([low, up], [here, there]) = (*q, self.border.circles);
         let w1 = self.y.w1 + (here.depth * low[1] + there.depth * up[1]) / self.body.i1();
@@ -417,7 +421,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
         State { w1, w2, w3, ..self.y }
     }
 
-    /// How much an impulse across, at a circle, changes the slip across of a circle.
+    /// The change of the slip along e2 at circle `at` per impulse along e2 at circle `by`.
     fn yields(&self, at: usize, by: usize) -> f64 {
         let [at, by] = [self.border.circles[at], self.border.circles[by]];
         1.0 + at.depth * by.depth / self.body.i1() + at.radius * by.radius / self.body.i3()
@@ -431,7 +435,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
         [[along, self.slip[1] + across(0)], [along, self.slip[1] - turning + across(1)]]
     }
 
-    /// The end of the impact, if its normal impulses are consistent.
+    /// The end of the impact under the condition `carries`; None if its normal impulses are not consistent.
     ///
     /// Each friction impulse is moved against the remaining slip and limited to mu P, until nothing changes.
     fn solved(&self, carries: Carries) -> Option<Pushed> {
@@ -488,8 +492,8 @@ impl<L: SpeedLaw> Landing<'_, L> {
         None
     }
 
-    /// Whether no friction up to mu can make the assumption consistent, by the criterion at the head of this
-    /// module.
+    /// Whether no friction up to mu can make the condition `carries` consistent, by the criterion at the top of this
+    /// file.
     ///
     /// For mu Z |g| >= I1 + g^2 at a circle the criterion excludes nothing.
     fn excluded(&self, carries: Carries) -> bool {
@@ -512,7 +516,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
             }
     }
 
-    /// The result, if no circle pulls and one that leaves the table moves upwards.
+    /// The result, if no normal impulse is negative and a circle that leaves the table moves upwards; else None.
     fn consistent(&self, carries: Carries, q: &Impulses) -> Option<Pushed> {
         let (push @ [here, there], w2) = self.pushed(carries, q);
         let good = match carries {
@@ -528,7 +532,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
     }
 }
 
-/// A slip of less than this many velocities of a bounce may turn around in the next impacts.
+/// A slip of less than this times the velocities of a bounce may change its sign in the next impacts.
 pub(crate) const REVERSES: f64 = 10.0;
 
 /// An impulse or a speed that is smaller than this fraction of another one counts as zero.
@@ -537,8 +541,8 @@ const SAME: f64 = 1e-12;
 /// The largest number of steps of the search for the impulses: some tens are usual, I3 = 0.001 takes
 /// thousands.
 const STEPS: usize = 100_000;
-/// `STEPS` under a coefficient that depends on the speed, and the number of steps after which the coefficient
-/// follows the speed by a smaller share.
+/// The largest number of steps under a coefficient that depends on the speed, and the number of steps after which the
+/// coefficient follows the speed by a smaller share.
 const OWN_STEPS: usize = 20_000;
 const FOLLOWS: usize = 100;
 

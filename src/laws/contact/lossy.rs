@@ -33,19 +33,19 @@ use crate::laws::newton;
 use crate::laws::state::{State, drilling_of, rolling_of};
 use crate::numbers::{Dual, Real};
 
-/// Longest step, in units of the time in which the couples along the contour stop psi'. A step of eighth
-/// order is stable up to about six of these times.
+/// Longest time step, in units of 1/rate, the time in which couples along the contour reduce psi' by the factor e. A
+/// step of eighth order is stable up to about six of these times.
 pub(crate) const DAMPED: f64 = 5.0;
 
-/// The motion that dry friction holds at rest, or that is prescribed.
+/// The motion that dry friction holds at rest, or whose rate of change is prescribed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Held<T> {
     Nothing,
-    /// The spin psi', which changes at this rate; the rate is 0 while dry friction holds psi' at 0.
+    /// The spin psi', which changes at this prescribed rate; the rate is 0 while dry friction holds psi' at 0.
     Contour(T),
-    /// The drilling: w_z = 0.
+    /// The drilling, held at w_z = 0.
     Drilling,
-    /// Rolling and rocking: the body only turns about the vertical.
+    /// Rolling and rocking, both held at rest: the body only turns about the vertical.
     Rolling,
 }
 
@@ -64,35 +64,36 @@ pub(crate) struct Acted<T> {
     /// The contact force N, F2, Fh.
     pub force: [T; 3],
     pub power: T,
-    /// The couple lambda or nu that holds a motion, and the largest that friction can exert.
+    /// The magnitude of the couple lambda or nu that holds a motion, and the largest one that friction can exert.
     pub held: [T; 2],
 }
 
 impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
-    /// -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
+    /// The factor -s^2 D psi''/lambda, where psi'' is the part that the couple lambda h/s causes.
     #[inline(always)]
     fn spin_response(of: &Coefficients<T>, (s, c): (T, T)) -> T {
         of.al * s * s - (of.k + of.k) * s * c + of.b * c * c
     }
 
-    /// The rate in psi'' = -rate psi' + ..., where the couple along the contour grows with psi' by `slope`.
+    /// The rate in psi'' = -rate psi' + ..., if the couple along the contour is X h/s and dX/dpsi' is `slope`.
     #[inline(always)]
     pub fn stiffness(&self, angle: (T, T), slope: T) -> T {
         let of = self.rates.reduced().at(angle);
         slope * Self::spin_response(&of, angle) * of.per_d / (angle.0 * angle.0)
     }
 
-    /// The longest time step for which psi' stays damped ([`DAMPED`]). Near the table the couples along the
-    /// contour stop psi' ever faster; after longer steps the errors of psi' would stay, and the couples would
-    /// turn them into forces.
+    /// The longest time step for which psi' stays damped ([`DAMPED`]). Near theta = 0 the couples along the contour
+    /// stop psi' ever faster; after longer steps the errors of psi' would persist, and the couples would turn them into
+    /// forces.
     #[inline(always)]
     pub fn damped(&self, angle: (T, T), spin: T) -> T {
         let radius = self.rates.reduced().shape.rim.radius(angle);
         angle.0.splat(DAMPED) / self.stiffness(angle, self.losses.slope(angle.0.abs(), radius, spin))
     }
 
-    /// dt/dsigma where rolling and rocking together have this speed. Rolling resistance reduces the speed by about
-    /// delta/J in a unit of time; in sigma the speed vanishes as exp(-sigma).
+    /// The ratio dt/dsigma of time to the integration variable sigma if rolling and rocking together have this speed.
+    /// Rolling resistance reduces the speed by about delta/J in a unit of time; in sigma the speed vanishes as
+    /// exp(-sigma).
     #[inline(always)]
     pub fn pace(&self, angle: (T, T), speed: T) -> T {
         let inertia = self.rates.reduced().inertia(
@@ -102,7 +103,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         speed / (speed + self.losses.coefficient(Law::RollingResistance) / inertia)
     }
 
-    /// The normal force under this couple, from g, 1/J, w2' without the couple, and g' w2^2.
+    /// The normal force under a couple, from g, 1/J, w2' without the couple, and g' w2^2.
     #[inline(always)]
     fn normal(couple: &Couple<T>, tilts: bool, [lever, per_inertia, d2, carried]: [T; 4]) -> T {
         let one = d2.splat(1.0);
@@ -114,19 +115,20 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         d2.splat(0.0).select_lt(normal, pressed, normal)
     }
 
-    /// w1' and w3' under the couple m1 and m3, from their values without it.
+    /// w1' and w3' under the couple with the components m1 and m3, from their values without the couple.
     #[inline(always)]
     fn add_couple(of: &Coefficients<T>, [d1, d3]: [T; 2], m1: T, m3: T) -> [T; 2] {
         [(of.b * m1 + of.k * m3).mac(of.per_d, d1), (of.k * m1 + of.al * m3).mac(of.per_d, d3)]
     }
 
-    /// The response of the body at the sine and cosine of theta, phi' = w1/s, and w.
+    /// The response of the body, from sine and cosine of theta, phi' = w1/s, and w.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), precession: T, w: [T; 3], held: Held<T>) -> Acted<T> {
         self.under(self.losses.pull, angle, precession, w, held)
     }
 
-    /// The response of the body, as from `at`, under the force `pull` of the table instead of that of the losses.
+    /// The response of the body as in [`at`](Self::at), with `pull` as the horizontal acceleration by the slope, along
+    /// e_h and e2.
     #[inline(always)]
     pub fn under(
         &self,
@@ -165,7 +167,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
             |couple| Self::normal(couple, tilts, [lever, per_inertia, d2, carried]),
         );
         let normal = Self::normal(&couple, tilts, [lever, per_inertia, d2, carried]);
-        // After a lift-off no force presses the body on the table, and the laws have no normal force.
+        // After lift-off no force presses the body on the table, and the laws have no normal force.
         let pressing = normal.positive_part();
         let [mut m1, m2, mut m3] = couple.under(pressing);
         let tilting = if tilts { m2.mac(per_inertia, d2) } else { d2 };
@@ -207,7 +209,8 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
 }
 
 impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
-    /// The couple of the pull of a tilted table about a contact point that rolls.
+    /// The couple about a rolling contact point of `pull`, the horizontal part of gravity on a tilted table; None on a
+    /// level table.
     #[inline(always)]
     fn couple_of_pull(&self, pull: Option<[T; 2]>, angle: (T, T)) -> Option<[T; 3]> {
         let Reduced { contact, shape: Shape { rim, .. }, .. } = self.rates.reduced();
@@ -215,7 +218,7 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         Some([-(rim.depth(angle) * along_2), rim.height(angle) * along_h, rim.radius(angle) * along_2])
     }
 
-    /// The friction, which accelerates the centre beside the pull.
+    /// The friction: the horizontal force that accelerates the centre, less `pull`, the part due to the slope.
     #[inline(always)]
     fn without_pull(&self, pull: Option<[T; 2]>, along: T, across: T) -> (T, T) {
         match pull {
@@ -226,8 +229,9 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         }
     }
 
-    /// The response of a body that only turns about the vertical, with N = 1, and the couple of rolling resistance that
-    /// this needs, with its limit. A rolling contact point is at rest, so that the centre moves on a circle.
+    /// The response of a body that only turns about the vertical, with N = 1, with the couple of rolling resistance
+    /// that holds the body and the limit of this couple. The contact point is at rest, so that the centre moves on a
+    /// circle.
     #[inline(always)]
     fn pivoting_response(&self, pull: Option<[T; 2]>, angle: (T, T), precession: T, w: [T; 3]) -> Acted<T> {
         let ((s, c), [w1, _, w3], reduced) = (angle, w, self.rates.reduced());
@@ -273,7 +277,7 @@ impl Lossy<f64> {
 }
 
 impl<G: OwnCouple<f64>> Lossy<f64, G> {
-    /// This law for numbers with a slope.
+    /// These equations for dual numbers, which carry a derivative.
     pub fn sloped(&self) -> Lossy<Dual<f64>, G> {
         let Reduced { contact, shape, round, .. } = self.rates.reduced();
         let rates = Rates::of(*contact, &shape.map(Dual::constant), *round);
@@ -286,7 +290,7 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
         self.at(angle, y.w1 / angle.0, [y.w1, y.w2, y.w3], Held::Nothing)
     }
 
-    /// The time derivatives of theta and w in such a state, and the contact force.
+    /// The time derivatives of theta and w, and the contact force, in a state in which dry friction holds no part of the motion.
     pub fn moves(&self, y: &State) -> (State, newton::Force) {
         let Acted { w: [w1, w2, w3], force: [normal, along, across], .. } = self.in_state(y);
         (State { theta: -y.w2, w1, w2, w3 }, newton::Force { normal, along, across })
@@ -300,15 +304,15 @@ impl<G: OwnCouple<f64>> Lossy<f64, G> {
     }
 }
 
-/// The time derivative of (theta, w1, w2, w3) of a body that rolls, or slides freely, with losses, and the lost
-/// power. A dry loss exerts no couple where the motion that it resists is at rest.
+/// The time derivative of (theta, w1, w2, w3), and the lost power in M g sqrt(g R), of a body that rolls, or slides
+/// without friction, with losses. A dry loss exerts no couple where the motion that it resists is at rest.
 pub fn derivative(contact: Contact, body: &Body, y: &State, losses: &Losses) -> (State, f64) {
     let Acted { w: [w1, w2, w3], power, .. } = Lossy::of(contact, body, losses).in_state(y);
     (State { theta: -y.w2, w1, w2, w3 }, power)
 }
 
-/// The time derivative of (theta, w1, w2, w3), and the contact force, of a body that rolls, or slides freely, under any
-/// couple along e1, e2, e3, in M g R.
+/// The time derivative of (theta, w1, w2, w3), and the contact force, of a body that rolls, or slides without friction,
+/// under any couple along e1, e2, e3, in M g R.
 ///
 /// ```
 /// use spincyl::{Body, Contact, contact::lossy, newton, steady};
@@ -327,7 +331,7 @@ pub fn under_couple(contact: Contact, body: &Body, y: &State, couple: [f64; 3]) 
     Lossy { rates: contact.rates(body), losses }.moves(y)
 }
 
-/// The contact force on a body that rolls, or slides freely, with losses.
+/// The contact force, in M g, on a body that rolls, or slides without friction, with losses.
 pub fn force(contact: Contact, body: &Body, y: &State, losses: &Losses) -> newton::Force {
     Lossy::of(contact, body, losses).moves(y).1
 }

@@ -12,11 +12,12 @@
 //! a slope pulls with G_h and G_2: v' also has G;  F_h = -Om v_2 - G_h of one that sticks;  m.h - Z G_2 and F_h - G_h of both
 //! dry losses hold w_z or w_h: then n.(w1', w3') = 0, which takes n from the mobility M = diag(1/I1, 1/I3)
 //! ```
-//! For two equal rims theta = pi/2, L = -L' = g = ell, A = Z = 1, and the body that rolls moves along a straight line. A
-//! fillet enters by A and L alone. The couple of the losses is shared as the normal forces are. A line of contact has an
-//! undetermined pressure; the model is that of a body whose side is slightly hollow, or of a rounded rim. While both stick,
-//! how they share F_h is not determined; each is given none of it. For mu Z < D one distribution of the normal forces
-//! exists for any velocities (a linear complementarity problem with positive diagonal).
+//! For two equal rims theta = pi/2, L = -L' = g = ell, A = Z = 1, and a rolling body moves along a straight line. A
+//! fillet enters by A and L alone. The couple of the losses is shared between the circles as the normal forces are. A
+//! line of contact has an undetermined pressure; the model is that of a body whose side is slightly hollow, or of a
+//! rounded rim. While both circles stick, their shares of F_h are not determined, and both shares are set to zero. For
+//! mu Z < D one distribution of the normal forces exists for any velocities (a linear complementarity problem with
+//! positive diagonal).
 //!
 //! Error: a few roundings of the terms written above; tests of `laws` compare with Newton's equations.
 
@@ -31,28 +32,28 @@ use crate::numbers::Real;
 pub(crate) struct Lying<T> {
     /// The circle to which the state refers.
     pub shape: Shape<T>,
-    /// Both circles, this one first.
+    /// Both circles at the inclination at which both touch, that of the state first.
     pub border: Border<T>,
-    /// The coefficient mu, or c, at this circle and at the other one.
+    /// The coefficient of friction mu, or c of a film, at the circle of the state and at the other one.
     pub strength: [T; 2],
     pub dry: bool,
     pub losses: Option<Couples<T>>,
-    /// The couple of a user-defined law in the state for which this law is made.
+    /// The couple of a user-defined law in the present state; None without such a law.
     pub own: Option<[T; 3]>,
-    /// The pull of a tilted table on the centre, along e_h and e2; None on a level table.
+    /// The horizontal acceleration by the slope of a tilted table, along e_h and e2; None on a level table.
     pub pull: Option<[T; 2]>,
 }
 
-/// Forces and accelerations on both circles.
+/// Forces on both circles, and accelerations of the body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lain<T> {
-    /// N, F_2 and F_h at the circle to which the state refers, and at the other one.
+    /// [N, F_2, F_h] at the circle to which the state refers, and at the other one.
     pub force: [[T; 3]; 2],
-    /// w1' and w3'.
+    /// The derivatives w1' and w3'.
     pub w: [T; 2],
-    /// u_h' and u_2'.
+    /// The derivatives u_h' and u_2' of the slip.
     pub u: [T; 2],
-    /// The couples of the losses about the vertical, and along -e_h.
+    /// The couples of the losses about the vertical z, and along -e_h.
     pub couple: [T; 2],
 }
 
@@ -60,17 +61,17 @@ pub(crate) struct Lain<T> {
 pub(crate) type Flat<T> = [T; 4];
 
 impl Lying<f64> {
-    /// w_z, and -w_h, of these w1 and w3; a rounding error of zero is zero.
+    /// The drilling w_z and -w_h, from w1 and w3; a result that is only a rounding error is zero.
     pub fn turning(&self, w1: f64, w3: f64) -> [f64; 2] {
         let (s, c) = self.border.angle;
         let [drilling, rolling] = [drilling_of((s, c), w1, w3), -rolling_of((s, c), w1, w3)];
         let zero =
             |x: f64, a: f64, b: f64| if x.abs() <= 4.0 * f64::EPSILON * (a * b).abs() { 0.0 } else { x };
-        // Both terms are of one size where they cancel; at a right angle there is one.
+        // Both terms have the same size where they cancel; at a right angle there is only one.
         [zero(drilling, w3, c), zero(rolling, w1, c)]
     }
 
-    /// w1 and w3 of these w_z and -w_h.
+    /// w1 and w3, from the drilling w_z and from -w_h.
     pub fn turned_by(&self, [drilling, rolling]: [f64; 2]) -> [f64; 2] {
         let (s, c) = self.border.angle;
         [s * drilling - c * rolling, c * drilling + s * rolling]
@@ -89,9 +90,9 @@ impl Lying<f64> {
         }
     }
 
-    /// The largest couples with which dry losses hold w_z and w_h under these normal forces.
+    /// The largest couples with which dry losses can hold w_z and w_h at rest, under the normal forces `loads`.
     pub fn limits(&self, loads: [f64; 2]) -> [f64; 2] {
-        // All couples that are not dry all but vanish at this speed.
+        // At this speed all couples that are not dry are nearly zero.
         const SLOW: f64 = 1e-100;
         const NOTHING: f64 = 1e-80;
         let (s, c) = self.border.angle;
@@ -114,13 +115,13 @@ impl<T: Real> Lying<T> {
         }
     }
 
-    /// Whether both circles rise without a force of the table, as they may where the centre is not between them.
+    /// Whether both circles would rise if the table exerted no force, as may happen where the centre is not between them.
     pub fn takes_off(&self, w1: T, w3: T) -> bool {
         let (one, rate) = (w1.splat(1.0), self.lift(w1, w3) / self.shape.i1);
         self.border.circles.iter().all(|at| one.is_lt(w1.splat(0.0) - at.lever * rate))
     }
 
-    /// The slip of the other circle.
+    /// The slip of the circle to which the state does not refer, along e_h and e2.
     pub fn other_slip(&self, [w1, w3, u_h, u_2]: Flat<T>) -> [T; 2] {
         [u_h, u_2 - self.border.span() * drilling_of(self.border.angle, w1, w3)]
     }
@@ -131,26 +132,26 @@ impl<T: Real> Lying<T> {
         u.map(|u| strength * u / size)
     }
 
-    /// A couple about the vertical, and along -e_h.
+    /// The components about the vertical, and along -e_h, of a couple with m1 and m3.
     fn parts(&self, [m1, _, m3]: [T; 3]) -> [T; 2] {
         [drilling_of(self.border.angle, m1, m3), -rolling_of(self.border.angle, m1, m3)]
     }
 
-    /// K, with the couple of the user about e2.
+    /// K = I3 w1 w3 - I1 cot w1^2, plus the couple of a user-defined law about e2.
     pub(super) fn lift(&self, w1: T, w3: T) -> T {
         let (s, c) = self.border.angle;
         let lift = self.shape.i3 * w1 * w3 - self.shape.i1 * (c / s) * w1 * w1;
         self.own.map_or(lift, |[_, m2, _]| lift + m2)
     }
 
-    /// Whether dry losses hold w_z, which drills, and w_h, by which the body rolls.
+    /// Whether dry losses hold w_z, the drilling, and w_h, the rolling, at rest.
     pub fn held(&self) -> [bool; 2] {
         let Holds { contour, drilling, .. } = self.losses.as_ref().map_or(Holds::default(), Couples::holds);
         [drilling, contour]
     }
 
-    /// The couples m1, m2 and m3 of the losses under these normal forces. Only a user-defined law may have m2, which then
-    /// takes no power.
+    /// The couples m1, m2 and m3 of the losses, under the normal forces `loads`. Only a user-defined law may have m2,
+    /// which then takes no power.
     pub(super) fn couple(&self, w: [T; 2], loads: [T; 2]) -> [T; 3] {
         let [m1, m3] = self.couple_of_losses(w, loads);
         match self.own {
@@ -159,7 +160,7 @@ impl<T: Real> Lying<T> {
         }
     }
 
-    /// The couple of one circle is that under the whole weight, times its share of it.
+    /// m1 and m3 of the losses: each circle has its share of the weight times the couple under the whole weight.
     fn couple_of_losses(&self, [w1, w3]: [T; 2], loads: [T; 2]) -> [T; 2] {
         let zero = w1.splat(0.0);
         let Some(losses) = &self.losses else { return [zero; 2] };
@@ -178,7 +179,7 @@ impl<T: Real> Lying<T> {
         [loads[0] * m1 + loads[1] * other, loads[0] * m3 + loads[1] * last]
     }
 
-    /// w1' and w3' under this torque about e1 and e3, where dry losses may hold w_z, or w_h, or both.
+    /// The derivatives w1' and w3' under these torques about e1 and e3, where dry losses may hold w_z, or w_h, or both, at rest.
     fn turned(&self, [t1, t3]: [T; 2]) -> [T; 2] {
         let (Shape { i1, i3, .. }, (s, c)) = (self.shape, self.border.angle);
         match self.held() {
@@ -195,14 +196,14 @@ impl<T: Real> Lying<T> {
         }
     }
 
-    /// The torque of friction across, about e1 and e3.
+    /// The torque about e1 and e3 of the friction F_2 at both circles.
     fn torque(&self, across: [T; 2]) -> [T; 2] {
         let [here, there] = self.border.circles;
         let ([low, up], zero) = (across, across[0].splat(0.0));
         [here.depth * low + there.depth * up, zero - (here.radius * low + there.radius * up)]
     }
 
-    /// The motion under these normal forces, this friction and this couple.
+    /// Forces and accelerations for these normal forces, this friction and this couple.
     pub(super) fn under(
         &self,
         [w1, w3, u_h, u_2]: Flat<T>,
@@ -226,7 +227,7 @@ impl<T: Real> Lying<T> {
         Lain { force, w, u, couple: self.parts(couple) }
     }
 
-    /// Motion with both circles slipping, for the given friction per normal force (sign reversed).
+    /// Forces and accelerations where both circles slip, for friction per normal force (sign reversed) at each circle.
     pub fn slipping_along(&self, y: Flat<T>, [low, up]: [[T; 2]; 2]) -> Lain<T> {
         let [w1, w3, ..] = y;
         let (zero, lift, [p, q]) = (w1.splat(0.0), self.lift(w1, w3), self.leans([low[0], up[0]]));
@@ -235,33 +236,34 @@ impl<T: Real> Lying<T> {
         self.under(y, force, self.couple([w1, w3], loads))
     }
 
-    /// p and q, for friction along e_h per normal force (sign reversed): the body lies where -q < K < p.
+    /// p and q of the equations above, for friction along e_h per normal force (sign reversed): the body lies where -q < K < p.
     pub fn leans(&self, [low, up]: [T; 2]) -> [T; 2] {
         let (height, [here, there]) = (self.border.height, self.border.circles);
         [here.lever - height * low, height * up - there.lever]
     }
 
-    /// Motion with both circles slipping.
+    /// Forces and accelerations where both circles slip.
     pub fn slipping(&self, y: Flat<T>) -> Lain<T> {
         let [low, up] = self.strength;
         let drags = [self.drag(low, [y[2], y[3]]), self.drag(up, self.other_slip(y))];
         self.slipping_along(y, drags)
     }
 
-    /// How much a force across, at a circle, changes the slip across of a circle.
+    /// The change of the slip along e2 at circle `at` per force along e2 at circle `by`.
     pub fn yields(&self, at: usize, by: usize) -> T {
         let [at, by] = [self.border.circles[at], self.border.circles[by]];
         let one = at.radius.splat(1.0);
         one + at.depth * by.depth / self.shape.i1 + at.radius * by.radius / self.shape.i3
     }
 
-    /// The slip where the circle to which the state refers sticks, or the other one.
+    /// The slip if the circle to which the state refers sticks, or if `other` the other circle.
     pub fn stuck(&self, [w1, w3, ..]: Flat<T>, other: bool) -> [T; 2] {
         let zero = w1.splat(0.0);
         [zero, if other { self.border.span() * drilling_of(self.border.angle, w1, w3) } else { zero }]
     }
 
-    /// Motion where one circle sticks, the other one if `other`, and the other slips across; `turn` is the sign of w_z.
+    /// Forces and accelerations where one circle sticks, the other one if `other`, and its partner slips along e2;
+    /// `turn` is the sign of w_z.
     pub fn pivots(&self, y: Flat<T>, other: bool, turn: f64) -> Lain<T> {
         let [w1, w3, ..] = y;
         let (zero, one, Border { angle, height, circles, .. }) = (w1.splat(0.0), w1.splat(1.0), self.border);
@@ -294,7 +296,7 @@ impl<T: Real> Lying<T> {
         lain
     }
 
-    /// Motion where both circles stick, and the body rolls: straight on, or round its apex.
+    /// Forces and accelerations where both circles stick, and the body rolls, straight on or round its apex.
     pub fn rolls(&self, [w1, w3, ..]: Flat<T>) -> Lain<T> {
         let (Shape { i1, i3, .. }, Border { angle, height, circles: [here, there], .. }) =
             (self.shape, self.border);
@@ -325,7 +327,7 @@ impl<T: Real> Lying<T> {
         Lain { force, w: [c * d, zero - s * d], u: [zero; 2], couple: [zero, rolls] }
     }
 
-    /// The friction along e_h of both circles together while the body rolls round its apex.
+    /// The friction along e_h of both circles together, while the body rolls round its apex.
     pub fn pulls_to_apex(&self, [w1, w3, ..]: Flat<T>) -> T {
         let (s, c) = self.border.angle;
         let rolling = rolling_of((s, c), w1, w3);

@@ -62,10 +62,9 @@ pub enum Contact {
     Smooth = 1,
 }
 
-/// A slip whose factor 1 - eps of the normal force is closer to 0 than this is an error: the force counts as infinite.
+/// A slip is an error, since the normal force counts as infinite, if the factor 1 - eps in the denominator of N is below this.
 pub(crate) const JAMMED: f64 = 1e-6;
-/// A face has landed if its angle to the table is below this, in radians: the gap is then smaller than an
-/// atom.
+/// A face has landed if its angle to the table is below this, in radians: the gap is then smaller than an atom.
 pub(crate) const FLAT: f64 = 1e-10;
 
 impl Contact {
@@ -81,7 +80,7 @@ impl Contact {
         self.rates(body).derivative(y, (s, c))
     }
 
-    /// The equations of motion of a body with this contact, with all constant terms computed beforehand.
+    /// The equations of motion of a body with this contact, with all constant terms computed in advance.
     #[inline(always)]
     pub(crate) fn rates(self, body: &Body) -> Rates<f64> {
         Rates::of(self, &body.shape(), !body.is_sharp())
@@ -102,7 +101,7 @@ impl Contact {
     }
 }
 
-/// The contact force in a state that obeys the equations of motion, for theta in (0, pi).
+/// The contact force, in M g, that this contact needs in a state, for theta in (0, pi).
 #[inline(always)]
 pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     let angle = y.theta.sin_cos();
@@ -110,7 +109,7 @@ pub fn force(contact: Contact, body: &Body, y: &State) -> Force {
     force_at(rates.reduced(), y, &rates.derivative(y, angle), angle)
 }
 
-/// The contact force, for given derivative of the state and sine and cosine of theta.
+/// The contact force, from the time derivative `dy` of the state `y`, and sine and cosine of theta.
 #[inline(always)]
 pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f64)) -> Force {
     let (w, dw) = ([y.w1, y.w2, y.w3], [dy.w1, dy.w2, dy.w3]);
@@ -118,17 +117,16 @@ pub(crate) fn force_at(of: &Reduced<f64>, y: &State, dy: &State, angle: (f64, f6
     Force { normal, along, across }
 }
 
-/// The margin of static friction, mu N |mu N| - F^2, from N and F^2.
-///
-/// The margin keeps falling where N turns negative, so that a step across the lift-off does not find a contact that
-/// holds again. The last term keeps the margin positive where mu and F both vanish.
+/// The margin of static friction, mu N |mu N| - F^2, from N and F^2; sticking needs a positive margin. The margin keeps
+/// falling where N turns negative, so that a step across the lift-off does not find a contact that holds. The last term
+/// keeps the margin positive where mu and F both vanish.
 #[inline(always)]
 pub(crate) fn grip<T: Real>(mu: T, normal: T, square: T) -> T {
     let most = mu * normal;
     most * most.abs() - square + mu.splat(1e-30)
 }
 
-/// The contact force N, F2 and Fh over any type of number, from sine and cosine of theta, w and w'.
+/// The contact force [N, F2, Fh] for any type of number, from sine and cosine of theta, w and w'.
 #[inline(always)]
 pub(crate) fn force_of<T: Real>(of: &Reduced<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     match of.contact {

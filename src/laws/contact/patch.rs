@@ -12,8 +12,8 @@
 //! and g = (3/16) int (1 - k^2 sin^2 b)^2 db; at k = 1 both have two continuous derivatives. Friction is smooth at u =
 //! 0 as long as the body drills, so that nothing sticks. Without a radius this is Coulomb's law of a point.
 //!
-//! k itself is never formed, since it may be 0/0: f/S takes its place. Outside, f and g/q are analytic in s = sqrt(1 -
-//! q^2), and their Chebyshev series on [0, 1] fall as 5.83^-n.
+//! k itself is never formed, since it may be 0/0: f/S takes its place. For k > 1, f and g/q are analytic in s = sqrt(1
+//! - q^2), and their Chebyshev series on [0, 1] fall as 5.83^-n.
 //!
 //! Error: 2e-15 of f and g for any k; a test of `patch` compares them with 20 digits.
 //!
@@ -30,7 +30,7 @@ use crate::methods::search::crossing;
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
 
-/// A step takes at most this share of the distance to k = 1.
+/// A step of the integration takes at most this share of the distance to k = 1, where slip and spin are equally fast.
 const NEARER_K: f64 = 0.5;
 
 /// f and g/q for k >= 1 as polynomials in 2 s - 1, Chebyshev series of 22 terms; the terms left out sum up to 7e-17.
@@ -56,7 +56,7 @@ const COUPLE_SERIES: [f64; 22] = [
 fn friction_and_couple<T: Real>(slip: T, turn: T) -> [T; 2] {
     let number = |x: f64| slip.splat(x);
     let one = number(1.0);
-    // Lanes compute both sides, each with arguments that are valid for it.
+    // SIMD lanes compute both cases, each with arguments that are valid for it.
     let (small, wide) = (slip.min(turn), turn.max(number(f64::MIN_POSITIVE)));
     let square = (small / wide) * (small / wide);
     let within = [
@@ -84,7 +84,7 @@ pub(crate) fn rubs<T: Real>(slip: T, drilling: T, radius: T) -> [T; 3] {
     [share, drilling.select_lt(zero, against, zero.select_lt(drilling, -against, zero)), slip + turn]
 }
 
-/// The rubbing speeds of a patch: its slip S, and the speed R of its rim by the drilling.
+/// The rubbing speeds of a patch: its slip S, and the speed R of its edge due to the drilling.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rubbing<T> {
     pub slip: T,
@@ -104,9 +104,9 @@ impl<T: Real> Rubbing<T> {
 }
 
 impl Rubbing<Dual<f64>> {
-    /// The longest step, in the variable of the slopes. At k = 1 the friction has a term (2 |k - 1|)^(5/2)/5 on one
-    /// side only, so that steps become shorter towards k = 1, and a step across k = 1 is so short that this term is
-    /// below the tolerance.
+    /// The longest step in the integration variable, by which the slopes of both speeds are derivatives. At k = S/R = 1
+    /// the friction has a term (2 |k - 1|)^(5/2)/5 on one side only, so that steps become shorter towards k = 1, and a
+    /// step across k = 1 is so short that this term is below the tolerance.
     pub fn longest(&self, tol: f64) -> f64 {
         let left = (self.slip.value - self.turn.value).abs();
         let past = (self.slip.slope - self.turn.slope).abs();
@@ -124,7 +124,7 @@ pub struct PatchShares {
     pub couple: f64,
 }
 
-/// The shares f and g of the friction of a patch whose slip is `k` times eps |w_z|.
+/// The shares f and g of the largest friction of a patch whose slip is `k` times the speed eps |w_z| of its edge.
 pub fn of(k: f64) -> PatchShares {
     if k.is_infinite() {
         return PatchShares { force: 1.0, couple: 0.0 };
@@ -133,8 +133,9 @@ pub fn of(k: f64) -> PatchShares {
     PatchShares { force: k * force, couple }
 }
 
-/// The ratio k of the slip to the speed of the patch's rim at which the force of friction is this share of mu N, from 0 to
-/// 1; k is infinite for 1. If the instantaneous centre is inside the patch, a cubic gives k; else a search.
+/// The ratio k of the slip to the speed of the patch's edge at which the force of friction is the share `share` of mu
+/// N, from 0 to 1; k is infinite for 1. If the instantaneous centre is inside the patch, k is a root of a cubic; else a
+/// search finds k.
 pub fn slip_for(share: f64) -> f64 {
     if share <= 9.0 * PI / 32.0 {
         let third = (2.0 * 3f64.sqrt() * share / PI).min(1.0).asin() / 3.0;

@@ -32,7 +32,7 @@ pub(crate) struct Coefficients<T> {
     pub q: T,
     pub r: T,
     pub t: T,
-    /// 1/D.
+    /// 1/D, with the D of the equations at the top of this file.
     pub per_d: T,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Coefficients<T> {
 pub(crate) struct Reduced<T> {
     pub contact: Contact,
     pub shape: Shape<T>,
-    /// Whether the coefficients depend on the inclination, as for a rounded rim that rolls.
+    /// Whether the coefficients depend on the inclination, as they do for a rounded rim that rolls.
     pub round: bool,
     /// The coefficients of a body for which `round` is false.
     fixed: Coefficients<T>,
@@ -50,7 +50,7 @@ pub(crate) struct Reduced<T> {
 }
 
 impl<T: Real> Reduced<T> {
-    /// The reduced equations of this shape and contact. `round` says whether the body has a fillet, the same in all SIMD lanes.
+    /// The equations of this shape and contact. `round` says whether the body has a fillet, the same in all SIMD lanes.
     #[inline(always)]
     pub fn of(contact: Contact, shape: &Shape<T>, round: bool) -> Self {
         let (shape, zero) = (*shape, shape.i1.splat(0.0));
@@ -95,8 +95,8 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// The moment b - k^2/al of a body for which `round` is false, without a difference: I3 + A^2 I1/al when
-    /// it rolls.
+    /// The moment b - k^2/al of a body for which `round` is false, computed without a difference: I3 + A^2 I1/al for
+    /// rolling.
     #[inline(always)]
     pub fn axial(&self, of: &Coefficients<T>) -> T {
         match self.contact {
@@ -105,7 +105,7 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// J theta'' without the term in theta'^2, which J' adds where J depends on theta.
+    /// J theta'' without the term -(J'/2) theta'^2, which exists only where J depends on theta.
     #[inline(always)]
     pub fn tilting(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> T {
         let radial = of.al * w1 - of.k * w3;
@@ -113,7 +113,7 @@ impl<T: Real> Reduced<T> {
         (c / s * radial + along) * w1 + self.shape.rim.lever((s, c))
     }
 
-    /// Twice the energy without the energy of the tilting: the rotation by w1 and w3, and the height of the centre.
+    /// Twice the energy without J theta'^2: twice the energy of the rotation by w1 and w3, and of the height of the centre.
     #[inline(always)]
     pub fn energy_without_tilting(&self, angle: (T, T), w1: T, w3: T) -> T {
         let of = self.at(angle);
@@ -122,15 +122,14 @@ impl<T: Real> Reduced<T> {
         turning + (height + height)
     }
 
-    /// The derivatives of w1 and w3 with respect to the inclination, along a motion: their lines w1(theta),
-    /// w3(theta).
+    /// The derivatives of w1 and w3 with respect to the inclination; along a motion, w1 and w3 are functions of theta.
     #[inline(always)]
     pub fn lines(&self, of: &Coefficients<T>, (s, c): (T, T), w1: T, w3: T) -> [T; 2] {
         [of.q * w3 - of.p * w1 - c / s * w1, of.r * w1 + of.t * w3]
     }
 
-    /// `tilting` and its derivative with respect to the inclination along the lines of w1 and w3, by dual
-    /// numbers.
+    /// [`tilting`](Self::tilting) and its derivative with respect to the inclination along a motion, where w1 and w3
+    /// are functions of theta; by dual numbers.
     #[inline(always)]
     pub fn tilting_along(&self, (s, c): (T, T), w1: T, w3: T) -> Dual<T> {
         let [w1_slope, w3_slope] = self.lines(&self.at((s, c)), (s, c), w1, w3);
@@ -141,7 +140,8 @@ impl<T: Real> Reduced<T> {
         along.tilting(&along.at(angle), angle, dual(w1, w1_slope), dual(w3, w3_slope))
     }
 
-    /// The inertia J of the tilting; `angle` gives sine and cosine of theta and is only called if J depends on them.
+    /// The inertia J for changes of the inclination; `angle` gives sine and cosine of theta and is only called if J
+    /// depends on them.
     #[inline(always)]
     pub fn inertia(&self, angle: impl FnOnce() -> (T, T)) -> T {
         if self.round {
@@ -179,19 +179,19 @@ impl<T: Real> Rates<T> {
         Self { of, scaled, lever: [shape.rim.a * weight, shape.rim.ell * weight] }
     }
 
-    /// The equations from which these rates are computed.
+    /// The equations of motion from which these rates are computed.
     #[inline(always)]
     pub fn reduced(&self) -> &Reduced<T> {
         &self.of
     }
 
-    /// The rates w1', w2' and w3'.
+    /// The rates w1', w2' and w3', from sine s and cosine c of theta and the angular velocity w.
     #[inline(always)]
     pub fn at(&self, s: T, c: T, w: [T; 3]) -> [T; 3] {
         if self.of.round { self.at_rim_kind::<true>(s, c, w) } else { self.at_rim_kind::<false>(s, c, w) }
     }
 
-    /// The rates w1', w2' and w3'; ROUND tells the compiler whether the rim is rounded and rolls.
+    /// The rates w1', w2' and w3'; ROUND tells the compiler whether the body has a rounded rim and rolls.
     #[inline(always)]
     pub fn at_rim_kind<const ROUND: bool>(&self, s: T, c: T, [w1, w2, w3]: [T; 3]) -> [T; 3] {
         let (ct, rim) = (c / s, &self.of.shape.rim);

@@ -1,14 +1,14 @@
-//! Laws of restitution: where an impact ends.
+//! Laws of restitution, which determine where an impact ends.
 //!
 //! ```text
 //! Stronge   W = (1 - e^2) W_c, W the work of the normal force
 //! Newton    u_n' = -e u_n                                Poisson   p = (1 + e) p_c, p_c the normal impulse of compression
 //! Walton    a ball: P_t = -(1 + e_t) u/a_h up to mu P_n, so that a slip that is gripped turns back to -e_t u
 //! ```
-//! All follow the same [impact](super::impact), and agree where e = 0, and for every ball with e_t = 0; the first three also where
-//! the slip keeps its direction. Where friction stops or turns it, Newton's law may gain energy (Kane and Levinson, Dynamics
-//! (1985); Stronge 1990). Where friction presses the point down once more, Poisson's compression ends at the last zero of
-//! u_n.
+//! All laws follow the same [impact](super::impact), and agree where e = 0, and for every ball with e_t = 0; the first
+//! three also agree where the slip keeps its direction. Where friction stops or turns the slip, Newton's law may gain
+//! energy (Kane and Levinson, Dynamics (1985); Stronge 1990). Where friction presses the contact point down once more,
+//! Poisson's compression ends at the last zero of u_n.
 //!
 //! Error: that of the impact.
 
@@ -17,8 +17,8 @@ use super::table::Table;
 use crate::error::{Error, within};
 
 /// The law by which an impact restores the normal velocity. Its coefficient e is that of
-/// [`restitution`](crate::motion::Ask::restitution). Only Stronge's law takes energy from every impact; a motion under another
-/// one ends where a second circle or a face lands.
+/// [`restitution`](crate::motion::Ask::restitution). Only Stronge's law takes energy from every impact; a motion under
+/// another law ends where a second circle or a face lands.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -30,9 +30,9 @@ pub enum ImpactLaw {
     Newton,
     /// The normal impulse of restitution is e times that of compression (kinetic; Poisson 1817).
     Poisson,
-    /// A ball whose slip, where friction grips it, turns back to -`tangential` times that before, with 0 to 1 (Garwin, Am.
-    /// J. Phys. 37, 88 (1969); Walton and Braun, J. Rheol. 30, 949 (1986); Cross, Am. J. Phys. 70, 1093 (2002)). Needs
-    /// Coulomb friction at a point.
+    /// For a ball: a slip that friction grips turns back to -`tangential` times the slip before the impact, with
+    /// `tangential` from 0 to 1 (Garwin, Am. J. Phys. 37, 88 (1969); Walton and Braun, J. Rheol. 30, 949 (1986); Cross,
+    /// Am. J. Phys. 70, 1093 (2002)). Needs Coulomb friction at a point.
     Walton {
         /// The coefficient of tangential restitution.
         tangential: f64,
@@ -40,18 +40,18 @@ pub enum ImpactLaw {
 }
 
 impl ImpactLaw {
-    /// The coefficient of tangential restitution.
+    /// The coefficient of tangential restitution; 0 for every law but Walton's.
     pub fn tangential(&self) -> f64 {
         if let Self::Walton { tangential } = *self { tangential } else { 0.0 }
     }
 
-    /// Whether a slip that is gripped turns back.
+    /// Whether a slip that friction grips turns back: for Walton's law with a positive coefficient.
     pub(crate) fn turns_back(&self) -> bool {
         self.tangential() > 0.0
     }
 
-    /// Returns an error for another body than a uniform ball, or another contact than Coulomb friction at a point, if the
-    /// law turns slips back.
+    /// Returns an error if the law turns slips back, unless the body is a uniform ball and the contact is Coulomb
+    /// friction at a point.
     pub(crate) fn check(&self, ball: bool, table: &Table) -> Result<(), Error> {
         let value = within("tangential", self.tangential(), (0.0, 1.0), "0 to 1")?;
         let dry = matches!(table, Table::Rubs(Friction::Coulomb { patch: 0.0, .. }));

@@ -41,15 +41,15 @@ pub fn energy(body: &Body, y: &State) -> f64 {
     newton::energy(&shape, angle, w, centre_velocity(&shape, angle, w))
 }
 
-/// Velocity of the centre along e1, e2, e3.
+/// Velocity of the centre of mass along e1, e2, e3, for a contact point at rest.
 #[inline(always)]
 pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2, w3]: [T; 3]) -> [T; 3] {
     let (radius, depth) = (shape.rim.radius(angle), shape.rim.depth(angle));
     [depth * w2, radius * w3 - depth * w1, -(radius * w2)]
 }
 
-/// F2 from w and w', and from the couple m3. On a tip, where A = 0, it follows from the motion of the centre:
-/// F2 = V' + cot theta L w1 w2.
+/// The force F2 from w, w' and the couple m3. On a tip, where A = 0, F2 follows from the motion of the centre: F2 = V'
+/// + cot theta L w1 w2.
 #[inline(always)]
 pub(crate) fn force_along<T: Real>(
     shape: &Shape<T>,
@@ -65,7 +65,7 @@ pub(crate) fn force_along<T: Real>(
     (m3 - shape.i3 * d3) / radius
 }
 
-/// The contact force N, F2 and Fh, from w and w'.
+/// The contact force [N, F2, Fh] of a rolling body, from w and w'.
 #[inline(always)]
 pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let [w1, w2, _] = w;

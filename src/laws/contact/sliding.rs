@@ -1,4 +1,4 @@
-//! The slip of a contact point along an impact, or of a patch that also drills, followed by steps of a flow.
+//! The slip of a contact point during an impact, or of a patch that also drills, by steps of a numerical integration.
 //!
 //! ```text
 //! y = (u_1, u_2, w_n, u_n, P_1, P_2, C, p, work)        dp = S/(S + k) dx, in which nothing is singular
@@ -23,34 +23,34 @@ use crate::numbers::Dual;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector3};
 
-/// A slip slower than this share of the speed, or of the normal velocity, counts as zero.
+/// A slip slower than this share of the rubbing speed, or of the normal velocity, counts as zero.
 pub(super) const STOPPED: f64 = 1e-15;
-/// Below this angle from it, a slip along the lean keeps its direction up to the square of the angle; and the angle below
-/// which any slip keeps one, also where the angle grows as the slip dies out.
+/// Two angles. At less than the first from e_h, a slip keeps its direction up to the square of the angle. At less than
+/// the second from a constant direction any slip keeps it, also where the angle grows as the slip dies out.
 const STRAIGHT: f64 = 1e-8;
 const STRAIGHT_ON: f64 = 1e-14;
-/// The error of a slip across the lean is at most this share of the slip, so that a slip that lasts long can die out; and
-/// the share where that is less than the tolerance, below which no error counts.
+/// Tolerances of a slip across e_h. The first is a share of the slip, so that a long slip can die out. Where that share
+/// is less than the tolerance of the steps, no error below the second share counts.
 const DIES: f64 = 1e-6;
 const DYING: f64 = 1e-3;
-/// A normal velocity that counts as falling again: restitution begins with zero.
+/// A normal velocity down to minus this does not count as a new fall: restitution begins with the velocity zero.
 const BARELY_DOWN: f64 = 1e-9;
 /// Step of an angle over which a derivative is computed.
 const ANGLE_STEP: f64 = 1e-5;
-/// A direction of slip and drilling stays that would change the slip by less than this.
+/// Slip and drilling keep their ratio if it would change the slip by less than this.
 const STAYS: f64 = 1e-14;
-/// Largest number of Newton's steps to the way in which a patch at rest begins to move, and the angle by which one of them
-/// may turn it.
+/// Largest number of Newton's steps in the search for the motion in which a patch at rest begins to move, and the
+/// largest angle by which one step may turn this motion.
 const MOST_NEWTON: usize = 2000;
 const FARTHEST_TURN: f64 = 0.7;
-/// The first step along an impact.
+/// The first step of the integration along an impact.
 pub(super) const FIRST: f64 = 0.3;
 
-/// The longest step, in units of that in which a direction would reach the one that attracts it.
+/// The longest step, in units of that in which a direction of slip would reach the direction that attracts it.
 const DECAYING_STEP: f64 = 3.0;
 
-/// The places of the numbers of the slip after u: the drilling, the normal velocity, the impulse so far, and the work of the
-/// normal force.
+/// The indices of the numbers that follow the slip u: the drilling, the normal velocity, the impulses, their couple,
+/// the normal impulse so far, and the work of the normal force.
 pub(super) const DRILLING: usize = 2;
 pub(super) const LIFT: usize = 3;
 const P_1: usize = 4;
@@ -58,11 +58,12 @@ const P_2: usize = 5;
 const COUPLE: usize = 6;
 pub(super) const PUSHED: usize = 7;
 pub(super) const WORK: usize = 8;
-/// The number of these numbers.
+/// The number of the variables that the steps integrate.
 pub(super) const SLIDING: usize = 9;
 
-/// A patch that drills: its radius, the drilling, how an impulse along the two horizontal axes and along the normal changes
-/// the drilling, and how a couple about the normal does. The same numbers tell how that couple changes the velocities.
+/// A patch of contact that drills: its radius, its drilling, the changes of the drilling per impulse along the two
+/// horizontal axes and along the normal, and per impulse of a couple about the normal. By symmetry these are also the
+/// changes of the velocities per such couple.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PatchedPoint {
     pub radius: f64,
@@ -80,20 +81,20 @@ impl PatchedPoint {
     }
 }
 
-/// The reason for which a slip along an impact is followed no further.
+/// The reason for which the integration of a slip along an impact ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum SlipEnd {
-    /// Compression ends, or restitution.
+    /// The compression or the restitution ends.
     Over,
-    /// Friction presses the point down again before restitution ends.
+    /// Friction presses the contact point down once more before restitution ends.
     Falls,
-    /// It stops, or keeps its direction from here on.
+    /// The slip stops, or keeps its direction from here on.
     Straight,
-    /// It takes too many steps.
+    /// The integration takes too many steps.
     GivenUp,
 }
 
-/// The end of an impact: where one of the numbers of the slip has this value.
+/// The end of an impact: the place where the variable with the index `number` has this value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Restored {
     pub number: usize,
@@ -105,7 +106,7 @@ impl Restored {
         Self { number, value }
     }
 
-    /// What is left up to it.
+    /// The difference of this value and the present one; zero at the end of the impact.
     pub fn left<const N: usize>(&self, y: &[f64; N]) -> f64 {
         self.value - y[self.number]
     }
@@ -130,21 +131,21 @@ pub(super) struct ImpactSlip<'a> {
     pub light: Delassus,
     pub rubs: Roughness<'a>,
     pub patch: Option<PatchedPoint>,
-    /// The end of restitution; None in compression.
+    /// The end of restitution; None while compression lasts.
     pub restores: Option<Restored>,
     pub tol: f64,
 }
 
-/// A direction that a slip keeps.
+/// A direction that a slip keeps until it stops.
 pub(super) struct Straight {
     pub way: [f64; 2],
-    /// The slip across that direction, which dies out, and its speed per impulse across.
+    /// The slip across that direction, which dies out, and the velocity across per impulse across.
     pub across: f64,
     pub light: f64,
 }
 
 impl ImpactSlip<'_> {
-    /// The patch; None for a point. The code for web pages has no patches.
+    /// The patch of contact; None for a point. The code for web pages has no patches.
     #[inline(always)]
     pub fn patch(&self) -> Option<PatchedPoint> {
         if SHORT_CODE { None } else { self.patch }
@@ -161,7 +162,7 @@ impl ImpactSlip<'_> {
         if turn.abs() < STOPPED {
             return Some(Straight { way, across: 0.0, light });
         }
-        // Only beside the lean a slip across changes nothing else in the first order.
+        // Only for a slip along the lean does a small slip across change nothing else in the first order.
         let beside = self.light.is_lean() && bends < 0.0 && y.abs() < STRAIGHT;
         let off = turn / bends;
         let way = [x + off * y, y - off * x];
@@ -172,18 +173,19 @@ impl ImpactSlip<'_> {
         })
     }
 
-    /// The speed of the rubbing: of the slip, and on a patch also of its rim by the drilling.
+    /// The rubbing speed: that of the slip, and on a patch also the speed of its edge by the drilling.
     pub fn rubbing<const N: usize>(&self, y: &[f64; N]) -> f64 {
         speed([y[0], y[1]]) + self.patch().map_or(0.0, |patch| patch.radius * y[DRILLING].abs())
     }
 
-    /// Whether the steps end at these numbers.
+    /// Whether the integration ends at these values of its variables.
     pub fn is_over<const N: usize>(&self, y: &[f64; N]) -> bool {
         self.rubbing(y) < STOPPED || self.keeps([y[0], y[1]]).is_some() || self.stays(y).is_some()
     }
 
-    /// Friction and couple per normal impulse of a patch whose slip and drilling grow or fall together, and the normal
-    /// impulse in which they stop: as in every creep, since along an impact nothing else changes.
+    /// Friction and couple per normal impulse of a patch whose slip and drilling keep their ratio, and the normal
+    /// impulse in which both stop. This is so in every creep, since along an impact nothing else changes. None if the
+    /// ratio changes.
     pub fn stays<const N: usize>(&self, y: &[f64; N]) -> Option<([f64; 3], f64)> {
         let PatchedPoint { radius, row: [m_1, m_2, m_n], about, .. } = self.patch()?;
         let ([x, z], couple) = self.pulls([y[0], y[1]], y[DRILLING], radius);
@@ -193,25 +195,25 @@ impl ImpactSlip<'_> {
         let way = Vector3::new(y[0], y[1], radius * y[DRILLING]);
         let grows = way.dot(&rate) / way.norm_squared();
         let most = if grows < 0.0 { -1.0 / grows } else { f64::INFINITY };
-        // What is off the way turns the impulse for as long as it lasts.
+        // The change across this direction turns the impulse until the slip stops.
         let off = (rate - way * grows).norm() * most.min(1.0);
         (off < STAYS).then_some(([x, z, couple], most))
     }
 
-    /// Whether the slip of a patch is no more than that which follows its drilling.
+    /// Whether the slip of a patch is so small that it is the creep which follows from its drilling.
     pub fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
         let Some(PatchedPoint { radius, .. }) = self.patch() else { return false };
         let k = patch::slip_for((speed(self.light.pushes(self.light.couples)) / self.rubs.mu).min(1.0));
         k.is_finite() && speed([y[0], y[1]]) <= (1.01 * k + 1e-6) * radius * y[DRILLING].abs()
     }
 
-    /// The largest change of the slip by a unit of friction.
+    /// A bound on the change of the slip by friction, per normal impulse.
     fn eased(&self) -> f64 {
         let [[a, _], [_, b]] = self.light.level;
         self.rubs.mu * (a + b)
     }
 
-    /// Friction and its couple per normal force, on a patch, which no law of the user has.
+    /// Friction over u and its couple, per normal force, on a patch; a user-defined law has no patch.
     fn pulls(&self, [u, v]: [f64; 2], drilling: f64, radius: f64) -> ([f64; 2], f64) {
         let (mu, [share, couple, _]) = (self.rubs.mu, rubs(speed([u, v]), drilling, radius));
         ([-mu * share * u, -mu * share * v], mu * couple)
@@ -224,14 +226,15 @@ impl ImpactSlip<'_> {
         rest.map_or([f64::NAN; 3], Into::into)
     }
 
-    /// How impulses of friction and of its couple change the slip and the drilling.
+    /// The matrix of the changes of slip and drilling per impulse of friction and of its couple.
     fn inertia(&self, PatchedPoint { row: [m_1, m_2, _], about, .. }: &PatchedPoint) -> Matrix3<f64> {
         let [[a, ab], [_, b]] = self.light.level;
         Matrix3::new(a, ab, *m_1, ab, b, *m_2, *m_1, *m_2, *about)
     }
 
-    /// What friction does per normal impulse after slip and drilling of a patch have stopped, where static friction is at
-    /// most `fixed`: the impulses that hold both, or else those of the one motion that begins; and whether it holds.
+    /// The friction impulses and their couple, per normal impulse, after slip and drilling of a patch have stopped.
+    /// They hold both at rest if static friction of at most `fixed` can do so (true); otherwise they are those of the
+    /// one motion that begins (false).
     pub fn after_rest(&self, patch: &PatchedPoint, fixed: f64) -> Option<([f64; 3], bool)> {
         let holds @ [x, y, couple] = self.holding(patch);
         let friction = x.hypot(y);
@@ -244,9 +247,9 @@ impl ImpactSlip<'_> {
         self.leaves(patch).map(|way| (way, false))
     }
 
-    /// The friction and the couple under which a patch at rest begins to move: those of the motion y = B + G (F, C), which
-    /// is unique. F and C depend on its direction alone, by the angles of (u, eps w) across the table and from it, which
-    /// are sought with the speed.
+    /// The friction and the couple under which a patch at rest begins to move: those of the motion y = B + G (F, C),
+    /// which is unique. F and C depend only on the direction of (u, eps w). The search is for the two angles of this
+    /// direction, across the table and from it, and for the speed.
     fn leaves(&self, patch: &PatchedPoint) -> Option<[f64; 3]> {
         let ([b_1, b_2], radius, mu) = (self.light.couples, patch.radius, self.rubs.mu);
         let ways = Vector3::new(1.0, 1.0, 1.0 / radius);
@@ -372,19 +375,19 @@ impl Flow<2> for ImpactSlip<'_> {
 
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let (sigma, aside) = (self.rubbing(y), y[1].abs());
-        // The error is relative to a fast slip, and so small for a slow slip that its direction stays.
+        // The allowed error is relative to a fast slip, and so small for a slow slip that its direction stays.
         let per_slip = if sigma > 1.0 { 1.0 / (self.tol * sigma) } else { (1.0 / self.tol).max(1e3 / sigma) };
         let per = |i: usize| match i {
             1 if self.patch().is_none() && self.light.is_lean() && aside > STRAIGHT_ON * sigma => {
                 per_slip.max(1.0 / (DIES * aside).max(self.tol.min(DYING * aside)))
             }
             0 | 1 => per_slip,
-            // A drilling that dies out keeps the direction of the rubbing, too.
+            // A drilling that dies out keeps its direction, too.
             DRILLING => {
                 let radius = self.patch().map_or(0.0, |patch| patch.radius);
                 (1.0 / (self.tol * y[i].abs().max(1.0))).max(1e3 * radius / sigma)
             }
-            // A jam makes impulses that are large compared with the fall.
+            // Where a slip jams, impulses are large compared with the normal velocity.
             _ => 1.0 / (self.tol * y[i].abs().max(1.0)),
         };
         made.error(per, N as f64)
@@ -398,7 +401,7 @@ impl Flow<2> for ImpactSlip<'_> {
         FIRST
     }
 
-    /// Nothing turns or nods along an impact, so that only the number of steps is limited.
+    /// Along an impact no angle limits the step, so that only the number of steps is limited.
     fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
         f64::INFINITY
     }

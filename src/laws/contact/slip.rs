@@ -42,7 +42,7 @@ use crate::laws::newton::{self, Force};
 use crate::laws::state::{Slip, State, drilling_of, rolling_of};
 use crate::numbers::{Real, here};
 
-/// A patch of this radius or less is a point, since a motion on a patch differs from rolling by its radius at least.
+/// A patch of at most this radius, in R, is a point: a motion on a patch differs from that on a point by about its radius.
 const LARGEST_POINT_RADIUS: f64 = 1e-16;
 
 /// The law of friction at a contact point that slips or sticks.
@@ -70,7 +70,7 @@ pub enum Friction {
 }
 
 impl Friction {
-    /// Coulomb's law with one coefficient for sliding and rest.
+    /// Coulomb's law with the same coefficient of sliding and of static friction.
     pub fn coulomb(mu: f64) -> Self {
         Self::Coulomb { mu, fixed: mu, patch: 0.0 }
     }
@@ -117,9 +117,10 @@ impl Friction {
     }
 }
 
-/// How the coefficient of friction follows the speed of a slip: `()` is constant, and costs no code.
+/// A law for the coefficient of friction as a function of the speed of the slip. The type `()` means a constant, and
+/// costs no code.
 pub(crate) trait FollowsSpeed<T>: Copy {
-    /// The coefficient of dry friction at a speed, or that of a film which pulls as much; `constant` if it does not vary.
+    /// The coefficient of dry friction at a speed, or that of a film with the same force; `constant` if it does not vary.
     fn strength(&self, constant: T, speed: impl FnOnce() -> T, dry: bool) -> T;
 }
 
@@ -136,7 +137,7 @@ pub(crate) struct Slipping<T, G = (), L = ()> {
     pub shape: Shape<T>,
     per_i1: T,
     per_i3: T,
-    /// The coefficient mu, or c.
+    /// The coefficient of friction mu of Coulomb's law, or c of a viscous film.
     pub strength: T,
     /// The speed of slip below which the variable sigma differs much from time.
     pub soft: T,
@@ -146,28 +147,29 @@ pub(crate) struct Slipping<T, G = (), L = ()> {
     pub losses: Option<Couples<T, G>>,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
-    /// The rate at which the table turns.
+    /// The rate at which the table turns; 0 if it does not.
     om: T,
-    /// How the coefficient varies; `strength` is that at rest.
+    /// The law of a coefficient that varies with the speed; `strength` is then the coefficient at rest.
     varies: L,
 }
 
-/// The accelerations and the contact force in one state.
+/// The accelerations, the contact force and the couples that hold motions at rest, in one state.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SlipResponse<T> {
-    /// The derivative w'.
+    /// The derivative w' of the angular velocity.
     pub w: [T; 3],
-    /// The derivative u'.
+    /// The derivative u' of the slip.
     pub u: [T; 2],
-    /// N0 (I1 + g^2); where this number vanishes the body lifts off.
+    /// N0 (I1 + g^2), with the N0 of the equations above; where this number vanishes the body lifts off.
     pub free: T,
-    /// (1 - eps - [`JAMMED`]) (I1 + g^2); where this number vanishes no unique force exists.
+    /// (1 - eps - [`JAMMED`]) (I1 + g^2), with the eps of the equations above; where it vanishes no unique force exists.
     pub room: T,
     /// The contact force N, F2, Fh.
     pub force: [T; 3],
-    /// The couple about the vertical that holds the drilling, and the largest that friction can exert.
+    /// The couple about the vertical that holds the drilling at rest, and the largest one that friction can exert.
     pub held: [T; 2],
-    /// The couple that holds the contact along the rim, or rolling and rocking, and the largest that friction can exert.
+    /// The couple that holds the contact along the rim, or rolling and rocking, at rest, and the largest one that
+    /// friction can exert.
     pub kept: [T; 2],
 }
 
@@ -177,7 +179,7 @@ impl<T: Real> Slipping<T> {
         let one = strength.splat(1.0);
         let (per_i1, per_i3) = (one / shape.i1, one / shape.i3);
         let reach = shape.rim.ell.abs() + shape.rim.rho;
-        // Friction changes the slip by about this speed in a quarter of the unit of time.
+        // Friction changes the slip by about `soft` in a quarter of the unit of time.
         let soft = strength * (one + reach * reach * per_i1 + per_i3) * strength.splat(0.25);
         let om = strength.splat(0.0);
         Self {
@@ -196,7 +198,7 @@ impl<T: Real> Slipping<T> {
 }
 
 impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
-    /// Returns this body with a coefficient of friction that follows the speed.
+    /// Returns this body with a coefficient of friction that is a function of the speed.
     #[must_use]
     pub fn varying<M>(self, varies: M) -> Slipping<T, G, M> {
         let Self { shape, per_i1, per_i3, strength, soft, dry, losses, radius, om, .. } = self;
@@ -209,7 +211,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         Self { radius, ..self }
     }
 
-    /// Returns this body on a table that turns at this rate.
+    /// Returns this body on a table that turns at the rate `om`, if `turns`.
     #[must_use]
     pub fn over(self, om: T, turns: bool) -> Self {
         Self { om, losses: self.losses.map(|losses| losses.over(om, turns)), ..self }
@@ -221,7 +223,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         self.radius
     }
 
-    /// How the coefficient of friction varies.
+    /// The law by which the coefficient of friction varies with the speed.
     pub fn varies(&self) -> &L {
         &self.varies
     }
@@ -233,8 +235,9 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         Slipping { shape, per_i1, per_i3, strength, soft, dry, losses, radius, om, varies }
     }
 
-    /// The response with a couple `push` h/s along the contour that makes psi' change at this rate, with dt/dsigma and
-    /// `push`. Neither the normal force nor friction depends on this couple.
+    /// The response with a couple `push` h/s along the contour that makes psi' change at the rate `rate`; also
+    /// dt/dsigma, with the integration variable sigma, and `push`. Neither the normal force nor friction depends on
+    /// this couple.
     pub fn settled(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], rate: T) -> (SlipResponse<T>, T, T) {
         let &Shape { rim, i1, i3 } = &self.shape;
         let (mut at, pace) = self.at((s, c), w, u);
@@ -257,8 +260,8 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
 
     /// The response to the friction force F = -strength N pull/size, and dt/dsigma = size/sum, with the variable sigma
     /// of this module. N is the normal force, `strength` the coefficient of friction, and `size` the magnitude of the
-    /// vector `pull`, against which friction acts. On a patch of contact the table also exerts the couple `twist` N.
-    /// One division serves all quotients.
+    /// vector `pull`, against which friction acts. On a patch of contact the table also exerts the couple `twist` N. A
+    /// single division serves all quotients.
     #[inline(always)]
     pub fn with(
         &self,
@@ -301,7 +304,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
             |losses| {
                 losses.total_couple(
                     &losses.seen(rim, angle, w1 / s, w),
-                    // Only a user-defined law asks for it.
+                    // Only a user-defined law uses this couple.
                     |couple| free_of(Some(couple), c * (w1 / s)) * size / left_of(Some(couple))[0],
                 )
             },
@@ -357,9 +360,9 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         (SlipResponse { w: dw, u: du, free, room, force, held, kept }, size * (per * s * left))
     }
 
-    /// w' with the couples that hold the contact along the rim, or the drilling, or both, from w' without them and the
-    /// torque; also the couple about the vertical, and the couple h/s. Neither the normal force nor friction depends on
-    /// these couples.
+    /// w', with the couples that hold the contact along the rim, or the drilling, or both, at rest, computed from w'
+    /// without them and from the torque; also the couple about the vertical, and the couple along h/s. Neither the
+    /// normal force nor friction depends on these couples.
     #[inline(always)]
     fn with_motions_held(
         &self,
@@ -390,8 +393,8 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
     }
 
     /// w' of a body whose rolling and rocking are held, from the torque; the couple about the vertical that holds the
-    /// drilling if that is held, too; and the horizontal couple, of which dry friction along the contour has exerted
-    /// its part, with its limit. `most` has the limits of that part along h s, and of rolling resistance.
+    /// drilling, if it is held too; and the horizontal couple of rolling resistance, beyond that of dry friction along
+    /// the contour, with its limit. The last argument has the limits of both couples.
     #[inline(always)]
     fn stays(
         &self,
@@ -408,7 +411,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         ([s * turn, s.splat(0.0), c * turn], if drilling { -twist } else { s.splat(0.0) }, [needs, most])
     }
 
-    /// The response where a slip begins in the direction `way`, or without friction where `way` is zero.
+    /// The response where a slip begins in the direction `way`; without friction where `way` is zero.
     #[inline(always)]
     pub fn towards(&self, angle: (T, T), w: [T; 3], u: [T; 2], way: [T; 2]) -> SlipResponse<T> {
         let one = self.strength.splat(1.0);
@@ -433,7 +436,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         )
     }
 
-    /// The response in a state and dt/dsigma there; under dry friction `u` must not be zero.
+    /// The response in a state, and dt/dsigma with the integration variable sigma; under dry friction `u` must not be zero.
     #[inline(always)]
     pub fn at(&self, angle: (T, T), w: [T; 3], u: [T; 2]) -> (SlipResponse<T>, T) {
         // `with` is inlined, so that it is called in one place.
@@ -445,7 +448,8 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         self.with(angle, w, u, (u, size, sum), self.strength_at(u), None)
     }
 
-    /// The response in a state, dt/dsigma there, and the heat of the couple of the patch in a unit of time.
+    /// The response on a patch of contact, dt/dsigma with the integration variable sigma, and the heat from the couple
+    /// of the patch per unit of time.
     #[inline(always)]
     pub fn on_patch(&self, (s, c): (T, T), w: [T; 3], u: [T; 2], patch: T) -> (SlipResponse<T>, T, T) {
         // At the stages of a step s^2 + c^2 is not quite 1. The difference, times w^2, would be an acceleration of the
@@ -469,7 +473,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         at
     }
 
-    /// Writes the derivatives of these numbers from the response.
+    /// Writes the derivatives with respect to sigma of the variables in `y`, from the response `at` and `pace` = dt/dsigma.
     #[inline(always)]
     pub fn writes<const N: usize>(&self, y: &[T; N], all: &mut [T; N], (at, pace): (&SlipResponse<T>, T)) {
         let (s, c, w, u) = (y[0], y[1], [y[2], y[3], y[4]], [y[5], y[6]]);
@@ -500,7 +504,7 @@ impl Slipping<f64> {
 }
 
 impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
-    /// One compiled copy of [`Slipping::on_patch`].
+    /// [`Slipping::on_patch`], compiled once.
     #[inline(never)]
     fn on_a_patch(
         &self,
@@ -512,7 +516,8 @@ impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
         self.on_patch(angle, w, u, patch)
     }
 
-    /// The response in a state, dt/dsigma there, and the heat of a couple of a patch in a unit of time.
+    /// The response in a state, dt/dsigma with the integration variable sigma, and the heat from the couple of a patch
+    /// per unit of time; 0 for a point.
     #[inline(always)]
     pub fn answers(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> (SlipResponse<f64>, f64, f64) {
         match self.patch() {
@@ -539,8 +544,7 @@ impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
         })
     }
 
-    /// mu_P(theta), the smallest coefficient of friction at which some direction of slip leaves no unique
-    /// force.
+    /// mu_P(theta), the smallest coefficient of friction for which some direction of slip has no unique contact force.
     pub fn painleve(&self, angle: (f64, f64)) -> f64 {
         let (lever, rim) = (self.shape.rim.lever(angle), &self.shape.rim);
         (self.shape.i1 + lever * lever) / (lever * rim.height(angle)).abs()
@@ -559,18 +563,18 @@ pub fn painleve(body: &Body, theta: f64) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).painleve(theta.sin_cos())
 }
 
-/// The horizontal velocity of the centre of a body that slips, along e_h, which is horizontal below the axis, and along e2,
-/// across it. With a slip of 0 the contact point is at rest.
+/// The horizontal velocity of the centre of mass of a body that slips, in sqrt(g R): along e_h, the direction of the
+/// lean, and along e2, across it. With a slip of 0 the contact point is at rest.
 pub fn centre_velocity(body: &Body, y: &State, slip: Slip) -> [f64; 2] {
     Slipping::of(&body.shape(), 1.0, true).centre(y.theta.sin_cos(), [y.w1, y.w2, y.w3], slip.pair())
 }
 
-/// Vertical velocity of the centre of a body whose lowest point stays on the table.
+/// Vertical velocity, in sqrt(g R), of the centre of mass of a body whose lowest point stays on the table.
 pub fn centre_rise(body: &Body, y: &State) -> f64 {
     body.shape().rim.lever(y.theta.sin_cos()) * y.w2
 }
 
-/// Kinetic and potential energy of a body that slips, in M g R.
+/// Kinetic and potential energy of a body that slips, in M g R, with heights measured from the table.
 pub fn energy(body: &Body, y: &State, slip: Slip) -> f64 {
     Slipping::of(&body.shape(), 1.0, true).energy(y, slip.pair())
 }

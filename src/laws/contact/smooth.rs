@@ -41,14 +41,14 @@ pub fn energy(body: &Body, y: &State) -> f64 {
     newton::energy(&shape, angle, w, centre_velocity(&shape, angle, w))
 }
 
-/// The velocity of the centre, which is vertical. The first component holds it, since only its magnitude is used.
+/// The velocity of the centre, which is vertical; it stands in the first component, since only its magnitude is used.
 #[inline(always)]
 pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [_, w2, _]: [T; 3]) -> [T; 3] {
     let zero = w2.splat(0.0);
     [shape.rim.lever(angle) * w2, zero, zero]
 }
 
-/// The contact force N, F2 and Fh, from w and w'.
+/// The contact force [N, F2, Fh] on a smooth table, from w and w'; F2 and Fh are zero.
 #[inline(always)]
 pub(crate) fn force<T: Real>(shape: &Shape<T>, angle: (T, T), w: [T; 3], dw: [T; 3]) -> [T; 3] {
     let zero = w[1].splat(0.0);

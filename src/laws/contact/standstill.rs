@@ -31,26 +31,26 @@ use crate::methods::roots::Trig;
 use crate::numbers::Sum;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// From this fraction of mu_P on, more than one behaviour may be consistent, and all are counted.
+/// From this fraction of mu_P(theta) on, more than one behaviour may be consistent, and all behaviours are counted.
 const DOUBTFUL_SHARE_OF_PAINLEVE: f64 = 0.9;
-/// A slip whose speed grows more slowly than this counts as not growing, since that is a rounding error.
+/// Largest growth rate of the speed of a slip that counts as zero, since it may be a rounding error.
 const GROWTH_ROUNDING: f64 = 1e-11;
-/// The limit if static friction has just ceased to hold, at a time that is rounded.
+/// Largest growth rate of a slip that counts as zero just after static friction has ceased to hold, at a time that is rounded.
 const GROWTH_ROUNDING_AT_RELEASE: f64 = 1e-8;
 
-/// The forces at a contact point at rest, which decide whether it sticks.
+/// The forces at a contact point at rest, and the rates of a slip from rest, which decide whether the point sticks.
 pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
     /// The coefficients of sliding and of static friction.
     pub mu: [f64; 2],
-    /// The normal force without friction.
+    /// The normal force if there were no friction.
     pub free: f64,
     /// The normal force and the friction that keep the contact point at rest.
     pub held: [f64; 2],
-    /// The direction opposite to that friction.
+    /// The direction opposite to the friction that keeps the contact point at rest, as an angle from e_h to e2.
     pub against: f64,
     /// Whether more than one force may obey the law of friction.
     pub doubtful: bool,
-    /// The rates at which a slip begins.
+    /// The rates at which a slip begins from rest.
     pub onset: Onset,
     /// The growth rate of the speed of a slip along alpha; None where the normal force is not positive.
     pub growth: F,
@@ -63,7 +63,7 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         all.filter_map(|alpha| (self.growth)(alpha).map(|growth| (alpha, growth))).collect()
     }
 
-    /// The behaviour of the contact point.
+    /// The behaviour of the contact point: sticking, slipping in a direction, lift-off, or not unique.
     pub fn decides(&self) -> Standstill {
         let &Self { mu: [mu, fixed], free, held: [normal, friction], doubtful, .. } = self;
         let holds = |mu: f64| normal > 0.0 && friction <= mu * normal;
@@ -77,7 +77,7 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
         }
         let mut ways = self.slip_directions();
         if !doubtful {
-            // Rounding may split one direction into several; that of the fastest growth is used.
+            // Rounding may split one direction into several; the direction of the fastest growth is used.
             let best = ways.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
             return best.filter(|way| way.1 > -GROWTH_ROUNDING).map_or(
                 Standstill::Undefined,
@@ -121,9 +121,9 @@ impl<F: Fn(f64) -> Option<f64>> HeldContact<F> {
 
 /// Whether a contact point at rest certainly sticks if static friction can hold it, under sliding friction `mu`.
 ///
-/// It could slip off as well, in a direction e, only where (lambda + mu N A) e = -A F with lambda, N > 0 and the friction F
-/// that holds it, and A = diag(D_h - k g h/I1, D_2) is positive, with k = g h/(I1 + g^2). There mu N < |F|, while
-/// N = N0/(1 - mu k cos alpha) is at least N0/(1 + mu |k|).
+/// The contact point could slip off in a direction e as well, only where (lambda + mu N A) e = -A F, with lambda, N >
+/// 0, the friction F that holds the point, and a positive A = diag(D_h - k g h/I1, D_2), k = g h/(I1 + g^2). In this
+/// case mu N < |F|, while N = N0/(1 - mu k cos alpha) is at least N0/(1 + mu |k|).
 #[cfg(feature = "many")]
 pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
     let (slipping, angle) = (Slipping::of(shape, mu, true), y.theta.sin_cos());
@@ -137,20 +137,20 @@ pub(crate) fn is_certain(shape: &Shape<f64>, y: &State, mu: f64) -> bool {
     held * (1.0 + mu / limit) < (1.0 - GROWTH_ROUNDING_AT_RELEASE) * mu * free
 }
 
-/// The motions at rest of a body whose slip is zero, if dry losses resist others than the slip, and whether more than
-/// one behaviour may be consistent.
+/// The motions at rest of a body whose slip is zero, if dry losses resist motions other than the slip; and whether more
+/// than one behaviour may be consistent.
 fn together(body: &Body, y: &State, mu: f64, of: Option<&UnderCouple>) -> Option<(Together, bool)> {
     let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
     let found = Together::of_body(&body.shape(), of?, (angle, w), [0.0; 2], Rubs::Rests)?;
     Some((found, mu >= DOUBTFUL_SHARE_OF_PAINLEVE * painleve(body, y.theta)))
 }
 
-/// These losses with a couple that is linear in the normal force.
+/// These losses with a user-defined couple as a linear function of the normal force, for a body that rolls.
 fn linear<G: OwnCouple<f64>>(body: &Body, y: &State, of: Option<Couples<f64, G>>) -> Option<UnderCouple> {
     of.map(|losses| Lossy { rates: Contact::Rolling.rates(body), losses }.linear(y))
 }
 
-/// The behaviour of a contact point whose slip is zero, under these losses.
+/// The behaviour of a contact point whose slip is zero, for a body with these losses.
 pub(crate) fn standstill<G: OwnCouple<f64>>(
     body: &Body,
     y: &State,
@@ -206,7 +206,7 @@ fn forces_at_rest(
     }
 }
 
-/// The force that keeps the contact point at rest.
+/// The contact force [`Force`] that keeps the contact point at rest.
 fn sticking_force(body: &Body, y: &State, losses: Option<UnderCouple>) -> Force {
     let Some(losses) = losses else { return force(Contact::Rolling, body, y) };
     Lossy { rates: Contact::Rolling.rates(body), losses }.moves(y).1
@@ -223,16 +223,17 @@ pub(crate) struct Onset {
     pub mu: f64,
     pub free: f64,
     pub eps: [f64; 2],
-    /// The rate of the slip without a force of the table.
+    /// The rate of the slip if the table exerted no force.
     pub bare: [f64; 2],
-    /// The rate per normal force.
+    /// The rate of the slip per normal force.
     pub pressed: [Sum<f64>; 2],
-    /// The rate per horizontal force, by its elements 11, 22 and 12.
+    /// The rate of the slip per horizontal force: the elements 11, 22 and 12 of a symmetric matrix.
     pub pulled: [f64; 3],
 }
 
 impl Onset {
-    /// All directions in (-pi, pi] in which f vanishes: those that a vanishing slip keeps.
+    /// All directions in (-pi, pi] in which f, the rate |u| alpha' at which the slip turns, vanishes: a vanishing slip
+    /// keeps these.
     fn directions(&self) -> Vec<f64> {
         let &Self { mu, free, eps: [eps_1, eps_2], bare: [b_1, b_2], pressed: [p_1, p_2], pulled } = self;
         let [apart, skew] = [mu * (pulled[1] - pulled[0]), mu * pulled[2]];

@@ -1,4 +1,4 @@
-//! Laws of contact with the table: the law of one motion, and its code for many motions.
+//! Laws of contact with the table, as an enumeration for one motion, and as a code in arrays for many motions.
 
 use super::Contact;
 use super::slip::Friction;
@@ -35,21 +35,21 @@ impl From<Friction> for Table {
 }
 
 impl From<Contact> for Table {
-    /// Rolling with an infinite coefficient of friction, or smooth.
+    /// Rolling with an infinite coefficient of friction, or a smooth table.
     fn from(contact: Contact) -> Self {
         Self::of(contact, f64::INFINITY)
     }
 }
 
 impl From<TableKind> for Table {
-    /// The law of this kind for many motions with coefficients of their own: here they are infinite, without a patch.
+    /// The law of this kind with infinite coefficients and without a patch, for many motions each with its own coefficients.
     fn from(kind: TableKind) -> Self {
         kind.with([f64::INFINITY, f64::INFINITY, 0.0])
     }
 }
 
 impl Table {
-    /// Rolling with this coefficient of friction; or smooth, where the coefficient is ignored.
+    /// Rolling with the coefficient of friction `mu`, or a smooth table, for which `mu` is ignored.
     pub fn of(contact: Contact, mu: f64) -> Self {
         match contact {
             Contact::Rolling => Self::Rolling { mu },
@@ -57,12 +57,12 @@ impl Table {
         }
     }
 
-    /// Whether a law of friction decides if the contact point slips or is at rest.
+    /// Whether the law contains friction that decides if the contact point slips or is at rest.
     pub fn rubs(&self) -> bool {
         matches!(self, Self::Rubs(_))
     }
 
-    /// The contact as long as no law of friction lets the contact point slip: smooth, or else rolling.
+    /// The kind of contact while the contact point does not slip: smooth for a smooth table, else rolling.
     pub fn contact(&self) -> Contact {
         if *self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }
@@ -75,7 +75,7 @@ impl Table {
         }
     }
 
-    /// The law of friction under which the contact point moves while it slips.
+    /// The law of friction on a contact point that slips.
     pub(crate) fn friction(&self) -> Friction {
         match *self {
             Self::Rubs(friction) => friction,
@@ -141,7 +141,7 @@ impl TableKind {
         }
     }
 
-    /// The law of this kind with these coefficients; coefficients that the kind does not have are ignored.
+    /// The law of this kind with the coefficients [mu or c, static, patch]; coefficients that the kind does not have are ignored.
     pub(crate) fn with(self, [a, b, patch]: [f64; 3]) -> Table {
         match self {
             Self::Rolling => Table::Rolling { mu: a },
@@ -151,12 +151,12 @@ impl TableKind {
         }
     }
 
-    /// Whether a law of friction decides if the contact point slips or is at rest.
+    /// Whether the law contains friction that decides if the contact point slips or is at rest.
     pub fn rubs(self) -> bool {
         matches!(self, Self::Coulomb | Self::Viscous)
     }
 
-    /// The contact as long as no law of friction lets the contact point slip: smooth, or else rolling.
+    /// The kind of contact while the contact point does not slip: smooth for a smooth table, else rolling.
     pub fn contact(self) -> Contact {
         if self == Self::Smooth { Contact::Smooth } else { Contact::Rolling }
     }

@@ -54,14 +54,14 @@ impl Resting {
     }
 }
 
-/// What happens to a part.
+/// The result for one motion at rest: its reaction, and the direction and rate at which it begins if friction does not hold it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Fate {
     /// The reaction per normal force.
     pub reaction: [f64; 2],
     /// The direction in which the motion begins, a unit vector; zero if the motion is held, or is not at rest.
     pub way: [f64; 2],
-    /// The rate at which its speed grows.
+    /// The rate at which the speed of the motion grows.
     pub growth: f64,
 }
 
@@ -74,41 +74,41 @@ impl Fate {
 /// The motions at rest of a body or a stone, and their response to reactions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Together {
-    /// The largest reaction of each part, per normal force; None if the part is not at rest.
+    /// The largest reaction of each kind of motion, per normal force; None if this motion is not at rest.
     limits: [Option<f64>; 4],
-    /// x'/N = q + B r.
+    /// The change x'/N = q + B r of all motions at rest.
     q: Reactions,
     b: SMatrix<f64, REACTIONS, REACTIONS>,
-    /// The normal force without reactions, and m.
+    /// The normal force without reactions, and the vector m in N = N0/(1 - m.r).
     normal: f64,
     lean: Reactions,
-    /// A part whose fate is known.
+    /// A motion of which it is known whether friction holds it; None if there is none.
     known: Option<(Resting, bool)>,
 }
 
-/// A reaction with which the response is probed; the response is linear, so that its size matters little.
+/// A reaction by which the response is measured; the response is linear, so that the size matters little.
 const PROBE_REACTION: f64 = 0.125;
-/// Sweeps of the projection before Newton's method, and if Newton's method has not converged.
+/// Numbers of sweeps of the projection: before Newton's method, and if Newton's method has not converged.
 const PROJECTION_SWEEPS: [usize; 2] = [100, 5000];
 const NEWTON_STEPS: usize = 25;
 /// The square of a singular value of the slope, beside the sum of all, below which it counts as zero.
 const SINGULAR: f64 = 1e-15;
 /// Size of an error of the reactions that counts as rounding.
 const CONVERGED: f64 = 1e-13;
-/// A part whose reaction is so close to its limit is held, since friction holds up to its limit.
+/// A motion whose reaction is within this of its limit counts as held, since friction holds up to its limit.
 const LIMIT_ROUNDING: f64 = 1e-11;
 /// Components of a direction below this are roundings of zero.
 const DIRECTION_ROUNDING: f64 = 1e-15;
-/// Number of directions of the slip from which other solutions are searched for.
+/// Number of directions of the slip from which the search for other solutions starts.
 const START_DIRECTIONS: usize = 24;
-/// A slip whose speed grows more slowly counts as not growing.
+/// Largest growth rate of the speed of a slip that counts as zero.
 const SLIP_GROWTH_ROUNDING: f64 = 1e-11;
-/// Directions that differ by less than this are the same.
+/// Directions of slip that differ by less than this, in radians, count as the same.
 const SAME_DIRECTION: f64 = 1e-6;
 
 impl Together {
-    /// The motions with these limits, and the normal force and x' for reactions per normal force. None where no normal
-    /// force presses the body on the table.
+    /// The motions at rest with these limits, and with a function that gives the normal force and x' for reactions per
+    /// normal force. None where no normal force presses the body on the table.
     pub fn of(
         limits: [Option<f64>; 4],
         respond: impl Fn(&[f64; REACTIONS]) -> (f64, [f64; REACTIONS]),
@@ -141,15 +141,15 @@ impl Together {
         Some(Self { limits, q, b, normal, lean, known: None })
     }
 
-    /// These motions without the slip, or with the slip, which friction holds up to this coefficient.
+    /// Returns these motions together with the slip, which friction holds up to the coefficient `limit`.
     #[must_use]
     pub fn with_slip(mut self, limit: f64) -> Self {
         self.limits[Resting::Slip as usize] = Some(limit);
         self
     }
 
-    /// These motions, of which the fate of one is known: friction has just ceased to hold it, so that it begins, or it is
-    /// held in any case (false).
+    /// Returns these motions with a motion in `known` that begins (true), since friction has just ceased to hold it, or
+    /// that is held in any case (false).
     pub fn knowing(self, known: Option<(Resting, bool)>) -> Self {
         Self { known, ..self }
     }
@@ -158,7 +158,7 @@ impl Together {
         self.limits[part as usize].is_some()
     }
 
-    /// The nearest reaction of a part within its limit, and whether `z` itself is within.
+    /// The reaction within the limit of a motion that is nearest to `z`, and whether `z` itself is within the limit.
     fn nearest(&self, part: Resting, z: [f64; 2]) -> ([f64; 2], bool) {
         let limit = self.limits[part as usize].unwrap_or(0.0);
         let size = z[0].hypot(z[1]);
@@ -174,7 +174,7 @@ impl Together {
         ALL_RESTING.into_iter().filter(|part| self.has(*part))
     }
 
-    /// The step length rho of a part.
+    /// The step length rho of the projection for one motion.
     fn rho(&self, part: Resting) -> f64 {
         let (first, count) = part.place();
         let mut size = 0f64;
@@ -185,7 +185,7 @@ impl Together {
         1.0 / size
     }
 
-    /// r - rho (q + B r) of a part.
+    /// The vector r - rho (q + B r) of one motion, before it is projected on the limits.
     fn before_projection(&self, part: Resting, r: &Reactions) -> [f64; 2] {
         let (first, count) = part.place();
         let rho = self.rho(part);
@@ -197,7 +197,7 @@ impl Together {
         z
     }
 
-    /// B r of the parts at rest, in one component.
+    /// The component i of B r, from the reactions of the motions at rest.
     fn response_to_reactions(&self, i: usize, r: &Reactions) -> f64 {
         let mut sum = 0.0;
         for (first, count) in self.parts_at_rest().map(Resting::place) {
@@ -223,7 +223,7 @@ impl Together {
         }
     }
 
-    /// The error r - P(r - rho x'), and its derivative.
+    /// The error r - P(r - rho x') of the reactions r, and its derivative with respect to r.
     fn projection_error(&self, r: &Reactions) -> (Reactions, SMatrix<f64, REACTIONS, REACTIONS>) {
         let mut slope = SMatrix::<f64, REACTIONS, REACTIONS>::identity();
         let mut off = Reactions::zeros();
@@ -237,7 +237,7 @@ impl Together {
                 off[first + i] = r[first + i] - nearest[i];
                 for (from, n) in self.parts_at_rest().map(Resting::place) {
                     for j in from..from + n {
-                        // The derivative of z, seen through that of the projection.
+                        // The derivative of z, multiplied by that of the projection.
                         let mut seen = 0.0;
                         for k in 0..count {
                             let own = f64::from(u8::from(first + k == j)) - rho * self.b[(first + k, j)];
@@ -259,7 +259,7 @@ impl Together {
         (off, slope)
     }
 
-    /// The reactions, from a first guess.
+    /// The reactions that solve the problem, from a first guess `r`.
     fn reactions(&self, mut r: Reactions) -> Reactions {
         for sweeps in PROJECTION_SWEEPS {
             self.project_repeatedly(&mut r, sweeps);
@@ -279,7 +279,7 @@ impl Together {
         r
     }
 
-    /// What happens to each part.
+    /// The result for each kind of motion, in the order of [`Resting`].
     pub fn fates(&self) -> [Fate; 4] {
         self.fates_from(Reactions::zeros())
     }
@@ -307,8 +307,9 @@ impl Together {
         all
     }
 
-    /// The behaviour of a contact point at rest, with the coefficients of sliding and of static friction. If `doubtful`,
-    /// more than one may be consistent, and all are counted that a search from many directions finds.
+    /// The behaviour of a contact point at rest, with the coefficients of sliding and of static friction. If
+    /// `doubtful`, more than one behaviour may be consistent, and all that a search from many directions finds are
+    /// counted.
     pub fn standstill(&self, [mu, fixed]: [f64; 2], doubtful: bool) -> Standstill {
         let slip = |fates: &[Fate; 4]| fates[Resting::Slip as usize];
         let slips = |fate: Fate| Standstill::Slips {
@@ -348,7 +349,7 @@ impl Together {
         if another { Standstill::Undefined } else { slips }
     }
 
-    /// The fates of the slip in all consistent solutions that are found.
+    /// The results for the slip in all consistent solutions that the search finds.
     fn consistent_slips(&self) -> Vec<Fate> {
         let mut found: Vec<Fate> = Vec::new();
         let limit = self.limits[Resting::Slip as usize].unwrap_or(0.0).min(1e6);
@@ -372,7 +373,7 @@ impl Together {
     }
 }
 
-/// The friction of a contact point: at rest, or that of a slip.
+/// The friction at a contact point that is at rest, or that slips.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Rubs {
     Rests,
@@ -384,8 +385,8 @@ pub(crate) enum Rubs {
 }
 
 impl Together {
-    /// The motions at rest of a body of revolution, besides the slip. None if there are none, or if nothing presses the
-    /// body on the table. Speeds below `still` count as zero.
+    /// The motions at rest of a body of revolution, other than the slip. None if there are none, or if nothing presses
+    /// the body on the table. Speeds below `still` count as zero.
     pub fn of_body(
         shape: &Shape<f64>,
         losses: &Couples<f64, impl OwnCouple<f64>>,

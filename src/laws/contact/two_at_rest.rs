@@ -4,8 +4,9 @@
 //! a_i' = u_i' of circle i under F and N of both;   N, N' >= 0 from F_h of both: both press, or one of them rises
 //! F -> proj(F - step u'),   |F| <= mu N              a circle whose F is limited begins to slip along its u'
 //! ```
-//! This is the search by which [`landing`](super::landing) finds impulses, for accelerations in place of velocities: a slip
-//! that begins from rest has the direction of its acceleration. On a level table the only answer is that both stick.
+//! [`landing`](super::landing) uses the same search for impulses, with velocities in place of accelerations: a slip
+//! that begins from rest has the direction of its acceleration. On a level table the only answer is that both circles
+//! stick.
 //!
 //! Error: 1e-14 of the largest acceleration, where friction does not depend on N alone.
 
@@ -16,22 +17,23 @@ use crate::numbers::larger_or_nan;
 /// The largest number of steps of the search.
 const SEARCH_STEPS: usize = 100_000;
 
-/// How both circles begin to move.
+/// The beginning of the motion of a body whose two circles were at rest: forces, accelerations, and the circles that slip.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Begun {
-    /// Forces and accelerations; the normal force of a circle that rises is 0.
+    /// Forces and accelerations of the body; the normal force of a circle that rises is 0.
     pub lain: Lain<f64>,
-    /// The accelerations of the slips of both circles.
+    /// The accelerations of the slips of both circles, each along e_h and e2.
     pub slips: [[f64; 2]; 2],
     /// Whether each circle begins to slip.
     pub moves: [bool; 2],
 }
 
 impl Lying<f64> {
-    /// How a body begins to move whose circles are at rest and which does not turn about the vertical. The coefficient of
-    /// friction of each circle is that of `fixed` while it sticks, and that of sliding if it cannot. None if no answer is
-    /// found, or if one that slips could also stick. The search for friction, along e_h and e2 at each circle, begins at `near`:
-    /// it is slow in directions in which friction changes the slips little.
+    /// Computes how a body begins to move whose circles are at rest and which does not turn about the vertical. The
+    /// coefficient of friction of each circle is that of `fixed` while it sticks, and that of sliding if it cannot. The
+    /// result is None if the search finds no answer, or if a circle that slips could also stick. The search for
+    /// friction, along e_h and e2 at each circle, begins at `near`: it is slow in directions in which friction changes
+    /// the slips little.
     pub fn begins(&self, w: [f64; 2], fixed: [f64; 2], near: [[f64; 2]; 2]) -> Option<Begun> {
         let (mut most, mut lets_go) = (fixed, [false; 2]);
         loop {
@@ -74,7 +76,7 @@ impl Lying<f64> {
         None
     }
 
-    /// The reciprocal of the largest factor by which two forces of friction change the accelerations.
+    /// The step of the search: the reciprocal of the largest factor by which both forces of friction change the accelerations.
     fn step(&self) -> f64 {
         let (Border { height, circles, .. }, i1) = (self.border, self.shape.i1);
         let [here, there, mixed] = [(0, 0), (1, 1), (0, 1)].map(|(at, by)| self.yields(at, by));
@@ -83,7 +85,8 @@ impl Lying<f64> {
         1.0 / across.max(alone[0]).max(alone[1]).max(2.0)
     }
 
-    /// Forces and accelerations, and those of both slips, under this friction along e_h and e2.
+    /// Forces and accelerations of the body, and the accelerations of both slips, for the friction `q` along e_h and e2
+    /// at each circle.
     fn accelerates(&self, [w1, w3]: [f64; 2], q: &[[f64; 2]; 2]) -> (Lain<f64>, [[f64; 2]; 2]) {
         let (Border { height, circles: [here, there], .. }, Shape { i1, .. }) = (self.border, self.shape);
         let push = self.lift(w1, w3) - height * (q[0][0] + q[1][0]);

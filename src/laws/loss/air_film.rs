@@ -22,14 +22,14 @@ impl LossLaw for AirFilm {
     const NEEDS_FACE: bool = true;
     const POWERS: EndPowers = EndPowers { face: [-2.0; 2], balanced: 3.0, critical: 2.0, upright: -1.0 };
 
-    /// The couple for viscosity = 1.
+    /// The couple along e1, e2, e3 for viscosity = 1.
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         let s = seen.angle.0;
         seen.along(s.splat(FRAC_PI_4) * seen.spin / s)
     }
 
-    /// The power for viscosity = 1.
+    /// The power that the couple takes for viscosity = 1.
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         let s = seen.angle.0;

@@ -21,13 +21,13 @@ impl LossLaw for BoundaryLayer {
     const ROOT: Option<Speed> = Some(Speed::Spin);
     const POWERS: EndPowers = EndPowers { face: [-1.25; 2], balanced: 3.75, critical: 2.5, upright: 0.0 };
 
-    /// The couple for k = 1.
+    /// The couple along e1, e2, e3 for k = 1.
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         seen.along(seen.spin * seen.spin.abs().sqrt())
     }
 
-    /// The power for k = 1.
+    /// The power that the couple takes for k = 1.
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         seen.spin * seen.spin * seen.spin.abs().sqrt()

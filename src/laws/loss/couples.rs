@@ -3,8 +3,8 @@
 //! ```text
 //! m = m0 + N mN,   P = P0 + N PN          of the laws that are present
 //! ```
-//! The ways are the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
-//! these signs fixed within a step, so that every step is smooth. The error is that of the laws.
+//! `Ways` holds the signs of psi', of the drilling, and of the rocking of a body that only rocks. A caller can hold
+//! these signs fixed within a step, so that the couple is smooth in every step. The error is that of the laws.
 
 use super::{COUNT, Law, Losses, Speed};
 use crate::laws::body::{Body, Rim};
@@ -21,16 +21,16 @@ pub(crate) struct Kinematics<T> {
     pub spin: T,
     /// A, the radius of the circle of contact.
     pub radius: T,
-    /// The signs -1, 0 or 1 of psi' and of the drilling w_z.
+    /// The signs -1, 0 or 1 of the spin psi' and of the drilling w_z.
     pub signs: [T; 2],
-    /// The signs of w_h and w2 of a body that only rolls or only rocks, where a caller holds that sign fixed; the other
-    /// sign is 0.
+    /// The signs of the rolling w_h and the rocking w2, for a body that only rolls or only rocks, where a caller holds
+    /// that sign fixed; the other sign is 0.
     pub only: Option<[T; 2]>,
-    /// The rate at which the table turns.
+    /// The rate at which the table turns; 0 if it does not.
     pub om: T,
 }
 
-/// -1, 0 or 1.
+/// The sign of a number: -1, 0 or 1.
 #[inline(always)]
 fn sign<T: Real>(x: T) -> T {
     let (zero, one) = (x.splat(0.0), x.splat(1.0));
@@ -38,7 +38,7 @@ fn sign<T: Real>(x: T) -> T {
 }
 
 impl<T: Real> Kinematics<T> {
-    /// The kinematics from sine and cosine of theta, phi' = w1/s and w.
+    /// The kinematics from sine and cosine of theta, phi' = w1/s and the angular velocity w along e1, e2, e3.
     #[inline(always)]
     pub fn of(rim: &Rim<T>, angle: (T, T), precession: T, w: [T; 3]) -> Self {
         let (s, c) = angle;
@@ -64,20 +64,20 @@ impl<T: Real> Kinematics<T> {
         -(self.angle.0 * self.spin)
     }
 
-    /// w_z over the table, the drilling.
+    /// The drilling: the angular velocity w_z about the vertical, relative to the table.
     #[inline(always)]
     pub fn drilling(&self) -> T {
         self.angle.0.mac(self.w[0], self.angle.1 * self.w[2]) - self.om
     }
 
-    /// The square w.w of the angular velocity.
+    /// The square w.w of the magnitude of the angular velocity.
     #[inline(always)]
     pub fn square(&self) -> T {
         let [w1, w2, w3] = self.w;
         w1.mac(w1, w2.mac(w2, w3 * w3))
     }
 
-    /// The couple `push` h/s, which takes the power push psi', since h.w = -s psi'.
+    /// The couple `push` h/s, where h = c e1 - s e3. It takes the power push psi', since h.w = -s psi'.
     #[inline(always)]
     pub fn along(&self, push: T) -> [T; 3] {
         let (s, c) = self.angle;
@@ -100,7 +100,7 @@ pub(crate) struct Couple<T> {
 }
 
 impl<T: Real> Couple<T> {
-    /// The whole couple under a normal force.
+    /// The total couple under this normal force: free + normal pressed.
     #[inline(always)]
     pub fn under(&self, normal: T) -> [T; 3] {
         let ([a, b, c], [x, y, z]) = (self.free, self.pressed);
@@ -114,28 +114,29 @@ impl<T: Real> Couple<T> {
     }
 }
 
-/// A couple beside the losses: that of a user-defined law, or a couple that is linear in the normal force. `()` is none,
-/// and costs no code.
+/// A couple in addition to the losses: that of a user-defined law, or one that is linear in the normal force. The type
+/// `()` means none, and costs no code.
 pub(crate) trait OwnCouple<T: Real>: Copy {
-    /// Whether there is a couple.
+    /// Whether there is such a couple.
     #[inline(always)]
     fn is_there(&self) -> bool {
         false
     }
 
-    /// The couple, if it is linear in the normal force and the same in all states.
+    /// The couple, if it is linear in the normal force and the same in all states; else None.
     #[inline(always)]
     fn couple(&self) -> Option<&Couple<T>> {
         None
     }
 
-    /// The couple of a user-defined law, linear in the normal force about the one that `normal` gives for such a couple.
+    /// The couple of a user-defined law as a linear function of N, exact at the normal force that `normal` gives for
+    /// such a couple.
     #[inline(always)]
     fn solved_couple(&self, _seen: &Kinematics<T>, _normal: impl Fn(&Couple<T>) -> T) -> Option<Couple<T>> {
         None
     }
 
-    /// The power that a user-defined law takes under a normal force.
+    /// The power that a user-defined law takes under a normal force; None without such a law.
     #[inline(always)]
     fn power_taken(&self, _seen: &Kinematics<T>, _normal: T) -> Option<T> {
         None
@@ -156,12 +157,12 @@ impl<T: Real> OwnCouple<T> for Option<Couple<T>> {
     }
 }
 
-/// The motions that dry friction holds at rest.
+/// The motions that dry friction keeps at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Holds {
-    /// The contact along the rim, psi' = 0, by a couple h/s.
+    /// The rolling of the contact along the rim: psi' = 0 is held by a couple h/s.
     pub contour: bool,
-    /// The drilling, w_z = 0, by a couple about the vertical.
+    /// The drilling: w_z = 0 is held by a couple about the vertical.
     pub drilling: bool,
     /// Rolling and rocking, by a horizontal couple, so that the body only turns about the vertical.
     pub rolling: bool,
@@ -172,15 +173,16 @@ pub(crate) struct Holds {
 pub(crate) struct Ways<T = f64> {
     pub contour: T,
     pub drilling: T,
-    /// The direction of (w_h, w2), where it is fixed: (0, 1) or (0, -1) for a body that only rocks, and the direction
-    /// in which rolling and rocking begin; otherwise 0, and in SIMD lanes always.
+    /// The components (rolling, rocking) of the direction of (w_h, w2), where a caller fixes it: (0, 1) or (0, -1) for
+    /// a body that only rocks, or the direction in which rolling and rocking begin. Otherwise both are 0, as always in
+    /// SIMD lanes.
     pub rolling: f64,
     pub rocking: f64,
     pub holds: Holds,
 }
 
 impl<T: Real> Ways<T> {
-    /// No signs, and nothing held.
+    /// Signs that are all 0, with no motion held at rest.
     #[inline(always)]
     pub fn moving(like: T) -> Self {
         let zero = like.splat(0.0);
@@ -188,29 +190,29 @@ impl<T: Real> Ways<T> {
     }
 }
 
-/// The losses in the form that the equations of motion use, of one body or of eight in lanes.
+/// The losses in the form that the equations of motion use, of one body or of eight in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Couples<T, G = ()> {
     pub(super) coefficients: [T; COUNT],
     pub(super) present: [bool; COUNT],
-    /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step.
+    /// The signs of the motions that dry friction resists, where a caller holds them fixed within a step; else None.
     pub ways: Option<Ways<T>>,
-    /// The pull of a tilted table on the centre, along e_h and e2; None on a level table.
+    /// The horizontal acceleration of a tilted table's gravity on the centre, along e_h and e2; None on a level table.
     pub pull: Option<[T; 2]>,
-    /// The rate of a table that turns; None if it does not.
+    /// The angular velocity of a table that turns; None if it does not turn.
     pub om: Option<T>,
     pub given: G,
 }
 
-/// A step may change a speed by this share, or by `NEAR` if that is more, where a law is not smooth at zero speed.
+/// Where a law is not smooth at zero speed, a step may change the speed by this share of it, or by `NEAR` if that is more.
 const SPEED_CHANGE_SHARE: f64 = 0.5;
 pub(crate) const NEAR: f64 = 1e-9;
-/// A change of sign counts only for a speed beyond this, since near rest rounding may give either sign.
+/// Speeds up to this have no sign: near rest, rounding may give either sign.
 pub(crate) const SLACK: f64 = 4e-15;
 
 impl<T: Real, G: OwnCouple<Dual<T>>> Couples<Dual<T>, G> {
-    /// The longest step that these laws allow, since their roots are not smooth where they vanish. `paced` means that
-    /// rolling resistance is smooth nevertheless in the variable of the flow.
+    /// The longest step that these laws allow, since the roots that they contain are not smooth where a speed vanishes.
+    /// `paced` means that rolling resistance is nevertheless smooth in the variable of the integration.
     #[inline(always)]
     pub fn longest(&self, seen: &Kinematics<Dual<T>>, paced: bool) -> T {
         let number = |x: f64| seen.spin.value.splat(x);
@@ -226,11 +228,12 @@ impl<T: Real, G: OwnCouple<Dual<T>>> Couples<Dual<T>, G> {
     }
 }
 
-/// Dry friction holds up to its limit times 1 plus this, so that a released motion moves away from the limit.
+/// Dry friction holds a motion at rest up to its limit times 1 + GRACE, so that a released motion moves away from the limit.
 pub(crate) const GRACE: f64 = 1e-11;
 
-/// The couple of rolling resistance that keeps a body from rolling and rocking, from the whole horizontal couple, along
-/// h and e2, that this needs; dry friction along the contour exerts as much of the former as it can.
+/// The couple of rolling resistance that keeps a body from rolling and rocking, for a total horizontal couple with the
+/// components `across` along h and `along` along e2. Dry friction along the contour exerts as much of `across` as it
+/// can.
 #[inline(always)]
 pub(crate) fn rolling_couple_needed<T: Real>([across, along]: [T; 2], contour: T) -> T {
     let zero = across.splat(0.0);
@@ -239,13 +242,13 @@ pub(crate) fn rolling_couple_needed<T: Real>([across, along]: [T; 2], contour: T
     (left.mac(left, along * along) + zero.splat(1e-300)).sqrt()
 }
 
-/// The speed below which a motion that was held counts as at rest, since rounding errors are of this size.
+/// The speed below which a motion that was held counts as at rest, since rounding errors are of this size; s is sin theta.
 pub(crate) fn rounded(s: f64, w: [f64; 3]) -> f64 {
     if w == [0.0; 3] { 0.0 } else { 10.0 * SLACK * (1.0 + (w[0] / s).abs()) }
 }
 
-/// Distance of a velocity from its change of sign, in the direction `way` of 1 or -1; without a direction (0) it is
-/// one.
+/// The velocity x along the direction `way` of 1 or -1, plus `slack`: positive until its sign changes. Without a
+/// direction (`way` = 0) the result is 1.
 #[inline(always)]
 pub(crate) fn going<T: Real>(way: T, x: T, slack: T) -> T {
     let one = x.splat(1.0);
@@ -267,7 +270,7 @@ pub(crate) fn rolling_growth((s, c): (f64, f64), [w1, w2, w3]: [f64; 3], [d1, d2
     [speed, (rolling * rate + w2 * d2) / speed]
 }
 
-/// Losses with a user-defined couple.
+/// The losses together with a user-defined couple.
 pub(crate) type UnderCouple = Couples<f64, Option<Couple<f64>>>;
 
 impl<G> Couples<f64, G> {
@@ -279,14 +282,14 @@ impl<G> Couples<f64, G> {
         self
     }
 
-    /// These losses with this law among them.
+    /// Returns these losses with `law` added.
     #[must_use]
     pub fn resisting(mut self, law: Law, coefficient: f64) -> Self {
         (self.coefficients[law as usize], self.present[law as usize]) = (coefficient, true);
         self
     }
 
-    /// These losses and another couple, given by `given`.
+    /// Returns these losses with another couple, `given`.
     #[must_use]
     pub fn beside<H>(self, given: H) -> Couples<f64, H> {
         let Self { coefficients, present, ways, pull, om, .. } = self;
@@ -295,13 +298,13 @@ impl<G> Couples<f64, G> {
 }
 
 impl<G: OwnCouple<f64>> Couples<f64, G> {
-    /// These losses and the couple `own` beside them; None if nothing is lost.
+    /// The losses with a user-defined couple `own` in addition; None if there is neither a loss nor such a couple.
     pub fn with_own(losses: &Losses, own: G) -> Option<Self> {
         (!losses.is_none() || own.is_there()).then(|| Couples::of(losses, |x| x).beside(own))
     }
 
-    /// These losses with a couple that is linear in the normal force, about the one that `normal` gives, and that of a
-    /// user-defined law in this state.
+    /// These losses with the couple of a user-defined law in this state, as a linear function of N that is exact at the
+    /// normal force which `normal` gives.
     pub fn linear(&self, seen: &Kinematics<f64>, normal: impl Fn(&Couple<f64>) -> f64) -> UnderCouple {
         let losses = self.at(seen);
         let own = self.given.solved_couple(seen, |own| normal(&losses.plus(own)));
@@ -310,7 +313,7 @@ impl<G: OwnCouple<f64>> Couples<f64, G> {
 }
 
 impl Couples<f64> {
-    /// The laws that act on a body in the air; None if no law does.
+    /// Those of the losses that act on a body in the air; None if there are none.
     pub fn in_air(losses: &Losses) -> Option<Self> {
         let mut left = *losses;
         for law in Law::ALL.iter().copied().filter(|law| !law.acts_in_air()) {
@@ -319,7 +322,7 @@ impl Couples<f64> {
         Self::some(&left)
     }
 
-    /// The couples of these losses; None if nothing is lost.
+    /// The losses in this form; None if no law is present.
     pub fn some(losses: &Losses) -> Option<Self> {
         (!losses.is_none()).then(|| Self::of(losses, |x| x))
     }
@@ -339,7 +342,7 @@ impl<T: Real> Couples<T> {
         }
     }
 
-    /// The losses with these coefficients among the laws that are present, where `ways` holds signs fixed.
+    /// The losses with these coefficients, of which only the laws in `present` count. `ways` may hold signs fixed.
     #[inline(always)]
     pub fn among(coefficients: [T; COUNT], present: [bool; COUNT], ways: Option<Ways<T>>) -> Self {
         Self { coefficients, present, ways, pull: None, om: None, given: () }
@@ -347,14 +350,14 @@ impl<T: Real> Couples<T> {
 }
 
 impl<T: Real, G: Copy> Couples<T, G> {
-    /// These losses on a table that pulls the centre along e_h and e2.
+    /// Returns these losses on a tilted table, where gravity accelerates the centre by `pull` along e_h and e2.
     #[must_use]
     #[inline(always)]
     pub fn pulled(self, pull: [T; 2]) -> Self {
         Self { pull: Some(pull), ..self }
     }
 
-    /// These losses on a table that turns at this rate.
+    /// Returns these losses on a table that turns at the rate `om`, if `turns`.
     #[must_use]
     pub fn over(self, om: T, turns: bool) -> Self {
         Self { om: turns.then_some(om), ..self }
@@ -382,7 +385,8 @@ impl<T: Real, G: Copy> Couples<T, G> {
 }
 
 impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
-    /// The couple of all laws and of the user, linear in the normal force about the one that `normal` gives.
+    /// The couple of all laws and of the user-defined law, as a linear function of N that is exact at the normal force
+    /// which `normal` gives.
     #[inline(always)]
     pub fn total_couple(&self, seen: &Kinematics<T>, normal: impl Fn(&Couple<T>) -> T) -> Couple<T> {
         let losses = self.at(seen);
@@ -398,7 +402,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         )
     }
 
-    /// These losses with another couple, per normal force.
+    /// Returns these losses with another couple, `pressed` times the normal force.
     pub fn with_pressed_couple(&self, pressed: [T; 3]) -> Couples<T, Option<Couple<T>>> {
         let zero = pressed[0].splat(0.0);
         let given = self.given.couple().copied().unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
@@ -425,12 +429,12 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         Kinematics { spin, signs: [ways.contour, ways.drilling], only, ..seen }
     }
 
-    /// Which laws are present, in the order of [`Law::ALL`].
+    /// Which laws are present: an array in the order of [`Law::ALL`].
     pub fn present(&self) -> [bool; COUNT] {
         self.present
     }
 
-    /// Whether some law acts about the axis of the rocking.
+    /// Whether some law has a couple about e2, the axis about which the body rocks.
     #[inline(always)]
     pub fn tilts(&self) -> bool {
         self.pull.is_some()
@@ -441,7 +445,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
             )
     }
 
-    /// Whether the couple of some law grows with the speed of the contact along the rim.
+    /// Whether the couple of some law along the contour grows with the speed of the contact along the rim.
     #[inline(always)]
     pub fn is_soft(&self) -> bool {
         self.has_any(
@@ -450,7 +454,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         )
     }
 
-    /// Whether a face comes down by infinitely many turns, if no law along the contour stops the contact.
+    /// Whether a face lands only after infinitely many turns, unless a law along the contour stops the contact.
     #[inline(always)]
     pub fn turn_endlessly(&self) -> bool {
         self.has_any(
@@ -459,13 +463,13 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         )
     }
 
-    /// Whether some law other than rolling resistance contains a root.
+    /// Whether some law other than rolling resistance contains the root of a squared speed.
     #[inline(always)]
     pub fn has_roots(&self) -> bool {
         self.has_root(Speed::Spin) || self.has_root(Speed::Whole)
     }
 
-    /// Whether some law contains a root of this speed.
+    /// Whether some law contains the root of the square of this speed.
     #[inline(always)]
     fn has_root(&self, speed: Speed) -> bool {
         self.has_any(
@@ -474,7 +478,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         )
     }
 
-    /// Whether a law of this kind is present.
+    /// Whether a law for which `kind` is true is present.
     #[inline(always)]
     fn has_any(&self, kind: impl Fn(Law) -> bool) -> bool {
         let mut has = false;
@@ -485,7 +489,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         has
     }
 
-    /// The motions that dry friction holds.
+    /// The motions that dry friction holds at rest.
     #[inline(always)]
     pub fn holds(&self) -> Holds {
         self.ways.as_ref().map_or(Holds::default(), |ways| ways.holds)
@@ -508,7 +512,8 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         self.coefficients[law as usize]
     }
 
-    /// The squares of the speeds at whose zeros a law is not smooth; near such a zero a step has to be short.
+    /// The squares of the speeds at whose zeros a law is not smooth (None without such a law); near a zero a step has
+    /// to be short.
     #[inline(always)]
     fn roots(&self, seen: &Kinematics<T>, paced: bool) -> [Option<T>; 3] {
         let rolling = seen.rolling();

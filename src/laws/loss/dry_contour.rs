@@ -21,13 +21,14 @@ impl LossLaw for DryContour {
     const PRESSES: bool = true;
     const POWERS: EndPowers = EndPowers { face: [-0.5; 2], balanced: 1.5, critical: 1.0, upright: 1.0 };
 
-    /// The couple for eps = N = 1. Where a step has passed the pole of a ball, its sine and its radius A are negative.
+    /// The couple along e1, e2, e3 for eps = N = 1. Where a step has passed the pole of a ball, its sine and its radius
+    /// A are negative.
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         seen.along(seen.radius.abs() * seen.signs[0])
     }
 
-    /// The power for eps = N = 1.
+    /// The power that the couple takes for eps = N = 1.
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         seen.radius.abs() * seen.signs[0] * seen.spin

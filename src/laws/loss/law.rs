@@ -39,8 +39,8 @@ pub(crate) enum Unit {
 }
 
 impl Unit {
-    /// What a unit measures, the unit in natural units and in SI, and the unit in which a coefficient is printed and
-    /// read again: C is the number of order 0.1 with which a boundary layer is given.
+    /// Four texts: the quantity that the unit measures, the unit in natural units and in SI, and the unit in which a
+    /// coefficient is printed and read. C is the number of order 0.1 that gives the strength of a boundary layer.
     #[cfg(any(feature = "python", feature = "scene"))]
     pub const fn texts(self) -> [&'static str; 4] {
         match self {
@@ -67,24 +67,24 @@ impl Unit {
 /// A speed at whose zero the couple of a law is not smooth, because the law contains a root of the square of this speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Speed {
-    /// psi'.
+    /// The spin psi'.
     Spin,
     /// The speed of rolling and rocking together.
     Rolling,
-    /// |w|.
+    /// The magnitude |w| of the angular velocity.
     Whole,
 }
 
-/// The exponents p of the power P ~ x^p of a steady state, at a distance x in theta from the end of a drift.
+/// The exponents p of the power P ~ x^p that a law takes in a steady state at the distance x in theta from the end of a drift.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EndPowers {
-    /// The face lands, for a thin disk and for a body with ell + rho > 0. Omega and psi' go as x^(-1/2), s as x.
+    /// Where the face lands: of a thin disk, and of a body with ell + rho > 0. Omega and psi' go as x^(-1/2), s as x.
     pub face: [f64; 2],
-    /// The body is balanced: Omega ~ x^(1/2), psi' ~ x^(3/2).
+    /// Where the body is balanced on its rim: Omega ~ x^(1/2), psi' ~ x^(3/2).
     pub balanced: f64,
-    /// A body with I1 = I3 is balanced: Omega stays, psi' ~ x.
+    /// Where a body with I1 = I3 is balanced on its rim: Omega tends to a constant, psi' ~ x.
     pub critical: f64,
-    /// A ball stands on its pole: Omega stays, and psi' too; A and s go as x.
+    /// Where a ball stands on its pole: Omega and psi' tend to constants; A and s go as x.
     pub upright: f64,
 }
 
@@ -92,30 +92,30 @@ pub(crate) struct EndPowers {
 pub(crate) trait LossLaw {
     /// The name of the coefficient.
     const PARAMETER: &'static str;
-    /// The couple in the symbols of the file of a scene, with the coefficient in SI.
+    /// The formula of the couple in the symbols of a scene file, with the coefficient in SI.
     const COUPLE: &'static str;
     /// The unit of the coefficient.
     const UNIT: Unit;
     /// The motion that the law resists.
     const RESISTS: Resists;
-    /// The behaviour of the power near the ends of a drift.
+    /// The exponents of the power near the ends of a drift.
     const POWERS: EndPowers;
-    /// Whether the law is dry: proportional to the normal force, and to the sign of a motion. Where that motion comes
-    /// to rest, dry friction may hold it. `dry::held` decides so, from the couple that then acts.
+    /// Whether the law is dry: proportional to the normal force and to the sign of a motion. Where that motion comes to
+    /// rest, dry friction may hold it: `dry::held` decides this from the couple that acts at rest.
     const PRESSES: bool = false;
     /// Whether the law needs a flat face above the table.
     const NEEDS_FACE: bool = false;
     /// The speed at whose zero the law is not smooth, if there is one; near it steps are short.
     const ROOT: Option<Speed> = None;
 
-    /// The couple for a coefficient of 1, and for N = 1 if the law is dry.
+    /// The couple along e1, e2, e3 for a coefficient of 1, and for N = 1 if the law is dry.
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3];
 
-    /// The power for a coefficient of 1, and for N = 1 if the law is dry.
+    /// The power that the couple takes for a coefficient of 1, and for N = 1 if the law is dry.
     fn power<T: Real>(seen: &Kinematics<T>) -> T;
 
-    /// The derivative with respect to psi' of C x, where the couple of a smooth law along the contour is C x h/s, for the
-    /// coefficient C, sine of theta, radius A and psi'. The file of such a law has its own `slope`.
+    /// For a smooth law along the contour, whose couple is X h/s, the derivative of X with respect to psi'; the
+    /// arguments are the coefficient, sine of theta, the radius A and psi'. The file of such a law defines its `slope`.
     #[inline(always)]
     fn slope<T: Real>(_coefficient: T, s: T, _radius: T, _spin: T) -> T {
         s.splat(0.0)
@@ -132,7 +132,7 @@ mod tests {
     const PLACES: [[f64; 4]; 4] =
         [[0.3, 1.1, -0.4, 0.6], [1.1, -0.7, 0.2, 1.9], [2.0, 0.5, 0.8, -0.3], [0.05, 0.4, -0.9, -2.5]];
 
-    /// The kinematics in a state whose angular velocity is multiplied by `faster`.
+    /// The kinematics in a state, with the angular velocity multiplied by `faster`.
     fn seen([theta, w1, w2, w3]: [f64; 4], faster: f64) -> Kinematics<f64> {
         let y = State { theta, w1: faster * w1, w2: faster * w2, w3: faster * w3 };
         Kinematics::of_state(&Body::rounded(1.5, 0.6, 0.5, 0.3).unwrap(), &y)

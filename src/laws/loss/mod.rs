@@ -6,8 +6,9 @@
 //! couple m on the body, about any point;   power P = -m.w >= 0;   dE/dt = -P
 //! P = Lam |psi'|:   m = Lam sgn(psi') h/s, the one couple that gives this power for every w
 //! ```
-//! A law that acts through the speed A |psi'| of the contact moves the normal force ahead of the contact along its
-//! path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction is valid down to theta ~ eps.
+//! The couple of a law that acts through the speed A |psi'| of the contact is that of a normal force which acts ahead
+//! of the contact point along its path, by Lam/(N s). A distance beyond A has no meaning, so that dry contour friction
+//! is valid down to theta ~ eps.
 //! Every law is linear in its one coefficient, and laws add: a set of laws is one coefficient for each law, with 0 for
 //! an absent law. Which law takes a coin's energy is debated (Moffatt 2000, van den Engh 2000, Bildsten 2002, Leine
 //! 2009), and no law is preferred here.
@@ -53,8 +54,8 @@ pub(crate) use couples::{
 };
 pub(crate) use law::{EndPowers, LossLaw, Resists, Speed, Unit};
 
-/// The enumeration of the laws from the table below, and the call of the type that implements each law. The laws are
-/// called by `match`, so that they are inlined in lanes.
+/// Defines the enumeration of the laws from the table below, and the calls of the types that implement them. The laws
+/// are called by `match`, so that they are inlined in SIMD lanes.
 macro_rules! laws {
     ($(#[$about:meta])* pub enum $Laws:ident {
         $($(#[$doc:meta])* $Law:ident = $code:literal in $file:ident,)+
@@ -65,8 +66,8 @@ macro_rules! laws {
         }
 
         impl $Laws {
-            /// Calls `f` for each law in turn. The calls are written one after the other, without a loop that the
-            /// compiler may keep, so that the law is known at compile time.
+            /// Calls `f` for each law in turn. The calls are written out, without a loop that the compiler may keep, so
+            /// that each law is known at compile time.
             #[inline(always)]
             fn each(mut f: impl FnMut(Self)) {
                 $(f(Self::$Law);)+
@@ -77,7 +78,7 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::PARAMETER,)+ }
             }
 
-            /// The couple of this law in the symbols of the file of a scene, with the coefficient in SI.
+            /// The formula of the couple of this law in the symbols of a scene file, with the coefficient in SI.
             #[cfg(any(feature = "python", feature = "scene"))]
             pub(crate) fn couple_in_si(self) -> &'static str {
                 match self { $(Self::$Law => $file::$Law::COUPLE,)+ }
@@ -94,7 +95,7 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::RESISTS,)+ }
             }
 
-            /// Whether this law is dry, and proportional to the normal force.
+            /// Whether this law is dry: proportional to the normal force and to the sign of a motion.
             #[inline(always)]
             pub(crate) const fn presses(self) -> bool {
                 match self { $(Self::$Law => $file::$Law::PRESSES,)+ }
@@ -105,40 +106,40 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::NEEDS_FACE,)+ }
             }
 
-            /// The speed at whose zero this law is not smooth.
+            /// The speed at whose zero this law is not smooth; None if it is smooth.
             #[inline(always)]
             const fn root(self) -> Option<Speed> {
                 match self { $(Self::$Law => $file::$Law::ROOT,)+ }
             }
 
-            /// The behaviour of the power of this law near the ends of a drift.
+            /// The exponents of the power of this law near the ends of a drift.
             pub(crate) const fn powers(self) -> EndPowers {
                 match self { $(Self::$Law => $file::$Law::POWERS,)+ }
             }
 
-            /// The couple for a coefficient of 1, and for N = 1 if the law is dry.
+            /// The couple along e1, e2, e3 for a coefficient of 1, and for N = 1 if the law is dry.
             #[cfg(test)]
             fn couple<T: Real>(self, seen: &Kinematics<T>) -> [T; 3] {
                 match self { $(Self::$Law => $file::$Law::couple(seen),)+ }
             }
 
-            /// The power for a coefficient of 1, and for N = 1 if the law is dry.
+            /// The power that the couple takes for a coefficient of 1, and for N = 1 if the law is dry.
             #[cfg(test)]
             fn power<T: Real>(self, seen: &Kinematics<T>) -> T {
                 match self { $(Self::$Law => $file::$Law::power(seen),)+ }
             }
 
-            /// The derivative of the couple along the contour with respect to psi'.
+            /// For the couple X h/s of a law along the contour, the derivative of X with respect to psi'.
             #[cfg(test)]
             fn slope<T: Real>(self, coefficient: T, s: T, radius: T, spin: T) -> T {
                 match self { $(Self::$Law => $file::$Law::slope(coefficient, s, radius, spin),)+ }
             }
         }
 
-        /// The sums over all laws are written out, law by law: a loop with a `match` costs lanes and single motions
-        /// up to a tenth of their time.
+        /// The sums over all laws are written out, law by law: a loop with a `match` costs motions in SIMD lanes and
+        /// single motions up to a tenth of their time.
         impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
-            /// The couple of all laws.
+            /// The couple of all laws that are present.
             #[inline(always)]
             pub fn at(&self, seen: &Kinematics<T>) -> Couple<T> {
                 let zero = seen.spin.splat(0.0);
@@ -176,7 +177,7 @@ macro_rules! laws {
                 power
             }
 
-            /// The derivative of the couple along the contour with respect to psi'.
+            /// For the total couple X h/s of the laws along the contour, the derivative of X with respect to psi'.
             #[inline(always)]
             pub fn slope(&self, s: T, radius: T, spin: T) -> T {
                 let mut slope = s.splat(0.0);
@@ -216,7 +217,7 @@ laws! {
     }
 }
 
-/// The number of laws.
+/// The number of loss laws.
 pub(crate) const COUNT: usize = Law::ALL.len();
 
 // The number of a law is its index.
@@ -236,7 +237,7 @@ impl Law {
         (thin < 1.0).then(|| 1.0 / (1.0 - thin))
     }
 
-    /// Whether the couple acts along the contour.
+    /// Whether the law acts through the rolling of the contact along the contour of the rim.
     #[inline(always)]
     pub(crate) const fn is_along_contour(self) -> bool {
         matches!(self.resists(), Resists::Contour)
@@ -247,19 +248,19 @@ impl Law {
         matches!(self.resists(), Resists::All)
     }
 
-    /// Whether the couple grows with the speed of the contact along the rim.
+    /// Whether the law acts along the contour and its couple grows with the speed of the contact along the rim.
     #[inline(always)]
     pub(crate) const fn is_soft(self) -> bool {
         self.is_along_contour() && !self.presses()
     }
 
-    /// Whether the couple acts about the axis of the rocking.
+    /// Whether the law has a couple about e2, the axis about which the body rocks.
     #[inline(always)]
     pub(crate) const fn tilts(self) -> bool {
         matches!(self.resists(), Resists::Rolling | Resists::All)
     }
 
-    /// Whether a face comes down by infinitely many turns under this law, if no law along the contour stops the contact.
+    /// Whether a face lands only after infinitely many turns under this law, unless a law along the contour stops the contact.
     #[inline(always)]
     pub(crate) const fn turns_endlessly(self) -> bool {
         self.presses() && !self.is_along_contour()
@@ -294,7 +295,7 @@ impl Losses {
     /// All coefficients are 0, and nothing is lost.
     pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
 
-    /// The losses of one law with its coefficient.
+    /// The losses of a single law with this coefficient, in natural units.
     ///
     /// ```
     /// use spincyl::loss::{Law, Losses};
@@ -340,7 +341,7 @@ impl Losses {
         Ok(())
     }
 
-    /// Checks the coefficients, and that the body has a face, a rim or another part on which each law acts.
+    /// Checks the coefficients, and that the body has the flat face that a law may need.
     ///
     /// # Errors
     /// Those of [`check`](Self::check), and `OutOfRange` with the name "fillet" for a ball under a law that needs a
@@ -371,24 +372,24 @@ impl Losses {
         })
     }
 
-    /// Whether nothing is lost.
+    /// Whether all coefficients are 0.
     pub fn is_none(&self) -> bool {
         self.coefficients == [0.0; COUNT]
     }
 
-    /// The coefficient of this law if it is the only one; 0 without any law, and None with another law.
+    /// The coefficient of this law if no other law is present, 0 if no law is; None if another law is present.
     pub(crate) fn is_only(&self, law: Law) -> Option<f64> {
         let coefficient = self.coefficient(law);
         (*self == Self::of(law, coefficient)).then_some(coefficient)
     }
 
-    /// Whether a face comes down by infinitely many turns: some law causes this, and no law along the contour stops the
-    /// contact.
+    /// Whether a face lands only after infinitely many turns: some law causes this, and no law along the contour stops
+    /// the contact.
     pub(crate) fn turn_endlessly(&self) -> bool {
         self.any(Law::turns_endlessly) && !self.stop_the_contour()
     }
 
-    /// Whether some law along the contour stops the contact there.
+    /// Whether some law along the contour stops the rolling of the contact along the rim.
     pub(crate) fn stop_the_contour(&self) -> bool {
         self.any(Law::is_along_contour)
     }
@@ -404,7 +405,7 @@ impl Losses {
         of.power(&seen, normal.positive_part())
     }
 
-    /// The couple on the body along e1, e2, e3, in M g R.
+    /// The couple on the body along e1, e2, e3, in M g R, under a normal force N in units of the weight.
     pub fn couple(&self, body: &Body, y: &State, normal: f64) -> [f64; 3] {
         let (of, seen) = (Couples::of(self, |x| x), Kinematics::of_state(body, y));
         let pressed = if self.any(Law::presses) { normal.positive_part() } else { 0.0 };
@@ -413,7 +414,7 @@ impl Losses {
 }
 
 impl core::fmt::Display for Losses {
-    /// The laws that are present, each with the name of its coefficient.
+    /// Writes the laws that are present, each with the name and the value of its coefficient.
     ///
     /// ```
     /// use spincyl::loss::{Law, Losses};

@@ -3,13 +3,13 @@
 //! ```text
 //! P = delta N sqrt(w_h^2 + w2^2),   m = -delta N (c w_h, w2, -s w_h)/sqrt(w_h^2 + w2^2)          delta in R
 //! ```
-//! The law is in Coulomb 1785 and any textbook. It resists rolling along the rim and rocking over it together. A thin
+//! The law is in Coulomb 1785 and any textbook. The law resists rolling along the rim and rocking over the rim together. A thin
 //! disk has theta = (delta tau)^2/(9 I1) at the time tau before its end, and makes infinitely many turns until then.
 
 use super::{EndPowers, Kinematics, LossLaw, Resists, Speed, Unit};
 use crate::numbers::Real;
 
-/// The speed below which the couple falls to zero with the speed; squares of smaller speeds are rounded away.
+/// The angular speed below which the couple falls to zero with the speed; squares of smaller speeds are rounded to zero.
 const SLOWEST: f64 = 1e-154;
 
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl LossLaw for RollingResistance {
     const ROOT: Option<Speed> = Some(Speed::Rolling);
     const POWERS: EndPowers = EndPowers { face: [0.5; 2], balanced: 1.5, critical: 1.0, upright: 1.0 };
 
-    /// The couple for delta = N = 1; zero for a body that neither rolls nor rocks.
+    /// The couple along e1, e2, e3 for delta = N = 1; zero for a body that neither rolls nor rocks.
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         let (s, c) = seen.angle;
@@ -37,7 +37,7 @@ impl LossLaw for RollingResistance {
         [c * across, -(rocking / speed), -(s * across)]
     }
 
-    /// The power for delta = N = 1.
+    /// The power that the couple takes for delta = N = 1.
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         let (rolling, rocking) = (seen.rolling(), seen.w[1]);

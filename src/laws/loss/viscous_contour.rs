@@ -20,13 +20,13 @@ impl LossLaw for ViscousContour {
     const RESISTS: Resists = Resists::Contour;
     const POWERS: EndPowers = EndPowers { face: [-1.0; 2], balanced: 3.0, critical: 2.0, upright: 2.0 };
 
-    /// The couple for c = 1.
+    /// The couple along e1, e2, e3 for c = 1.
     #[inline(always)]
     fn couple<T: Real>(seen: &Kinematics<T>) -> [T; 3] {
         seen.along(seen.radius * seen.radius * seen.spin)
     }
 
-    /// The power for c = 1.
+    /// The power that the couple takes for c = 1.
     #[inline(always)]
     fn power<T: Real>(seen: &Kinematics<T>) -> T {
         let speed = seen.radius * seen.spin;

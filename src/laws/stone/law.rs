@@ -39,35 +39,35 @@ pub(crate) struct StoneLaw<T> {
     pub inertia: Symmetric<T>,
     pub inverse: Symmetric<T>,
     pub offset: [T; 3],
-    /// The coefficient of friction: mu, or c for a viscous film.
+    /// The coefficient of friction: mu of Coulomb's law, or c of a viscous film.
     pub strength: T,
-    /// The speed of slip below which the variable sigma differs much from time.
+    /// The speed of slip below which sigma, the variable of the integration, differs much from time.
     pub soft: T,
-    /// Whether the friction is Coulomb's.
+    /// Whether the friction is Coulomb's (true) or viscous (false).
     pub dry: bool,
     /// The radius of the patch of contact; None for a point.
     radius: Option<T>,
-    /// The tangent of the slope, which pulls along x of the laboratory; None on a level table.
+    /// The tangent of the slope, which falls along x of the laboratory; None on a level table.
     pub tilt: Option<T>,
     /// The losses in addition to friction; None if the stone has none.
     pub losses: Option<Couples<T>>,
 }
 
-/// The position of the contact point and its derivative, along the axes of the body.
+/// The contact point of a stone and its derivative, along the axes of the stone, with the forces that act on it.
 #[derive(Clone, Copy)]
 pub(crate) struct Touching<T> {
     pub n: [T; 3],
-    /// The force that would carry the weight: n on a level table, on a slope n - tan(beta) x.
+    /// The upward force that would balance the weight: n on a level table, n - tan(beta) x on a slope.
     pub up: [T; 3],
     pub r: [T; 3],
     pub r_rate: [T; 3],
     /// The couple of the losses; None if there are none.
     pub lost: Option<Couple<T>>,
-    /// The motions that dry friction holds: the drilling w.n, or the rolling and the rocking.
+    /// The motions that dry friction keeps at rest: the drilling w.n, or the rolling and the rocking.
     pub holds: Holds,
 }
 
-/// The response of a stone in one state.
+/// The response of a stone in one state: the derivative of w, and the force and couple of the table.
 #[derive(Clone, Copy)]
 pub(crate) struct StoneResponse<T> {
     pub w: [T; 3],
@@ -76,11 +76,11 @@ pub(crate) struct StoneResponse<T> {
     /// The normal force N without friction, times a positive factor; the stone lifts off when this number
     /// becomes zero.
     pub free: T,
-    /// The factor of N minus [`JAMMED`]; no unique force exists when this number is zero or less.
+    /// The factor 1 + (I^-1 (r x f)) x r . n of N, minus [`JAMMED`]; no unique force exists when this number is zero or less.
     pub room: T,
-    /// The couple about the vertical: that of a patch, or the one that holds the drilling.
+    /// The couple about the vertical: that of a patch of contact, or the couple that holds the drilling at rest.
     pub couple: T,
-    /// The horizontal couple that holds the rolling and the rocking, if they are held.
+    /// The horizontal couple that holds the rolling and the rocking at rest, if they are held.
     pub kept: T,
 }
 
@@ -90,7 +90,7 @@ impl<T: Real> StoneLaw<T> {
         let one = strength.splat(1.0);
         let reach = squares[0].max(squares[1]).max(squares[2]) + dot(offset, offset);
         let [x, y, z, ..] = inverse.0;
-        // Friction changes the slip by about this speed in a quarter of the unit of time.
+        // Friction changes the slip by about `soft` in a quarter of the unit of time.
         let soft = strength * (one + reach * (x + y + z)) * one.splat(0.25);
         Self {
             squares,
@@ -118,7 +118,7 @@ impl<T: Real> StoneLaw<T> {
         if SHORT_CODE { None } else { self.radius }
     }
 
-    /// Returns this law with another coefficient of friction, for the speed of a slip.
+    /// Returns this law with another coefficient of friction, that of the present speed of the slip.
     #[must_use]
     pub fn with_strength(self, strength: T) -> Self {
         Self { strength, ..self }
@@ -158,7 +158,8 @@ impl<T: Real> StoneLaw<T> {
         Touching { n, up: n, r, r_rate, lost: None, holds: Holds::default() }
     }
 
-    /// The contact point of a stone to which the axes of the laboratory have these directions.
+    /// The contact point of a stone on a level or tilted table; `lab` has the axes x, y, z of the laboratory along
+    /// those of the stone.
     #[inline(always)]
     pub fn meeting(&self, lab: &[[T; 3]; 3], w: [T; 3]) -> Touching<T> {
         let at = self.touching(lab[2], w);
@@ -177,7 +178,7 @@ impl<T: Real> StoneLaw<T> {
         losses.seen(&Rim { ell: zero, a: one, rho: zero }, (one, zero), z, [z, x, y])
     }
 
-    /// Returns this contact point with the couple of the losses.
+    /// Returns the contact point `at` with the couple of the losses added.
     #[inline(always)]
     pub fn losing(&self, at: Touching<T>, lab: &[[T; 3]; 3], w: [T; 3]) -> Touching<T> {
         let Some(losses) = &self.losses else { return at };
@@ -193,7 +194,7 @@ impl<T: Real> StoneLaw<T> {
         self.resting(at, w, at.holds.drilling)
     }
 
-    /// The response of a stone that rolls without slip. If `held`, a couple keeps its drilling w.n constant.
+    /// The response of a stone that rolls without slip. If `held`, a couple about the vertical keeps its drilling w.n constant.
     #[inline(always)]
     pub fn resting(&self, at: &Touching<T>, w: [T; 3], held: bool) -> StoneResponse<T> {
         if at.holds.rolling {
@@ -292,8 +293,8 @@ impl<T: Real> StoneLaw<T> {
     }
 
     /// The response of a stone that only turns about the vertical, since its rolling and its rocking are held, so that
-    /// N = 1. Either the contact point is at rest, and the centre moves on a circle, or friction is n - `pull`, with the
-    /// couple `twist` about the vertical.
+    /// N = 1. Either the contact point is at rest and the centre of mass moves on a circle, or the force is n - `pull`,
+    /// with the couple `twist` about the vertical.
     #[inline(always)]
     fn stays(
         &self,
@@ -336,14 +337,15 @@ impl<T: Real> StoneLaw<T> {
         }
     }
 
-    /// Adds to a derivative of w that of a couple which keeps the drilling w.n constant; also returns this couple.
+    /// Adds to w' the effect of a couple about the vertical that keeps the drilling w.n constant; also returns this couple.
     fn without_drilling(&self, n: [T; 3], turn: [T; 3]) -> ([T; 3], T) {
         let gives = self.inverse.times(n);
         let kept = -(dot(turn, n) / dot(gives, n));
         (plus(turn, kept, gives), kept)
     }
 
-    /// The response of a stone whose contact point slips with `u`; also dt/dsigma.
+    /// The response of a stone whose contact point slips with the velocity u; also dt/dsigma, for the variable sigma of
+    /// the integration.
     #[inline(always)]
     pub fn slipping(&self, at: &Touching<T>, w: [T; 3], u: [T; 3]) -> (StoneResponse<T>, T) {
         let one = u[0].splat(1.0);
@@ -358,7 +360,7 @@ impl<T: Real> StoneLaw<T> {
         (self.pulled(at, w, u.map(|x| x * per)), speed / (speed + self.soft))
     }
 
-    /// The response of a stone that slips on a patch of contact; also dt/dsigma.
+    /// The response of a stone that slips on a patch of contact; also dt/dsigma, for the variable sigma of the integration.
     #[inline(never)]
     fn on_patch(&self, at: &Touching<T>, w: [T; 3], u: [T; 3], patch: T) -> (StoneResponse<T>, T) {
         let [share, twist, size] = rubs(dot(u, u).sqrt(), dot(w, at.n), patch);
@@ -375,7 +377,7 @@ impl<T: Real> StoneLaw<T> {
         plus(plus(plus(to.force, -one, up), one, carried), one, cross(to.w, r))
     }
 
-    /// The acceleration of the contact point per force `f`, along the axes of the body.
+    /// The acceleration of the contact point under the contact force `f`, along the axes of the body.
     pub fn yields(&self, at: &Touching<T>, f: [T; 3]) -> [T; 3] {
         plus(f, f[0].splat(1.0), self.swings(at, cross(at.r, f)))
     }
@@ -386,7 +388,7 @@ impl<T: Real> StoneLaw<T> {
         cross(if at.holds.drilling { self.without_drilling(at.n, turned).0 } else { turned }, at.r)
     }
 
-    /// The inverse inertia of the contact point, along x and y of the laboratory.
+    /// The inverse inertia of the contact point: its acceleration per horizontal force, along x and y of the laboratory.
     pub fn light(&self, at: &Touching<T>, lab: &[[T; 3]; 3]) -> [[T; 3]; 3] {
         let per = lab.map(|axis| self.yields(at, axis));
         lab.map(|axis| per.map(|per| dot(axis, per)))
@@ -412,7 +414,7 @@ pub(crate) fn laboratory<T: Real>([w, x, y, z]: [T; 4]) -> [[T; 3]; 3] {
     ]
 }
 
-/// The derivative of the unit quaternion of a body with the angular velocity (a, b, c) along its own axes.
+/// The derivative of the unit quaternion of a body with the angular velocity (a, b, c) along the axes of the body.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4] {
     let half = w.splat(0.5);
@@ -424,7 +426,7 @@ pub(crate) fn turning<T: Real>([w, x, y, z]: [T; 4], [a, b, c]: [T; 3]) -> [T; 4
     ]
 }
 
-/// The horizontal vector with the components (a, b) in the laboratory, in components along the axes of the body.
+/// The horizontal vector with the components a and b along x and y of the laboratory, in components along the axes of the body.
 #[inline(always)]
 pub(crate) fn across<T: Real>(lab: &[[T; 3]; 3], [a, b]: [T; 2]) -> [T; 3] {
     plus(lab[0].map(|x| x * a), b, lab[1])

@@ -43,7 +43,7 @@ pub struct Ellipsoid {
     unit: f64,
 }
 
-/// Allowed lengths of the semi-axes.
+/// Least and largest length of a semi-axis that is accepted.
 const AXES: (f64, f64) = (1e-30, 1e30);
 /// Allowed excess of a principal moment over the sum of the two others, from rounding.
 const MOMENT_ROUNDING: f64 = 1e-12;
@@ -62,7 +62,7 @@ impl Ellipsoid {
         stone.checked(stone.moments())
     }
 
-    /// The ellipsoid of [`new`](Self::new), without the check of its principal moments.
+    /// The ellipsoid of [`new`](Self::new), made without a check of its principal moments.
     fn shaped(axes: [f64; 3], inertia: [[f64; 3]; 3], offset: [f64; 3]) -> Result<Self, Error> {
         for axis in axes {
             within("axes", axis, AXES, "three semi-axes, 1e-30 <= a <= 1e30")?;
@@ -176,7 +176,7 @@ impl Ellipsoid {
         Ok(Self { theta_end, ..self })
     }
 
-    /// The names of the numbers of a stone.
+    /// The names of the 13 numbers of [`numbers`](Self::numbers), in their order.
     pub const NAMES: [&str; 13] =
         ["a1", "a2", "a3", "i11", "i22", "i33", "i23", "i13", "i12", "d1", "d2", "d3", "theta_end"];
 
@@ -189,7 +189,7 @@ impl Ellipsoid {
         Self::new([a, b, c], [[i, n, m], [n, j, l], [m, l, k]], [x, y, z])?.with_edge(end)
     }
 
-    /// Returns this stone with an edge, or without an edge if `theta_end` is NaN.
+    /// Returns this stone with an edge that lands at `theta_end`, or without an edge if `theta_end` is NaN.
     pub(crate) fn with_edge(self, theta_end: f64) -> Result<Self, Error> {
         if theta_end.is_nan() { Ok(self) } else { self.with_theta_end(theta_end) }
     }
@@ -200,33 +200,34 @@ impl Ellipsoid {
         [a, b, c, i, j, k, l, m, n, x, y, z, if self.theta_end < PI { self.theta_end } else { f64::NAN }]
     }
 
-    /// The semi-axes; the largest is 1.
+    /// The semi-axes, in units of the largest one.
     pub fn axes(&self) -> [f64; 3] {
         self.axes
     }
 
-    /// The tensor of inertia about the centre of mass.
+    /// The tensor of inertia about the centre of mass, per mass, in units of the square of the largest semi-axis.
     pub fn inertia(&self) -> [[f64; 3]; 3] {
         let [a, b, c, d, e, f] = self.inertia.0;
         [[a, f, e], [f, b, d], [e, d, c]]
     }
 
-    /// The centre of mass, counted from the centre of the ellipsoid.
+    /// The centre of mass relative to the centre of the ellipsoid, in units of the largest semi-axis.
     pub fn offset(&self) -> [f64; 3] {
         self.offset
     }
 
-    /// The inclination of axis 3 at which the edge lands; pi without an edge.
+    /// The inclination of axis 3 at which the edge lands, in radians; pi without an edge.
     pub fn theta_end(&self) -> f64 {
         self.theta_end
     }
 
-    /// The largest semi-axis in the unit in which the body was given.
+    /// The largest semi-axis in the unit of length in which the stone was given.
     pub fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// The principal moments of inertia about the centre of mass, in ascending order.
+    /// The principal moments of inertia about the centre of mass, in ascending order, per mass, in units of the square
+    /// of the largest semi-axis.
     pub fn moments(&self) -> [f64; 3] {
         let matrix = nalgebra::Matrix3::from(self.inertia());
         let mut moments: [f64; 3] = matrix.symmetric_eigenvalues().into();
@@ -234,12 +235,12 @@ impl Ellipsoid {
         moments
     }
 
-    /// The state of [`StoneState::spinning`]; it does not depend on the stone.
+    /// The state of a nearly upright stone that spins about the vertical: [`StoneState::spinning`], the same for every stone.
     pub fn spinning(&self, spin: f64, pitch: f64, roll: f64) -> StoneState {
         StoneState::spinning(spin, pitch, roll)
     }
 
-    /// The lowest point of the stone, counted from the centre of mass, if this unit vector points upward.
+    /// The lowest point of the stone relative to the centre of mass, along its axes, if the unit vector `vertical` points upward.
     pub fn lowest_point(&self, vertical: [f64; 3]) -> [f64; 3] {
         self.law(0.0, false).touching(vertical, [0.0; 3]).r
     }
@@ -270,7 +271,8 @@ impl Ellipsoid {
         self.energy_slipping(y, [0.0; 2], contact == Contact::Smooth)
     }
 
-    /// The energy of a stone whose contact point has the slip `slip`.
+    /// The energy of a stone whose contact point slips with `slip`, along x and y of the laboratory; on a smooth table
+    /// that of a centre without horizontal velocity.
     pub(crate) fn energy_slipping(&self, y: &StoneState, slip: [f64; 2], smooth: bool) -> f64 {
         let law = self.law(0.0, false);
         let at = law.touching(y.vertical, y.w);
@@ -288,7 +290,7 @@ impl Ellipsoid {
     }
 }
 
-/// Principal moments per mass of a uniform ellipsoid.
+/// Principal moments of inertia of a uniform ellipsoid about its centre, per mass.
 fn uniform([a, b, c]: [f64; 3]) -> [f64; 3] {
     [0.2 * (b * b + c * c), 0.2 * (a * a + c * c), 0.2 * (a * a + b * b)]
 }

@@ -3,7 +3,7 @@
 use crate::numbers::vector::dot;
 use nalgebra::{Point2, Quaternion, UnitQuaternion};
 
-/// The vertical and the angular velocity of a stone, along the axes of the ellipsoid.
+/// The direction of the vertical and the angular velocity of a stone, along the axes of the ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoneState {
@@ -53,7 +53,7 @@ impl StoneState {
     }
 }
 
-/// The orientation with this quaternion, turned about the vertical by an angle.
+/// The orientation with the quaternion `from`, turned about the vertical by the angle `heading`, in radians.
 pub(crate) fn headed(from: [f64; 4], heading: f64) -> [f64; 4] {
     if heading == 0.0 {
         return from;
@@ -69,9 +69,9 @@ pub(crate) fn headed(from: [f64; 4], heading: f64) -> [f64; 4] {
 pub struct StonePose {
     /// The rotation from the axes of the ellipsoid to those of the laboratory.
     pub orientation: UnitQuaternion<f64>,
-    /// The contact point on the table; at first it is at the place of the start.
+    /// The contact point on the table, along x and y of the laboratory, in units of the largest semi-axis.
     pub contact_point: Point2<f64>,
-    /// The centre of mass.
+    /// The centre of mass, along x, y, z of the laboratory, in units of the largest semi-axis.
     pub centre: [f64; 3],
 }
 

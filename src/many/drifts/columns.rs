@@ -8,14 +8,14 @@ use crate::many::columns::{BodyColumns, LossColumns, Split, StateColumns, at, fi
 use crate::motions::drift::rest::Rest;
 use crate::motions::drift::{Drift, End, check_drift};
 
-/// The motion of the centre during a drift. Arrays hold the number of the variant.
+/// The motion of the centre of mass during a drift. Arrays hold the number of the variant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Centre {
-    /// The centre is held at rest.
+    /// The centre of mass is held at rest.
     Rest = 0,
-    /// The body rolls without slipping.
+    /// The body rolls without slipping, and its centre of mass moves.
     Rolling = 1,
 }
 
@@ -24,19 +24,19 @@ pub enum Centre {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct DriftStarts<'a> {
-    /// The motion of the centre.
+    /// The motion of the centre of mass, the same for all drifts.
     pub centre: Centre,
     /// Columns of ell, i1, i3, bore (NaN unless the body is a tube), fillet and theta_end (NaN for the default of the
     /// body).
     pub(crate) bodies: [&'a [f64]; 6],
     /// Columns of theta, w1, w2 and w3; only theta matters for a centre at rest.
     pub(crate) states: [&'a [f64]; 4],
-    /// Columns of the coefficients of the laws.
+    /// Columns of the coefficients of the loss laws.
     pub losses: LossColumns<'a>,
 }
 
 impl<'a> DriftStarts<'a> {
-    /// Drifts of the bodies, states and losses in these columns, with this motion of the centres.
+    /// The drifts of the bodies, states and losses in these columns, with this motion of the centre of mass.
     pub fn new(
         centre: Centre,
         bodies: BodyColumns<'a>,
@@ -52,13 +52,13 @@ impl<'a> DriftStarts<'a> {
 /// The code of an initial state without a drift; the codes of [`End`] are smaller.
 pub const NO_DRIFT: u8 = 255;
 
-/// The arrays for the results.
+/// The arrays for the results of many drifts.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct DriftOutput<'a> {
     /// The time of the end, in sqrt(R/g): infinite if the drift never ends, NaN for a start without a drift.
     pub stops_at: &'a mut [f64],
-    /// The inclination at the end.
+    /// The inclination at the end, in radians.
     pub ends_at_theta: &'a mut [f64],
     /// Code of the [`End`], or [`NO_DRIFT`].
     pub ended: &'a mut [u8],
@@ -92,7 +92,7 @@ impl DriftOutput<'_> {
     }
 }
 
-/// A body, its initial state and its losses.
+/// A body, its initial state and its losses, as numbers of one row.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftRow {
     pub body: [f64; 6],

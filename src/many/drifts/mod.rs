@@ -1,8 +1,8 @@
-//! Many drifts at once: every body has its own initial state and losses, and lanes and threads share the work.
+//! Many drifts at once: every body has its own initial state and losses, and SIMD lanes and threads share the work.
 //!
-//! The results are the times and the kinds of the ends. A drift that the lanes cannot compute is computed alone, as by
-//! `Drift`. This choice depends on the drift alone, so that the result has the same bits for any number of threads and
-//! for any other drifts in the call.
+//! The results are the times and the kinds of the ends. A drift that cannot be computed in SIMD lanes is computed
+//! alone, as by `Drift`. This choice depends on the drift alone, so that the result has the same bits for any number of
+//! threads and for any other drifts in the call.
 //!
 //! Error: that of a single drift; a property of `drift` compares the two.
 
@@ -23,8 +23,8 @@ use crate::numbers::{LANES, level};
 const DRIFTS_PER_BLOCK: usize = 4096;
 
 /// Computes the ends of all drifts and fills `out`, on `threads` threads, of which the calling thread is one. The
-/// calling thread calls `go_on` about fifty times a second with the finished share of the work, and stops if it
-/// returns false. Returns whether all drifts are done; if not, the contents are unspecified.
+/// calling thread calls `go_on` about fifty times a second with the finished share of the work, and stops if `go_on`
+/// returns false. Returns whether all drifts are done; if not, the contents of `out` are unspecified.
 ///
 /// # Errors
 /// `Memory` if the memory does not suffice.
@@ -49,10 +49,10 @@ fn stops_compiled_once(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let count = starts.len();
-    assert!(starts.fit(count), "columns of different lengths");
+    assert!(starts.fit(count), "expected columns of one length, or single numbers");
     assert!(
         [out.stops_at.len(), out.ends_at_theta.len(), out.ended.len()] == [count; 3],
-        "an array does not fit"
+        "an output array does not have the length of the results"
     );
     spare()?;
     let blocks = blocks(out, count, DRIFTS_PER_BLOCK)?;
@@ -73,8 +73,7 @@ fn stops_compiled_once(
     }))
 }
 
-/// Computes the ends of at most eight drifts with the centre at rest, all on sharp rims or all on rounded
-/// ones.
+/// Computes the ends of at most eight drifts with the centre at rest, all on sharp rims or all on rounded rims.
 fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize, out: &mut DriftOutput<'_>) {
     let mut rows = [starts.row(eight[0]); LANES];
     for (row, i) in rows.iter_mut().zip(eight) {
@@ -92,7 +91,7 @@ fn at_rest(starts: &DriftStarts<'_>, eight: &[usize], round: bool, first: usize,
     }
 }
 
-/// The drift of row `i`.
+/// The drift of the row with the index `i`.
 ///
 /// # Errors
 /// `OutOfRange` or `Moments` for a body that does not exist; and those of [`Drift::at_rest`] or, if the centre is not
@@ -105,19 +104,19 @@ pub fn single(starts: &DriftStarts<'_>, i: usize) -> Result<Drift, Error> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Question {
-    /// The time at which the drift reaches an inclination: [`DriftAnswer::time`].
+    /// The time at which the drift reaches an inclination; the result is [`DriftAnswer::time`].
     Time,
-    /// The state at a time: all but [`DriftAnswer::time`].
+    /// The state at a time; the result is all of [`DriftAnswer`] but its `time`.
     At,
-    /// The time until which rolling is stable: [`DriftAnswer::time`].
+    /// The time until which rolling is stable; the result is [`DriftAnswer::time`].
     Stable,
 }
 
-/// What [`ask`] finds of a drift. Numbers that the question does not ask for, and those that do not exist, are NaN.
+/// The result of [`ask`] for a drift. Numbers that the [`Question`] does not concern, and those that do not exist, are NaN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct DriftAnswer {
-    /// A time, in sqrt(R/g).
+    /// The time in question, in sqrt(R/g).
     pub time: f64,
     /// The inclination, in radians.
     pub theta: f64,
@@ -132,7 +131,7 @@ pub struct DriftAnswer {
 }
 
 impl DriftAnswer {
-    /// No number: what an array of answers is filled with at first.
+    /// An answer in which all numbers are NaN, for arrays that are still to be filled.
     pub const NONE: Self = Self {
         time: f64::NAN,
         theta: f64::NAN,
@@ -172,8 +171,8 @@ fn ask_compiled_once(
     threads: usize,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
-    assert!(starts.fit(starts.len()), "columns of different lengths");
-    assert!(of.len() == x.len() && out.len() == x.len(), "an array does not fit");
+    assert!(starts.fit(starts.len()), "expected columns of one length, or single numbers");
+    assert!(of.len() == x.len() && out.len() == x.len(), "of, x and out have different lengths");
     spare()?;
     let mut blocks = room(x.len().div_ceil(64))?;
     for ((of, x), out) in of.chunks(64).zip(x.chunks(64)).zip(out.chunks_mut(64)) {

@@ -1,12 +1,12 @@
-//! Drifts with the centre at rest, eight at a time, if they go to the face or to the side without crossing a
-//! ridge.
+//! Drifts with the centre at rest, in eight SIMD lanes, if they go to the face or to the side without crossing a ridge
+//! of the energy.
 //!
 //! ```text
 //! t = D sum W_k p w_k^(p-1) E'/P,   theta_k = theta_e + D w_k^p          sixteen nodes of Gauss, and twelve; 32 and 24
 //! ```
 //! The exponent p is 1 for a drift to the side. For a drift to the face it is 2 if a single law gives half-integer
-//! powers of theta, else 4. The lanes have a result where n and m are not small at the start, E' is not small compared
-//! with its terms at any node, and the two rules agree.
+//! powers of theta, else 4. There is a result where n and m are not small at the start, E' is not small compared with
+//! its terms at any node, and the two rules agree.
 
 use super::columns::DriftRow;
 use crate::laws::body::{Shape, beyond};
@@ -20,7 +20,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// A node: w, w^2 and w^4; its weight times 1, 2 w and 4 w^3; and its rule, 0 for the fine one, 1 for the coarse one.
+/// A node of a rule: w, w^2 and w^4; its weight times 1, 2 w and 4 w^3; and its rule, 0 for the fine one, 1 for the coarse one.
 type GaussNode = ([f64; 3], [f64; 3], usize);
 
 /// The nodes of the rules of 16 and 12 nodes, and those of 32 and 24 for drifts on which the first two disagree; each
@@ -42,13 +42,13 @@ fn gauss_rules(fine: usize, coarse: usize) -> Vec<GaussNode> {
     all
 }
 
-/// Fraction of their terms below which n, m and E' count as small, and the lanes give no result.
+/// Fraction of their terms below which n, m and E' count as small, so that SIMD lanes give no result.
 const SMALL_TERM_SHARE: f64 = 0.02;
 
 /// Relative difference up to which the two rules agree; the fine rule then has 4/3 as many digits as the coarse one.
 const RULE_DIFFERENCE: f64 = 2e-11;
 
-/// The goal of a row: its end and inclination, the exponent p, and whether the time to the end is finite.
+/// The goal of a drift: its end and inclination, the exponent p, and whether the time to the end is finite.
 #[derive(Debug, Clone, Copy)]
 struct DriftGoal {
     end: End,
@@ -57,7 +57,7 @@ struct DriftGoal {
     finite: bool,
 }
 
-/// The ends of eight drifts, with their inclinations and times; None where the lanes have no result.
+/// The ends of eight drifts, with their inclinations and times; None for a drift without a result in SIMD lanes.
 pub(crate) fn stops<const ROUND: bool>(
     level: Option<Level>,
     rows: &[DriftRow; LANES],
@@ -97,7 +97,7 @@ pub(crate) fn stops<const ROUND: bool>(
     })
 }
 
-/// The goal of a row; None if the lanes cannot compute this drift.
+/// The goal of the drift of a row; None if it cannot be computed in SIMD lanes.
 fn task(row: &DriftRow) -> Option<DriftGoal> {
     let [ell, i1, i3, _, rho, most] = row.body;
     let theta = row.state[0];
@@ -136,13 +136,13 @@ fn goal_at_face(Losses { coefficients }: &Losses, height: f64) -> DriftGoal {
     DriftGoal { end: End::Face, goal: 0.0, power, finite }
 }
 
-/// Eight rows as columns.
+/// Eight rows of bodies and losses as columns.
 #[derive(Debug, Clone, Copy)]
 struct Packed {
     /// Columns of ell, i1, i3 and fillet.
     shape: [[f64; LANES]; 4],
     laws: [[f64; LANES]; COUNT],
-    /// The laws that any row has.
+    /// The laws that are present in any of the rows.
     present: [bool; COUNT],
     theta: [f64; LANES],
     goal: [f64; LANES],
@@ -170,7 +170,7 @@ impl Packed {
     }
 }
 
-/// The times to the ends; NaN where the lanes have no result, and any number in lanes without a goal.
+/// The times to the ends; NaN where SIMD lanes have no result, and any number in lanes without a goal.
 #[inline(always)]
 fn end_times<T: SideBySide, const ROUND: bool>(like: T, packed: &Packed, nodes: &[GaussNode]) -> T {
     let shape = Shape::of(packed.shape.each_ref().map(|x| like.load(x)));

@@ -1,7 +1,7 @@
 //! Drifts of rolling bodies in SIMD lanes; a lane whose drift has ended takes the next drift.
 //!
 //! A lane computes its drift up to the step in which the drift may end. That step is taken outside the lanes, as for a
-//! single drift, and finds the end. A drift that does not end there enters a lane again.
+//! single drift, and locates the end. A drift that does not end in that step enters a lane once more.
 
 use super::columns::{DriftOutput, DriftRow, DriftStarts};
 use crate::error::Error;
@@ -21,13 +21,13 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{MOST as LANES, SideBySide, zero};
 use fearless_simd::Level;
 
-/// Number of margins in a lane: those of a single drift, the beginning of the tail or the end of the
-/// precession, and the inclination at which counting changes to the other end of [0, pi].
+/// Number of margins in a SIMD lane: those of a single drift; the margin for the beginning of the tail or the end of
+/// the precession; and the inclination at which theta is counted from the other end of [0, pi].
 const DRIFT_MARGINS: usize = rolling::DRIFT_MARGINS + 2;
 
 const _: () = assert!(4 + COUNT + DRIFT_NUMBERS <= NUMBERS);
 
-/// The properties that all lanes of a set share.
+/// The properties that all drifts in a set of SIMD lanes share.
 #[derive(Clone, Copy, PartialEq)]
 struct DriftKind {
     round: bool,
@@ -44,7 +44,7 @@ struct DriftLanes<T> {
 }
 
 impl<T: SideBySide> DriftLanes<T> {
-    /// Placeholder bodies for lanes without a drift.
+    /// Placeholder bodies for SIMD lanes without a drift.
     #[inline(always)]
     fn new(zero: T, kind: DriftKind) -> Self {
         let one = zero.splat(1.0);
@@ -121,7 +121,7 @@ impl<T: SideBySide> Flows<T, 4, DRIFT_MARGINS> for DriftLanes<T> {
     }
 }
 
-/// A drift that waits or is in a lane: its index, and the number of steps that it may still take.
+/// A drift that waits for a SIMD lane or is in one: its index, and the number of steps that it may still take.
 struct DriftTask {
     i: usize,
     of: Rolling<'static>,
@@ -153,7 +153,7 @@ impl Drifts<'_, '_, '_> {
         }
     }
 
-    /// Computes a drift for some steps without lanes; a drift without an end after these waits for a lane again.
+    /// Computes a drift for some steps without SIMD lanes; a drift that does not end in these steps waits for another lane.
     fn compute_without_lanes(&mut self, mut task: DriftTask, most: u64) {
         let i = task.i - self.first;
         match task.of.follow(task.y, Some(task.step), most.min(task.left)) {
@@ -201,8 +201,8 @@ fn begin(row: &DriftRow) -> Result<(Rolling<'static>, Numbers<f64>), Error> {
     Rolling::begin(&body, &State::from(row.state), &row.losses)
 }
 
-/// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws
-/// share their lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
+/// Computes the ends of the drifts from `first` on, for all rows of `out`. Only drifts under the same laws share a set
+/// of SIMD lanes: a law with the coefficient 0 would not change a drift, but its rates may overflow.
 pub(crate) fn rolling_stops(
     level: Option<Level>,
     starts: &DriftStarts<'_>,

@@ -1,4 +1,4 @@
-//! The areas of the regions of a map, without the map, from the curves that bound the regions.
+//! The areas of the regions of a map, from the curves that bound the regions, without computing the whole map.
 
 use crate::error::{Error, room, spare};
 use crate::laws::body::Body;
@@ -29,7 +29,7 @@ pub fn areas<const SETS: usize>(
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<Option<Vec<[[f64; 8]; SETS]>>, Error> {
     let fit = weights.iter().all(|w| w.len() == theta.len());
-    assert!(fit && theta.is_sorted(), "theta ascending, and a weight for each");
+    assert!(fit && theta.is_sorted(), "expected theta to ascend, and a weight for each inclination");
     spare()?;
     let mut sums = room(theta.len() + 1)?;
     let mut sum = [0.0; SETS];
@@ -66,14 +66,14 @@ struct Grid<'a, const SETS: usize> {
     tangents: &'a [f64],
 }
 
-/// Number of bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of
-/// a map.
+/// Number of bodies in a block of `areas`: most bodies take half a microsecond, some as long as their part of a whole
+/// map.
 const BODIES_PER_AREA_BLOCK: usize = 256;
 
 /// Number of inclinations that are evaluated one by one on each side of a computed change of region.
 const POINTS_AROUND_CHANGE: usize = 2;
 
-/// The areas of one body; `asked` is a buffer for the ranges of evaluated inclinations.
+/// The areas of the regions of one body; `asked` is a buffer for the ranges of evaluated inclinations.
 fn areas_of<const SETS: usize>(
     &Grid { theta, sums, first, tangents }: &Grid<'_, SETS>,
     body: Option<&Body>,

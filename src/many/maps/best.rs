@@ -8,9 +8,9 @@ use crate::numbers::side_by_side::SideBySide;
 pub enum MapQuantity {
     /// The square of the reduced rotation rate.
     SquaredRate,
-    /// Squared nutation frequency when rolling.
+    /// Squared nutation frequency in rolling, in g/R.
     KappaRolling,
-    /// Squared nutation frequency on a smooth table.
+    /// Squared nutation frequency on a smooth table, in g/R.
     KappaSmooth,
     /// Energy, in M g R.
     Energy,
@@ -43,7 +43,7 @@ pub struct Extrema {
 pub struct MapExtrema(pub(super) [Ends; 4]);
 
 impl MapExtrema {
-    /// The extrema of a quantity; None if it was not wanted, and without any steady state.
+    /// The extrema of a quantity; None if it was not requested, or if the map has no steady state.
     pub fn of(&self, quantity: MapQuantity) -> Option<Extrema> {
         let at = |(value, theta, body)| MapPoint { value, theta, body };
         self.0[quantity as usize]
@@ -51,12 +51,12 @@ impl MapExtrema {
     }
 }
 
-/// Minimum and maximum of a quantity of a map, each as (value, index of the inclination, index of the body); None
-/// without any steady state.
+/// Minimum and maximum of a quantity of a map, each as (value, index of the inclination, index of the body); None if
+/// the map has no steady state.
 pub(crate) type Ends = Option<[(f64, usize, usize); 2]>;
 
-/// The minimum of x and of -x in each lane, each with its place: the index of the group of lanes, counted row
-/// by row.
+/// The minimum of x and of -x in each SIMD lane, each with its place: the index of the group of lanes, counted row by
+/// row.
 #[derive(Clone, Copy)]
 pub(super) struct ExtremaInLanes<T>([(T, T); 2]);
 
@@ -66,7 +66,7 @@ impl<T: SideBySide> ExtremaInLanes<T> {
         Self([(like.splat(f64::INFINITY), like.splat(0.0)); 2])
     }
 
-    /// Compares the numbers in SIMD lanes with the extrema so far; a NaN is ignored.
+    /// Compares the number in each SIMD lane with the extrema so far; a NaN is ignored.
     #[inline(always)]
     pub fn include(&mut self, x: T, place: f64) {
         let place = x.splat(place);
@@ -87,7 +87,7 @@ impl<T: SideBySide> ExtremaInLanes<T> {
         [low, -high]
     }
 
-    /// Minimum and maximum with their places, for a map of this `width` with `chunks` groups in a row.
+    /// Minimum and maximum with their places, for a map with `width` bodies in `chunks` groups of lanes in a row.
     #[inline(always)]
     pub fn places(&self, chunks: usize, width: usize) -> Ends {
         let mut ends = [(f64::INFINITY, 0, 0); 2];

@@ -38,7 +38,7 @@ impl Slot<'_> {
         }
     }
 
-    /// Stores the first `count` lanes at `start`; with `gaps` only the lanes that are not NaN.
+    /// Stores the first `count` SIMD lanes at `start`; with `gaps` only the lanes that are not NaN.
     #[inline(always)]
     pub(super) fn store<T: Narrow>(&mut self, start: usize, count: usize, x: T, gaps: bool) {
         match self {
@@ -62,7 +62,7 @@ impl Slot<'_> {
     }
 }
 
-/// An optional slot, of which a part can be borrowed.
+/// An optional array, of which a part can be borrowed.
 trait Part {
     fn part(&mut self, from: usize, count: usize) -> Option<Slot<'_>>;
 }
@@ -78,7 +78,7 @@ impl Part for Option<Slot<'_>> {
     }
 }
 
-/// Stores the lanes that fit; with `gaps` only those that are `known`.
+/// Stores the SIMD lanes that fit; with `gaps` only those for which `known` is true.
 #[inline(always)]
 fn put_lanes<T: Narrow, F>(
     out: &mut [F],
@@ -97,7 +97,7 @@ fn put_lanes<T: Narrow, F>(
     }
 }
 
-/// Some points of a [`Portrait`]: `numbers` holds rate, rolling kappa, smooth kappa and energy.
+/// The arrays for some points of a [`Portrait`]: `numbers` holds rate, kappa in rolling, kappa on a smooth table, and energy.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
     pub(super) numbers: [Option<Slot<'a>>; 4],
@@ -123,7 +123,7 @@ impl<'a> Block<'a> {
             && self.region.iter().all(|x| x.len() == points)
     }
 
-    /// The part with `count` points from `from` on.
+    /// The arrays of the `count` points from the index `from` on.
     #[inline(always)]
     pub(super) fn part(&mut self, from: usize, count: usize) -> Block<'_> {
         let [a, b, c, d] = &mut self.numbers;
@@ -132,7 +132,7 @@ impl<'a> Block<'a> {
         Block { numbers, region }
     }
 
-    /// Whether only the rate is wanted.
+    /// Whether only the rate is requested.
     pub(super) fn is_rate(&self) -> bool {
         matches!(&self.numbers, [Some(_), None, None, None]) && self.region.is_none()
     }

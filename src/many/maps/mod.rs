@@ -1,9 +1,9 @@
 //! Dense maps of the steady states of every body at every inclination, computed in SIMD lanes and on threads.
 //!
 //! The module has no formulas: each point is computed by [`steady`](crate::states::steady) and
-//! [`stability`](crate::states::stability) in eight lanes, with the same bits as the single call, for any thread count,
-//! position and SIMD width. Only wanted quantities are computed. In single precision the root of the rate of a sharp
-//! rim is taken in that precision, and every other quantity is rounded once.
+//! [`stability`](crate::states::stability) in eight SIMD lanes, with the same bits as the single call, for any thread
+//! count, position and SIMD width. Only requested quantities are computed. In single precision the root of the rate of
+//! a sharp rim is taken in that precision, and every other quantity is rounded once.
 //!
 //! ```
 //! use spincyl::sweep::{Portrait, portrait};
@@ -43,8 +43,8 @@ pub(crate) use survey::extrema_compiled_once;
 /// Number of points in a block: a thread takes one block at a time, and the caller can stop the work between blocks.
 const POINTS_PER_BLOCK: usize = 1 << 16;
 
-/// A number in which a map can be stored: in double precision, or in single precision, where the relative
-/// error of a rate is at most 1.51 times 2^-24.
+/// A type of number in which a map can be stored: double precision, or single precision, where the relative error of a
+/// rate is at most 1.51 times 2^-24.
 pub trait Cell: sealed::Slotted {}
 
 impl Cell for f64 {}
@@ -77,9 +77,9 @@ mod sealed {
 pub struct Portrait<'a, F = f64> {
     /// Reduced rotation rate, NaN without a steady state.
     pub rate: Option<&'a mut [F]>,
-    /// Squared nutation frequency when rolling, negative where unstable.
+    /// Squared nutation frequency in rolling, in g/R, negative where unstable.
     pub kappa_rolling: Option<&'a mut [F]>,
-    /// Squared nutation frequency on a smooth table.
+    /// Squared nutation frequency on a smooth table, in g/R, negative where unstable.
     pub kappa_smooth: Option<&'a mut [F]>,
     /// Energy, in M g R.
     pub energy: Option<&'a mut [F]>,
@@ -94,31 +94,31 @@ impl<F> Default for Portrait<'_, F> {
 }
 
 impl<'a, F> Portrait<'a, F> {
-    /// Returns these arrays with one for the reduced rotation rate.
+    /// Returns these arrays together with one for the reduced rotation rate.
     #[must_use]
     pub fn with_rate(self, rate: &'a mut [F]) -> Self {
         Self { rate: Some(rate), ..self }
     }
 
-    /// Returns these arrays with one for the squared nutation frequency when rolling.
+    /// Returns these arrays together with one for the squared nutation frequency in rolling.
     #[must_use]
     pub fn with_kappa_rolling(self, kappa_rolling: &'a mut [F]) -> Self {
         Self { kappa_rolling: Some(kappa_rolling), ..self }
     }
 
-    /// Returns these arrays with one for the squared nutation frequency on a smooth table.
+    /// Returns these arrays together with one for the squared nutation frequency on a smooth table.
     #[must_use]
     pub fn with_kappa_smooth(self, kappa_smooth: &'a mut [F]) -> Self {
         Self { kappa_smooth: Some(kappa_smooth), ..self }
     }
 
-    /// Returns these arrays with one for the energy.
+    /// Returns these arrays together with one for the energy.
     #[must_use]
     pub fn with_energy(self, energy: &'a mut [F]) -> Self {
         Self { energy: Some(energy), ..self }
     }
 
-    /// Returns these arrays with one for the codes of the regions.
+    /// Returns these arrays together with one for the codes of the regions.
     #[must_use]
     pub fn with_region(self, region: &'a mut [u8]) -> Self {
         Self { region: Some(region), ..self }
@@ -136,23 +136,23 @@ pub struct TubePoints<'a> {
     pub half_length: &'a [f64],
     /// Inner radius of the tube, in R.
     pub bore: &'a [f64],
-    /// Radius of the rounding of its outer edges, in R.
+    /// Radius of the fillets of the outer edges of the tube, in R.
     pub fillet: &'a [f64],
 }
 
 impl<'a> TubePoints<'a> {
-    /// Points with solid cylinders of sharp edges.
+    /// Points with solid cylinders with sharp edges.
     pub const fn new(theta: &'a [f64], half_length: &'a [f64]) -> Self {
         Self { theta, half_length, bore: &[0.0], fillet: &[0.0] }
     }
 
-    /// Returns these points with this column of the inner radii.
+    /// Returns these points with this column of the inner radii of the tubes, in R.
     #[must_use]
     pub const fn with_bore(self, bore: &'a [f64]) -> Self {
         Self { bore, ..self }
     }
 
-    /// Returns these points with this column of the radii of the rounding.
+    /// Returns these points with this column of the radii of the fillets, in R.
     #[must_use]
     pub const fn with_fillet(self, fillet: &'a [f64]) -> Self {
         Self { fillet, ..self }
@@ -162,8 +162,9 @@ impl<'a> TubePoints<'a> {
 /// Fills the map of the steady states with the centre at rest: `theta.len()` rows of
 /// `bodies.len()` points. A body that is `None` gives NaN and `Region::Invalid`.
 ///
-/// The caller is one of `threads` threads. It calls `go_on` with the finished share about fifty times a second, and
-/// stops if it returns false. Returns whether the map is finished; if not, the contents are unspecified.
+/// The caller is one of `threads` threads. It calls `go_on` with the finished share of the work about fifty times a
+/// second, and stops if `go_on` returns false. Returns whether the map is finished; if not, the contents of `out` are
+/// unspecified.
 ///
 /// # Errors
 /// `Memory` if the memory does not suffice.
@@ -180,7 +181,7 @@ pub fn portrait<F: Cell>(
     let out = Block::of(out);
     assert!(
         out.fits(theta.len() * bodies.len()),
-        "an array does not have theta.len() * bodies.len() numbers"
+        "an output array does not have theta.len() * bodies.len() numbers"
     );
     if theta.is_empty() || bodies.is_empty() {
         return Ok(true);
@@ -221,15 +222,15 @@ fn portrait_of(
     }))
 }
 
-/// Many bodies in columns of eight: those on sharp rims (with all their numbers, or only those of the rate) and those
-/// on rounded rims. A body is NaN in the columns of the other kind.
+/// Many bodies in columns of eight SIMD lanes: those on sharp rims (with all their numbers, or only those of the rate)
+/// and those on rounded rims. A body is NaN in the columns of the other kind.
 pub(super) struct Columns {
     pub rate_numbers: Option<Vec<RateNumbers>>,
     pub sharp: Option<Vec<Moments<[f64; LANES]>>>,
     pub rounded: Option<Vec<Rounded<[f64; LANES]>>>,
 }
 
-/// The bodies in columns; None if `go_on` returns false.
+/// The bodies in columns of eight SIMD lanes; None if `go_on` returns false.
 fn body_columns(
     bodies: &[Option<Body>],
     only_rate: bool,
@@ -280,13 +281,13 @@ fn blocks_of_map(theta: &[f64], width: usize) -> impl Iterator<Item = (usize, &[
 /// Bytes of body numbers that stay in the nearest cache while row after row is filled.
 const CACHE_BYTES: usize = 1 << 14;
 
-/// The columns in groups that stay in the nearest cache, each with the index of its first body.
+/// The columns in groups that fit into the nearest cache of the processor, each with the index of its first body.
 fn groups_in_cache<C>(columns: &[C]) -> impl Iterator<Item = (usize, &[C])> {
     let group = CACHE_BYTES / size_of::<C>();
     columns.chunks(group).enumerate().map(move |(i, some)| (i * group * LANES, some))
 }
 
-/// Fills one block of a map; with `gaps` only the points that are not NaN in these columns.
+/// Fills one block of a map; with `gaps` only the points that are not NaN for the bodies in these columns.
 fn fill_at(
     level: Option<Level>,
     theta: &[f64],
@@ -356,9 +357,9 @@ pub fn points<F: Cell>(
 ) -> Result<bool, Error> {
     let columns = [theta, ell, bore, fillet];
     let count = rows(columns.into_iter());
-    assert!(fit(columns.into_iter(), count), "columns of different lengths");
+    assert!(fit(columns.into_iter(), count), "expected columns of one length, or single numbers");
     let out = Block::of(out);
-    assert!(out.fits(count), "an array does not fit");
+    assert!(out.fits(count), "an output array does not have the length of the results");
     points_of(columns, count, out, threads, &mut go_on)
 }
 
@@ -410,8 +411,8 @@ fn scatter<T: Narrow>(like: T, columns: [&[f64]; 4], count: usize, mut block: Bl
     }
 }
 
-/// The tubes from `start` on. Those with rounded edges have their own function, because moments with twice
-/// the digits are much code.
+/// The tubes from the index `start` on, in SIMD lanes. Those with rounded edges have their own function, because
+/// moments with twice the digits are much code.
 #[inline(always)]
 fn load_tubes<T: SideBySide>(like: T, of: [&[f64]; 3], start: usize) -> Column<T> {
     if of[2] == [0.0] {

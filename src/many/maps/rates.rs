@@ -1,4 +1,4 @@
-//! Maps of the rate alone, which needs three numbers of a body on a sharp rim.
+//! Maps of the rate alone, for which a body on a sharp rim is given by three numbers.
 
 use super::best::{Ends, ExtremaInLanes};
 use super::block::Slot;
@@ -23,7 +23,8 @@ pub(crate) struct RateNumbers {
 }
 
 impl RateNumbers {
-    /// The numbers of at most eight bodies; a lane without a body, or with one that is not plain, is NaN.
+    /// The numbers of at most eight bodies; NaN in a SIMD lane without a body, or with one that is not a plain body on
+    /// a sharp rim.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
         let none = [f64::NAN; LANES];
         let mut all = Self { ell: none, excess: Sum { hi: none, lo: none } };
@@ -131,8 +132,8 @@ fn rate_rows<S: Simd>(
     }
 }
 
-/// The minimum and the maximum of the squared rate in some rows of a map. Points that can be neither are excluded
-/// without a division, and many rows at once.
+/// The minimum and the maximum of the squared rate in some rows of a map. Points that can be neither are excluded for
+/// many rows at once, without a division.
 pub(super) fn extremes_at(
     level: Option<Level>,
     theta: &[f64],
@@ -184,7 +185,7 @@ fn rate_extremes<S: Simd>(like: f64x8<S>, theta: &[f64], columns: &[RateNumbers]
     best.places(columns.len(), width)
 }
 
-/// Fills scattered points with theta, ell and bore, each of which may be a single number.
+/// Fills the rates of scattered points from columns of theta, ell and bore, each of which may be a single number.
 #[inline(always)]
 pub(super) fn scatter<S: Simd>(like: f64x8<S>, columns: [&[f64]; 3], count: usize, out: &mut Slot<'_>) {
     let [theta, ell, bore] = columns;
@@ -223,7 +224,7 @@ pub(super) fn scatter<S: Simd>(like: f64x8<S>, columns: [&[f64]; 3], count: usiz
     }
 }
 
-/// Fills scattered points in single precision, sixteen at a time.
+/// Fills the rates of scattered points in single precision, sixteen at a time.
 #[inline(always)]
 fn scatter_single<S: Simd>(pair: Pair<f64x8<S>>, [theta, ell, bore]: [&[f64]; 3], out: &mut [f32]) {
     let wall = Wall::of(load(pair, bore, 0));
@@ -240,7 +241,7 @@ fn scatter_single<S: Simd>(pair: Pair<f64x8<S>>, [theta, ell, bore]: [&[f64]; 3]
     }
 }
 
-/// The numbers in groups of eight, without an incomplete last group.
+/// The numbers in groups of eight; an incomplete last group is left out.
 fn groups_of_eight(x: &[f64]) -> &[[f64; LANES]] {
     x.as_chunks().0
 }

@@ -12,7 +12,7 @@ use crate::numbers::{LANES, Narrow, in_lanes};
 use crate::states::stability::{AtRest, Stored, Wanted};
 use fearless_simd::Level;
 
-/// The extrema of the wanted quantities over a map that is not stored.
+/// Computes the extrema of the requested quantities over a map that is not stored.
 ///
 /// ```
 /// use spincyl::sweep::{MapQuantity, extrema};
@@ -26,8 +26,8 @@ use fearless_simd::Level;
 /// # Ok::<(), spincyl::Error>(())
 /// ```
 ///
-/// `threads` and `go_on` are as for [`portrait`](super::portrait); None if the work is not finished. Of equal values
-/// the first in row-major order counts.
+/// `threads` and `go_on` are as for [`portrait`](super::portrait); the result is None if the work is not finished. If
+/// several points have an extreme value, the result has the first of them in row-major order.
 ///
 /// # Errors
 /// `Memory` if the memory does not suffice.
@@ -81,7 +81,7 @@ pub(crate) fn extrema_compiled_once(
     Ok(Some(whole))
 }
 
-/// The smaller minimum and the larger maximum; of equal values the first in row-major order.
+/// The smaller minimum and the larger maximum of two results; of equal values the first in row-major order.
 fn outer_extrema(a: Ends, b: Ends) -> Ends {
     let place = |end: &(f64, usize, usize)| (end.1, end.2);
     match (a, b) {
@@ -94,7 +94,7 @@ fn outer_extrema(a: Ends, b: Ends) -> Ends {
     }
 }
 
-/// The extrema over the columns of one kind of rim.
+/// The extrema of a map over the bodies with one kind of rim, sharp or rounded.
 fn all_extrema_of(
     level: Option<Level>,
     theta: &[f64],

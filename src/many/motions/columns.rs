@@ -17,18 +17,18 @@ use crate::numbers::codes::coded;
 pub struct MotionStarts<'a> {
     /// Columns of ell, i1, i3, fillet and theta_end (NaN for the default of the body).
     pub(crate) bodies: [&'a [f64]; 5],
-    /// Columns of theta, w1, w2 and w3.
+    /// Columns of theta, w1, w2 and w3 at the start.
     pub(crate) states: [&'a [f64]; 4],
     /// The slope of the table and phi at the start; `None` on a level table.
     pub(crate) slopes: Option<[&'a [f64]; 2]>,
     /// The slip along e_h and along e2, in sqrt(g R); `None` means that there is no slip, and that the
     /// centre of a body on its face is at rest under friction.
     pub(crate) slips: Option<[&'a [f64]; 2]>,
-    /// The coefficients of the contact of each motion, and the radius of its patch; `None` means those of the job.
+    /// The coefficients of friction of each motion, and the radius of its patch; `None` means those of the job.
     pub(crate) coefficients: Option<[&'a [f64]; 3]>,
     /// The coefficients of the losses; `None` means no losses.
     pub(crate) losses: Option<LossColumns<'a>>,
-    /// Height and vertical velocity of the lowest point of motions that start in the air.
+    /// Height and vertical velocity of the lowest point, for motions that start in the air; `None` on the table.
     pub(crate) aloft: Option<[&'a [f64]; 2]>,
     /// The circles of bodies that have several, from the lower end up; of such a body `bodies` has only i1 and i3. There are
     /// n rows or a single one, or none if no body has several circles.
@@ -84,7 +84,7 @@ impl FromIterator<(Body, State)> for MotionColumns {
 }
 
 impl MotionColumns {
-    /// The initial conditions of these motions, without slip and without losses, with the contact of the job.
+    /// The initial conditions of these motions: without slip and without losses, with the contact of the job.
     pub fn starts(&self) -> MotionStarts<'_> {
         let (bodies, states) = (self.bodies.each_ref(), self.states.each_ref());
         let starts = MotionStarts::of(bodies.map(Vec::as_slice), states.map(Vec::as_slice));
@@ -93,7 +93,7 @@ impl MotionColumns {
 }
 
 impl<'a> MotionStarts<'a> {
-    /// Bodies and states without slip and without losses, with the contact of the job. The bores are not used.
+    /// Bodies and states without slip and without losses, with the contact of the job. The column of bores is not used.
     ///
     /// ```
     /// use spincyl::ensemble::{BodyColumns, Job, MotionOutput, MotionStarts, StateColumns, Summary, roll};
@@ -117,7 +117,7 @@ impl<'a> MotionStarts<'a> {
         Self::of([ell, i1, i3, fillet, theta_end], states.into().into())
     }
 
-    /// Returns these starts with the slopes of their tables, and phi at the start.
+    /// Returns these starts on tables with these slopes, and with these angles phi at the start, in radians.
     #[must_use]
     pub fn with_slopes(self, slope: &'a [f64], phi: &'a [f64]) -> Self {
         Self { slopes: Some([slope, phi]), ..self }
@@ -130,22 +130,22 @@ impl<'a> MotionStarts<'a> {
         Self { slips: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns these starts with friction of their own, in place of that of the job: the coefficients of sliding and of
-    /// static friction, and the radius of the patch, as those of [`Friction::Coulomb`](crate::contact::Friction). Of
-    /// viscous friction `mu` is c, and of a table without a law of friction the largest mu of rolling; both leave the
-    /// other columns unused.
+    /// Returns these starts with a coefficient of friction for each motion, in place of that of the job: the
+    /// coefficients of sliding and of static friction, and the radius of the patch, as those of
+    /// [`Friction::Coulomb`](crate::contact::Friction). Of viscous friction `mu` is c, and of a table without a law of
+    /// friction the largest mu of rolling; both leave the other columns unused.
     #[must_use]
     pub fn with_friction(self, mu: &'a [f64], fixed: &'a [f64], patch: &'a [f64]) -> Self {
         Self { coefficients: Some([mu, fixed, patch]), ..self }
     }
 
-    /// Returns these starts with losses.
+    /// Returns these starts with these losses.
     #[must_use]
     pub fn with_losses(self, losses: LossColumns<'a>) -> Self {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns these starts in the air, with the heights of the lowest points, in R, and their upward velocities.
+    /// Returns these starts in the air, with the heights of the lowest points, in R, and their upward velocities, in sqrt(g R).
     #[must_use]
     pub fn with_aloft(self, height: &'a [f64], lift: &'a [f64]) -> Self {
         Self { aloft: Some([height, lift]), ..self }
@@ -191,7 +191,7 @@ impl<'a> MotionStarts<'a> {
         found.filter(|rows| !rows[0][0].is_nan()).map_or(&[], |rows| &rows[..])
     }
 
-    /// Whether the body of motion `i` has several circles, and so is left to a walk.
+    /// Whether the body of motion `i` has several circles, so that the motion is computed alone.
     pub(super) fn has_row(&self, i: usize) -> bool {
         !self.circles(i).is_empty()
     }
@@ -206,12 +206,12 @@ impl<'a> MotionStarts<'a> {
         Body::of_rows([ell, i1, i3, f64::NAN, fillet, theta_end], self.circles(i))
     }
 
-    /// The slope of motion `i`, and phi at its start.
+    /// The slope of the table of motion `i`, and phi at its start, in radians.
     pub(super) fn slope(&self, i: usize) -> [f64; 2] {
         self.slopes.map_or([0.0; 2], |all| all.map(|x| at(x, i)))
     }
 
-    /// Whether the table of motion `i` is level, and phi at its start is in range.
+    /// Whether the table of motion `i` is level, and phi at its start is in the accepted range.
     pub(super) fn is_level(&self, i: usize) -> bool {
         let [slope, phi0] = self.slope(i);
         slope == 0.0 && Start::from(self.state(i)).with_heading(phi0).check_place().is_ok()
@@ -231,7 +231,7 @@ impl<'a> MotionStarts<'a> {
         }
     }
 
-    /// Whether something else than the rim touches the table at the start of motion `i`.
+    /// Whether a part of the body other than its rim touches the table at the start of motion `i`.
     pub(super) fn is_down(&self, i: usize) -> bool {
         let [ell, _, _, fillet, end] = self.bodies.map(|x| at(x, i));
         self.state(i).theta >= if end.is_nan() { beyond(ell, fillet) } else { end }
@@ -251,7 +251,7 @@ impl<'a> MotionStarts<'a> {
 }
 
 coded! {
-    /// A summary of a motion in one number, from time 0 to the end or the last time.
+    /// One number about a motion from time 0 to its end or to the last time.
     pub enum Summary {
         /// Least inclination, in radians.
         ThetaMin = 0,
@@ -265,7 +265,7 @@ coded! {
         Period = 4,
         /// Precession in a period of the nutation, in radians; NaN for a motion without a period.
         PrecessionPerPeriod = 5,
-        /// Time of the end, in sqrt(R/g): that of the event, or else the last time.
+        /// Time of the event that ends the motion, in sqrt(R/g); without an event the last time.
         End = 6,
         /// Total time of slipping, in sqrt(R/g).
         SlipTime = 7,
@@ -286,7 +286,7 @@ coded! {
         RollingW2 = 14,
         /// The angular velocity w3 at the time `RollingTime`.
         RollingW3 = 15,
-        /// Number of impacts.
+        /// Number of impacts on the table.
         Impacts = 16,
         /// Number of times at which the body lands and stays on the table for a while.
         Landings = 17,
@@ -296,7 +296,7 @@ coded! {
         LostInImpacts = 19,
         /// Code of the [`Kind`](crate::motion::path::Kind) of the last phase.
         LastPhase = 20,
-        /// Cosine of the angle from the vertical to the axis of the first rim, at the last time or at the end.
+        /// Cosine of the angle from the vertical to the axis of the first rim, at the end of the motion or at the last time.
         AxisUp = 21,
         /// Code of [`RestsOn`](crate::motion::RestsOn), the part on which the body rests at the end.
         RestsOn = 22,
@@ -322,7 +322,7 @@ impl Summary {
         self.label()[2]
     }
 
-    /// Name, unit and description in words.
+    /// Name, unit and description of the summary in words.
     pub(crate) fn label(self) -> [&'static str; 3] {
         match self {
             Self::ThetaMin => ["theta_min", "rad", "least inclination"],
@@ -355,13 +355,13 @@ impl Summary {
         }
     }
 
-    /// Whether the motions of a job from these starts have this number.
+    /// Whether the motions of this job from these starts have this number; otherwise it would be NaN.
     pub fn is_told_by(self, job: &Job<'_>, starts: &MotionStarts<'_>) -> bool {
         self.is_of(job.ask.table.rubs(), starts.losses.is_some(), job.ask.restitution.is_some())
     }
 
-    /// Whether motions have this number; `rubs` means a law of friction, `loses` losses of energy, and `flies` motions
-    /// that continue in the air and on both rims.
+    /// Whether motions have this number. `rubs` means motions under a law of friction, `loses` motions with losses of
+    /// energy, and `flies` motions that continue in the air and on both rims.
     pub(crate) fn is_of(self, rubs: bool, loses: bool, flies: bool) -> bool {
         match self {
             Self::End => true,
@@ -389,27 +389,27 @@ pub struct MotionOutput<'a> {
     pub(crate) states: Option<[&'a mut [f64]; 4]>,
     /// The slips along e_h and along e2, in the same layout as `states`.
     pub(crate) slips: Option<[&'a mut [f64]; 2]>,
-    /// The rim to which these states refer, 0 or 1, in the same layout; only for motions with a restitution.
+    /// The rim to which each state refers, 0 or 1, in the layout of `states`; only for motions with a restitution.
     pub(crate) rims: Option<&'a mut [f64]>,
     /// theta, w1, w2, w3 at the last time, or at the end of a motion that ends before the last time.
     pub(crate) last: Option<[&'a mut [f64]; 4]>,
     /// The slips at the last time, or at the end of a motion that ends before the last time.
     pub(crate) last_slip: Option<[&'a mut [f64]; 2]>,
-    /// The rims to which the last states refer.
+    /// The rims, 0 or 1, to which the last states refer.
     pub(crate) last_rim: Option<&'a mut [f64]>,
     /// The summaries, indexed by [`Summary`].
     pub(crate) summary: [Option<&'a mut [f64]>; SUMMARIES],
-    /// Estimated error of the states of a motion, the largest over all numbers and times, and over the period and the
-    /// precession in a period, if these are wanted and exist; with friction or losses also over the slips, the phases
-    /// and the end.
+    /// Estimated error of the states of a motion, the largest over all its numbers and times; also over the period and
+    /// the precession in a period, if these are requested and exist; with friction or losses also over the slips, the
+    /// phases and the end.
     pub(crate) error: &'a mut [f64],
-    /// Code of the [`Answer`].
+    /// Code of the [`Answer`], the method that computed a motion.
     pub(crate) method: &'a mut [u8],
-    /// Code of the [`Ending`](crate::motions::Ending).
+    /// Code of the [`Ending`] of a motion.
     pub(crate) status: &'a mut [u8],
 }
 
-/// Columns of a block of motions, with the number of times of each.
+/// The columns for a block of motions, with the number of times of each motion.
 pub(super) struct TimedOutput<'a> {
     pub out: MotionOutput<'a>,
     pub times: usize,
@@ -447,7 +447,7 @@ impl Split for TimedOutput<'_> {
 }
 
 impl<'a> MotionOutput<'a> {
-    /// Only the arrays of errors, methods and status codes.
+    /// An output with arrays for the errors, the codes of the methods and the codes of the endings, and no other results.
     pub fn new(error: &'a mut [f64], method: &'a mut [u8], status: &'a mut [u8]) -> Self {
         let summary = [const { None }; SUMMARIES];
         Self {
@@ -495,13 +495,13 @@ impl<'a> MotionOutput<'a> {
         Self { last_slip: Some([along_lean, across_lean]), ..self }
     }
 
-    /// Returns this output with an array of the rims to which the last states refer.
+    /// Returns this output with an array of the rims, 0 or 1, to which the last states refer.
     #[must_use]
     pub fn with_last_rim(self, last_rim: &'a mut [f64]) -> Self {
         Self { last_rim: Some(last_rim), ..self }
     }
 
-    /// Returns this output with an array of this summary.
+    /// Returns this output with an array for the summary `of`.
     #[must_use]
     pub fn with_summary(mut self, of: Summary, column: &'a mut [f64]) -> Self {
         self.summary[of as usize] = Some(column);
@@ -526,7 +526,7 @@ impl<'a> MotionOutput<'a> {
         }
     }
 
-    /// Writes a state and a slip into row `row` of the states.
+    /// Writes a state and a slip as row `row` of the arrays of states, whose rows are (motion, time).
     pub(super) fn put_state(&mut self, row: usize, y: &State, slip: [f64; 2]) {
         put(&mut self.states, row, (*y).into());
         put(&mut self.slips, row, slip);
@@ -538,7 +538,7 @@ impl<'a> MotionOutput<'a> {
         put(&mut self.last_slip, i, slip);
     }
 
-    /// Writes the rims from which the states of motion `i` are seen, up to its last one, and the rim at its end.
+    /// Writes the rims to which the states of motion `i` refer, up to its last state, and the rim at its end.
     pub(super) fn put_rims(&mut self, first: usize, rims: &[u8], (i, last): (usize, u8)) {
         for (to, rim) in self.rims.iter_mut().flat_map(|all| &mut all[first..]).zip(rims) {
             *to = f64::from(*rim);
@@ -559,7 +559,7 @@ impl<'a> MotionOutput<'a> {
         self.last_slip.iter_mut().flatten().chain(&mut self.last_rim).for_each(|column| column[i] = 0.0);
     }
 
-    /// The same arrays, borrowed for a shorter time.
+    /// The arrays of this output, borrowed for a shorter time.
     pub(super) fn reborrowed(&mut self) -> MotionOutput<'_> {
         fn all<'a, const N: usize>(columns: &'a mut Option<[&mut [f64]; N]>) -> Option<[&'a mut [f64]; N]> {
             columns.as_mut().map(|columns| columns.each_mut().map(|x| &mut **x))
@@ -583,7 +583,7 @@ impl<'a> MotionOutput<'a> {
         (self.method[i], self.status[i], self.error[i]) = (answer as u8, status, error);
     }
 
-    /// Writes NaN for all numbers of motion `i`, and a status with the reason.
+    /// Writes NaN for all numbers of motion `i`, and the code of `ending`, which gives the reason.
     pub(super) fn blank(&mut self, i: usize, times: usize, ending: Ending) {
         for row in i * times..(i + 1) * times {
             self.put_state(row, &State::from([f64::NAN; 4]), [f64::NAN; 2]);
@@ -601,7 +601,7 @@ impl<'a> MotionOutput<'a> {
         self.tell(i, Answer::None, ending as u8, f64::NAN);
     }
 
-    /// Writes NaN for motion `i`, whose body or initial state is invalid.
+    /// Writes NaN and the ending `Invalid` for motion `i`, whose body or initial state is invalid.
     pub(super) fn refuse(&mut self, i: usize, times: usize) {
         self.blank(i, times, Ending::Invalid);
     }

@@ -9,19 +9,20 @@ use crate::methods::beat::Beat;
 use crate::motions::custom::{check_options, followed};
 use std::sync::OnceLock;
 
-/// Number of such motions in a block.
+/// Number of motions under user-defined laws in a block.
 const CUSTOM_MOTIONS_PER_BLOCK: usize = 16;
 
 /// The user-defined laws of many motions.
 pub(crate) enum CustomLaws<'a> {
-    /// Laws for the calling thread alone, such as functions of Python.
+    /// Laws that only the calling thread may use, such as functions of Python.
     ThisThread(Custom<'a>),
-    /// Laws for any thread.
+    /// Laws that any thread may use.
     AnyThread(&'a (dyn Fn() -> Custom<'a> + Sync)),
 }
 
-/// Computes all motions under these laws, as [`roll_among`](super::roll_among) does without them. The errors are those
-/// of [`custom::roll_with`](crate::custom::roll_with) that a law causes, or an option that is the same for all motions.
+/// Computes all motions under user-defined laws, as [`roll_among`](super::roll_among) does without such laws. The
+/// errors are those of [`custom::roll_with`](crate::custom::roll_with) that a law causes, or an option that is the same
+/// for all motions.
 pub(crate) fn roll_custom(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -30,8 +31,8 @@ pub(crate) fn roll_custom(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let (count, times) = (starts.len(), job.times.len());
-    assert!(starts.fit(), "columns of different lengths");
-    assert!(out.fits(count, times), "an array does not fit");
+    assert!(starts.fit(), "expected columns of one length, or single numbers");
+    assert!(out.fits(count, times), "an output array does not have the length of the results");
     job.check(true, starts.coefficients.is_some())?;
     let custom = match laws {
         CustomLaws::ThisThread(custom) => *custom,

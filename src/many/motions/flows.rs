@@ -6,10 +6,10 @@
 //!                             twice: with tol and with 1e4 tol, or once if no errors are wanted
 //! all other phases            one at a time: changes of phase, contacts that are held, rolling by the first integrals
 //! ```
-//! On a slope the lanes have cos phi, sin phi and x among their numbers, and each motion the units of its own slope. A slip
-//! with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The steps of
-//! a motion do not depend on the other lanes, so that the result has the same bits for any number of threads and any
-//! SIMD width. [`motion::path`](crate::motions::body) has the law and the estimate of the error.
+//! On a slope the variables in SIMD lanes include cos phi, sin phi and x, and each motion has the units of its own
+//! slope. A slip with additional losses is computed alone. A lane whose phase ends takes the next phase at once. The
+//! steps of a motion do not depend on the other lanes, so that the result has the same bits for any number of threads
+//! and any SIMD width. [`motion::path`](crate::motions::body) has the law and the estimate of the error.
 
 use super::lossy_lanes::LossyLanes;
 use super::rolls::can_roll_in_lanes;
@@ -77,8 +77,8 @@ fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), 
 }
 
 /// Bound in bytes of the small allocations for a block of `count` motions, each computed twice. They are too small to
-/// be checked one by one: the walks, the numbers at their times, also in a phase of rolling, their phases and the tasks
-/// that wait for a lane.
+/// be checked one by one: the states of the computations, the numbers at their times, also in a phase of rolling, their
+/// phases and the tasks that wait for a SIMD lane.
 pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     const PHASES: usize = 2048;
     let at_a_time = size_of::<(State, [f64; 2], Kind, [f64; 3], State)>();
@@ -86,8 +86,9 @@ pub(super) fn size_of_block(count: usize, times: usize) -> usize {
     one.saturating_mul(2 * count)
 }
 
-/// A motion of a block, seen from the circle on which it starts; on a slope in the units of that slope, with what converts it
-/// back: the slope, the start as it was given, and the times in these units.
+/// The start and the options of a motion of a block, seen from the circle on which it starts. On a slope they are in
+/// the units of that slope, with the numbers for the conversion back: the slope, the start as it was given, and the
+/// times in these units.
 struct Asked {
     body: Body,
     seen: Body,
@@ -97,7 +98,7 @@ struct Asked {
 }
 
 impl MotionBlock<'_> {
-    /// Motion `k` of the block, as it is walked.
+    /// The start and the options of motion `k` of the block, in the form in which it is computed.
     fn asked(&self, k: usize) -> Result<Asked, Error> {
         let (starts, job, i) = (self.starts, self.job, self.first + k);
         let body = starts.body(i)?;
@@ -110,7 +111,7 @@ impl MotionBlock<'_> {
         Ok(Asked { body, seen, start: own, ask, tilted: Some((slope, start, since)) })
     }
 
-    /// Computes these motions of the block: all of them on slopes if walks have a pose among their N numbers, else on level tables.
+    /// Computes these motions of the block: motions on slopes if their N variables include a pose, else motions on level tables.
     pub(super) fn flow<const N: usize>(
         &self,
         level: Option<Level>,
@@ -214,7 +215,8 @@ impl MotionBlock<'_> {
         Ok(())
     }
 
-    /// Writes the results of motion `i` of the block, or why it has none; the memory may not suffice for any.
+    /// Writes the results of motion `i` of the block, or the ending that says why it has none; an error if the memory
+    /// does not suffice.
     pub(super) fn put_result(
         &self,
         out: &mut MotionOutput<'_>,
@@ -231,7 +233,7 @@ impl MotionBlock<'_> {
         Ok(())
     }
 
-    /// Computes all tasks of a queue side by side in lanes.
+    /// Computes all tasks of a queue side by side in SIMD lanes.
     fn side_by_side<T: SideBySide, const N: usize>(
         &self,
         like: T,
@@ -239,7 +241,7 @@ impl MotionBlock<'_> {
         all: &mut Walks<'_, N>,
         go_on: &mut dyn FnMut() -> bool,
     ) {
-        // Walks with a pose among their numbers are those on slopes.
+        // Motions whose variables include a pose are those on slopes.
         match all.queues[queue].0 {
             FlowKind::Slips { dry } => {
                 let law = Slips::new(like, dry);

@@ -26,20 +26,20 @@ static SERIES_MIDPOINTS: LazyLock<SeriesMidpoints> = LazyLock::new(|| SeriesMidp
     long: [28, 40, MOST_PARTS].map(Midpoints::new),
 });
 
-/// Numbers of terms of the series. Each of the first three is compiled separately, and the others share one code.
+/// Numbers of terms of the series. The first three are compiled separately, and the others share one code.
 const TERMS: [usize; 6] = [8, 12, 20, 36, 52, 72];
 const MOST_PARTS: usize = 56;
 
-/// Number of series that are tried for a motion that may end: a march to its end is faster than the longer series.
+/// Number of series that are tried for a motion that may end: a march, panel by panel, to its end is faster than a longer series.
 const SHORT_SERIES: usize = 3;
 
-/// The index in `TERMS` of the shortest series that may have an error below `tol` for a swing of this width
-/// (the larger |y| of its ends); None for a swing that is too wide for one series.
+/// The index in `TERMS` of the shortest series that may have an error below `tol` for a swing of this width (the larger
+/// |y| of its ends); None for a swing that is too wide for all of them.
 fn index_of_series(width: f64, tol: f64) -> Option<usize> {
     TERMS.iter().position(|terms| 1e4 * width.powi(*terms as i32 - 1) < tol)
 }
 
-/// Number of times between two calls of `go_on`.
+/// Number of output times that are computed between two calls of `go_on`.
 const TIMES_PER_BREATH: usize = 64;
 
 impl MotionBlock<'_> {
@@ -88,8 +88,8 @@ impl MotionBlock<'_> {
         left
     }
 
-    /// Computes motions by one series each, all on sharp rims or all on rounded ones; returns the other
-    /// motions.
+    /// Computes motions by one series each, all on sharp rims or all on rounded rims; returns the motions for which the
+    /// series is not precise enough.
     pub(super) fn roll_by_series<T: SideBySide>(
         &self,
         like: T,
@@ -150,8 +150,8 @@ impl MotionBlock<'_> {
         if !self.job.ask.beyond && can_march(self, round) { SHORT_SERIES } else { TERMS.len() }
     }
 
-    /// The motions sorted by the shortest series that may be precise enough, and the motions that are too
-    /// wide for any.
+    /// Sorts the motions by the shortest series that may be precise enough; also returns the motions that are too wide
+    /// for any series.
     fn sort_by_series<T: SideBySide>(
         &self,
         like: T,
@@ -221,7 +221,7 @@ impl MotionBlock<'_> {
         }
     }
 
-    /// The time `t` since the beginning of each of these motions, or 0 if it is before that.
+    /// The time from the beginning of each of these motions to `t`, or 0 if `t` is before its beginning.
     #[inline(always)]
     fn times_since_start<T: SideBySide>(&self, like: T, some: &[usize], t: f64) -> T {
         if self.since.is_none() {
@@ -232,8 +232,8 @@ impl MotionBlock<'_> {
         like.load(&times)
     }
 
-    /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each
-    /// lane, NaN where the series is not precise enough; None if `go_on` returns false.
+    /// Writes the states at all times, by the series or by RK4 steps, and returns the greatest error of each motion,
+    /// NaN where the series is not precise enough; None if `go_on` returns false.
     fn write_states<T: SideBySide>(
         &self,
         swings: &dyn SwingsInLanes<T>,
@@ -296,8 +296,8 @@ impl MotionBlock<'_> {
         Some(worst)
     }
 
-    /// Writes the periods and the precessions that are wanted. Their errors are treated as those of the states: `worst`
-    /// keeps the greatest error of each lane, NaN where the series is not precise enough.
+    /// Writes the periods and the precessions that are requested. Their errors are treated as those of the states:
+    /// `worst` keeps the greatest error of each motion, NaN where the series is not precise enough.
     fn write_periods<T: SideBySide>(
         &self,
         swings: &dyn SwingsInLanes<T>,
@@ -318,7 +318,7 @@ impl MotionBlock<'_> {
         put(Summary::PrecessionPerPeriod, &|| swings.precession_per_period());
     }
 
-    /// Writes the other summaries, and returns which lanes have a finite error and certainly stay in the
+    /// Writes the other summaries, and returns for each motion whether it has a finite error and certainly stays in the
     /// model up to the last time.
     fn write_other_summaries<T: SideBySide>(
         &self,
@@ -369,7 +369,7 @@ impl MotionBlock<'_> {
     }
 }
 
-/// Greatest error above the tolerance that is accepted of a series, if at least half of the error is rounding.
+/// Greatest error of a series that is accepted above the tolerance, if at least half of it is rounding.
 const ACCEPTED_ROUNDING: f64 = 1e-9;
 
 /// The error of a series if it is small enough, else NaN. Where rounding, `least`, is most of the error, no
@@ -378,8 +378,8 @@ fn accepted_error(tol: f64, error: f64, least: f64) -> f64 {
     if error < tol || error < (2.0 * least).min(ACCEPTED_ROUNDING) { error } else { f64::NAN }
 }
 
-/// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is small
-/// enough to be neither an error nor worth a warning.
+/// An RK4 step that turns the precession and the nutation by less than this angle, in radians, is so small that it
+/// causes neither an error nor a warning.
 const UNWARNED_TURN: f64 = 0.25;
 
 #[cfg(test)]

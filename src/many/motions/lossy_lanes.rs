@@ -1,4 +1,4 @@
-//! Bodies in SIMD lanes that roll, or slide freely, and lose energy; all lanes have the same loss laws.
+//! Bodies in SIMD lanes that roll, or slide without friction, and lose energy; all lanes have the same loss laws.
 
 use crate::laws::body::Shape;
 use crate::laws::contact::Contact;
@@ -12,7 +12,7 @@ use crate::numbers::side_by_side::SideBySide;
 
 const _: () = assert!(4 + LOSSY_NUMBERS < NUMBERS);
 
-/// The properties that all lanes of a set share.
+/// The properties that all bodies in a set of SIMD lanes share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct LossyKind {
     pub contact: Contact,
@@ -20,7 +20,7 @@ pub(super) struct LossyKind {
     pub present: [bool; COUNT],
 }
 
-/// Bodies in lanes that lose energy.
+/// Bodies in SIMD lanes that lose energy while they roll, or slide without friction.
 #[derive(Clone, Copy)]
 pub(super) struct LossyLanes<T> {
     kind: LossyKind,
@@ -28,7 +28,7 @@ pub(super) struct LossyLanes<T> {
 }
 
 impl<T: SideBySide> LossyLanes<T> {
-    /// Placeholder bodies for SIMD lanes without a task.
+    /// Placeholder bodies for SIMD lanes without a motion.
     pub fn new(zero: T, kind: LossyKind) -> Self {
         let one = zero.splat(1.0);
         let rates = Rates::of(kind.contact, &Shape::of([zero, one, one, zero]), kind.round);
@@ -36,10 +36,11 @@ impl<T: SideBySide> LossyLanes<T> {
     }
 }
 
-/// On a tilted table K is 9, else 6.
+/// The number K of variables is 9 on a tilted table, else 6.
 impl<T: SideBySide, const K: usize> Flows<T, K, 7> for LossyLanes<T> {
     type Seen = Acted<T>;
-    /// On a tilted table the rates are slow enough for a loop, and it is a third of the code.
+    /// Whether the stages of a step form a loop: on a tilted table the rates are slow enough for a loop, which is a
+    /// third of the code.
     const LOOPS: bool = K > 6 || rk8::LOOPS;
 
     #[inline(always)]

@@ -59,7 +59,7 @@ pub(crate) use customs::{CustomLaws, roll_custom};
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// The options, the times and the tolerance that all motions of a call have in common.
+/// The options, the times and the tolerance that all motions of a call share.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Job<'a> {
@@ -77,7 +77,7 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// A job of rolling by first integrals with the tolerance 1e-10, in which the first event ends a motion.
+    /// A job of rolling, computed by first integrals with the tolerance 1e-10, in which the first event ends a motion.
     pub fn new(times: &'a [f64]) -> Self {
         Self { ask: Ask::default(), times, tol: 1e-10, errors: true }
     }
@@ -88,7 +88,7 @@ impl<'a> Job<'a> {
         Self { ask, ..self }
     }
 
-    /// Returns this job with this tolerance.
+    /// Returns this job with the tolerance `tol`.
     #[must_use]
     pub fn with_tol(self, tol: f64) -> Self {
         Self { tol, ..self }
@@ -118,17 +118,17 @@ impl<'a> Job<'a> {
         own.map_or(self.ask.table, |own| self.ask.table.with_coefficients(own))
     }
 
-    /// The options of one motion that is integrated, with its own coefficients of friction and losses.
+    /// The options of one motion that is integrated, with its losses and with its own coefficients of friction if it has any.
     fn ask_of(&self, own: Option<[f64; 3]>, losses: Losses) -> Ask {
         Ask { table: self.table(own), losses, method: Method::Tolerance(self.tol), ..self.ask }
     }
 
-    /// This job for phases of rolling: with a law of friction no motion continues past an event.
+    /// This job for phases of rolling within other motions: under a law of friction no motion continues past an event.
     fn of_rolling(&self) -> Self {
         self.with_ask(Ask { beyond: self.ask.beyond && !self.ask.table.rubs(), ..self.ask })
     }
 
-    /// Returns an error for options that are invalid for every motion.
+    /// Returns an error for options that are invalid for every motion of the job.
     fn check(&self, flows: bool, own_tables: bool) -> Result<(), Error> {
         let ask = self.ask;
         let unknown = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
@@ -170,31 +170,31 @@ impl<'a> Job<'a> {
 coded! {
     /// The method that computed a motion: the code in `MotionOutput::method`.
     pub enum Answer {
-        /// No method, because the body or the state is invalid, or the step is too long.
+        /// The motion was not computed, because the body or the state is invalid, or the step is too long.
         None = 0,
-        /// The first integrals, in lanes; with a law of friction or a restitution, where the body rolls from the start
-        /// to the end.
+        /// The first integrals, in SIMD lanes; with a law of friction or a restitution, where the body rolls from the
+        /// start to the end.
         Lanes = 1,
         /// The first integrals, for one motion at a time.
         Single = 2,
-        /// Steps of eighth order, where the first integrals lose their digits.
+        /// Steps of eighth order with a tolerance, where the first integrals lose their digits.
         Tolerance = 3,
-        /// RK4 with the fixed step.
+        /// RK4 with a fixed step.
         Step = 4,
-        /// An integrator of eighth order, with friction or losses.
+        /// Steps of eighth order with a tolerance, for a motion with friction or losses.
         Flow = 5,
     }
 }
 
 /// Number of motions in a block: small enough for frequent calls of `go_on` and for little memory.
 const MOTIONS_PER_BLOCK: usize = 2048;
-/// Number of motions with friction or losses in a block: each needs more memory, but a block should keep the lanes
-/// filled.
+/// Number of motions with friction or losses in a block: each needs more memory, but a block should be large enough to
+/// keep all SIMD lanes filled.
 const FLOWS_PER_BLOCK: usize = 1024;
 
 /// Computes all motions and fills `out`, on `threads` threads with stacks that are large enough. The calling thread
-/// calls `go_on` about fifty times a second with the finished share of the work, and stops if it returns false. Returns
-/// whether all motions are done; if not, the contents of `out` are unspecified.
+/// calls `go_on` about fifty times a second with the finished share of the work, and stops if `go_on` returns false.
+/// Returns whether all motions are done; if not, the contents of `out` are unspecified.
 ///
 /// A motion gets NaN and the status of [`Ending::Invalid`](crate::motion::Ending::Invalid) if its body, state, contact
 /// or loss is out of the range of [`roll_with`](crate::motion::roll_with), and the status of
@@ -217,7 +217,7 @@ pub fn roll(
     roll_among(starts, job, out, (threads, false), &mut go_on)
 }
 
-/// The function [`roll`] where the calling thread also computes, if its stack is large enough (`roomy`: some MiB).
+/// Computes all motions as [`roll`] does; the calling thread also computes, if its stack is large enough (`roomy`: some MiB).
 pub(crate) fn roll_among(
     starts: &MotionStarts<'_>,
     job: &Job<'_>,
@@ -226,8 +226,8 @@ pub(crate) fn roll_among(
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
     let (count, times) = (starts.len(), job.times.len());
-    assert!(starts.fit(), "columns of different lengths");
-    assert!(out.fits(count, times), "an array does not fit");
+    assert!(starts.fit(), "expected columns of one length, or single numbers");
+    assert!(out.fits(count, times), "an output array does not have the length of the results");
     let level_flows = job.ask.table.rubs() || starts.losses.is_some() || job.ask.restitution.is_some();
     let flows = level_flows || starts.slopes.is_some();
     job.check(flows, starts.coefficients.is_some())?;
@@ -273,8 +273,7 @@ pub(crate) fn roll_among(
     failed.into_inner().map_or(Ok(all), Err)
 }
 
-/// Computes motions of a block by first integrals: in lanes, and one at a time where the lanes have no
-/// result.
+/// Computes motions of a block by first integrals: in SIMD lanes, and one at a time where the lanes have no result.
 fn conserved(
     work: &MotionBlock<'_>,
     level: Option<Level>,
@@ -313,7 +312,7 @@ impl MotionBlock<'_> {
         limited && self.job.contact() == Contact::Rolling && !self.job.ask.beyond
     }
 
-    /// The largest ratio of friction to normal force with which motion `i` of the block rolls.
+    /// The largest ratio of friction to normal force with which motion `i` of the block can roll.
     fn grip(&self, i: usize) -> f64 {
         let own = self.starts.coefficients(self.first + i).filter(|_| self.job.ask.table.rubs());
         own.map_or(self.job.ask.table.mu(), |[_, fixed, _]| fixed)

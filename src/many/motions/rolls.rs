@@ -1,8 +1,8 @@
-//! Motions that roll from the start to the end, although they might slip or hop: by the first integrals, in lanes.
+//! Motions under a law of friction that roll from the start to the end: by the first integrals, in SIMD lanes.
 //!
 //! ```text
 //! static friction is never exceeded, and no other part of the body lands:   the rolling motion
-//! the body slips, or leaves the table:                                      a walk (`flows`)
+//! the body slips, or leaves the table:                                      integration by steps (`flows`)
 //! ```
 //! Whether a motion reaches the limit of static friction is decided along the first integrals, as for rolling with a
 //! largest coefficient of friction. The result has the same estimated error as that motion.
@@ -28,20 +28,20 @@ use crate::motions::walk::numbers::TIME;
 use crate::motions::{Ending, Event, Kind, Motion};
 use fearless_simd::Level;
 
-/// The error of a phase of rolling among other phases is below this share of the tolerance, and below `ROLLING_ERROR`, since
-/// later phases may make it grow.
+/// A phase of rolling among other phases may have this share of the tolerance, and at most `ROLLING_ERROR`, as its
+/// error, since later phases may make it grow.
 const ROLLING_ERROR_SHARE: f64 = 0.01;
 const ROLLING_ERROR: f64 = 2e-12;
-/// The ends of a phase of rolling whose digits are good enough for the phase that follows.
+/// The ends of a phase of rolling at which the state is precise enough for the phase that follows.
 const ENDINGS: [Ending; 3] = [Ending::Done, Ending::Slip, Ending::Side];
 
-/// Whether phases of rolling on this table may be computed in lanes, where the coefficient of static friction is squared.
+/// Whether phases of rolling on this table may be computed in SIMD lanes, where the coefficient of static friction is squared.
 pub(super) fn can_roll_in_lanes(table: &Table) -> bool {
     table.contact() == Contact::Rolling && (!table.rubs() || (table.mu() * table.mu()).is_finite())
 }
 
 impl MotionBlock<'_> {
-    /// Computes those of these motions of a block that roll from the start to the end; returns the others.
+    /// Computes those of the motions `some` of a block that roll from the start to the end; returns the others.
     pub(super) fn roll_throughout(
         &self,
         level: Option<Level>,
@@ -71,7 +71,7 @@ impl MotionBlock<'_> {
     }
 
     /// Whether motion `i` begins to roll if static friction suffices, and whether the first integrals describe its
-    /// rolling. Motions in a vertical plane, and those of balls, are left to walks.
+    /// rolling. Motions in a vertical plane, and those of balls, are computed phase by phase.
     fn may_roll(&self, i: usize) -> bool {
         let (starts, row) = (self.starts, self.first + i);
         let [ell, i1, i3, fillet] = core::array::from_fn(|k| at(starts.bodies[k], row));
@@ -98,7 +98,8 @@ impl MotionBlock<'_> {
         }
     }
 
-    /// Adds the results of a path of one phase to those of a solved motion; returns whether the motion is such a path.
+    /// Adds the results that a motion with phases has to those of a solved motion of one phase; returns false if it has
+    /// more phases.
     fn add_single_phase(&self, i: usize, out: &mut MotionOutput<'_>) -> bool {
         let ending = if out.status[i] == Ending::Side as u8 { Ending::Side } else { Ending::Done };
         if out.status[i] != ending as u8 || ending == Ending::Side && self.job.ask.restitution.is_some() {
@@ -127,7 +128,7 @@ impl MotionBlock<'_> {
         true
     }
 
-    /// Computes the phases of rolling for which walks wait, side by side, and continues these walks.
+    /// Computes the phases of rolling for which motions wait, side by side, and continues these motions.
     pub(super) fn roll_phases_in_lanes<const N: usize>(
         &self,
         level: Option<Level>,

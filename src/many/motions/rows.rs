@@ -6,32 +6,32 @@ use crate::numbers::Real;
 use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 use core::f64::consts::PI;
 
-/// The index of the first of these motions, if their indices are consecutive.
+/// The index of the first of these motions, if their indices are consecutive; else None.
 pub(super) fn first_of_consecutive(some: &[usize]) -> Option<usize> {
     let first = *some.first()?;
     some.iter().enumerate().all(|(k, i)| *i == first + k).then_some(first)
 }
 
-/// The numbers of a column from the motion `first` on, one in each lane; a single number fills all lanes.
+/// The numbers of a column from the motion `first` on, one in each SIMD lane; a single number fills all lanes.
 #[inline(always)]
 fn column<T: SideBySide>(like: T, of: &[f64], first: usize) -> T {
     if of.len() == 1 { like.splat(of[0]) } else { like.load(&of[first..]) }
 }
 
-/// A body and a state in every lane.
+/// A body and a state in every SIMD lane.
 #[derive(Clone, Copy)]
 pub(super) struct StartLanes<T> {
     pub shape: Shape<T>,
-    /// The inclination at which something other than the rim lands; pi if nothing else lands.
+    /// The inclination at which a part other than the rim lands; pi if no other part lands.
     pub theta_end: T,
-    /// Whether the rims are rounded, which holds for all of the bodies or for none.
+    /// Whether the rims are rounded, which is the same for all of the bodies.
     pub round: bool,
     pub state: [T; 4],
 }
 
 impl<T: Real> StartLanes<T> {
-    /// The lanes of ell, I1, I3 and fillet, of theta_end (NaN for the default of the body), and of theta, w1, w2 and
-    /// w3.
+    /// Bodies and states from ell, I1, I3 and fillet, from theta_end (`given`, NaN for the default of the body), and
+    /// from theta, w1, w2 and w3.
     #[inline(always)]
     fn of(numbers: [T; 4], given: T, state: [T; 4], round: bool) -> Self {
         let [ell, _, _, fillet] = numbers;

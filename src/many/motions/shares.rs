@@ -1,5 +1,5 @@
-//! Numbers of motions that one series, the marches and single motions compute. These counts are the same on every
-//! machine; they show whether a change moves motions to a slower method.
+//! Counts of the motions that are computed by one series, by marches and alone. These counts are the same on
+//! every machine; they show whether a change moves motions to a slower method.
 
 use super::{Job, MotionBlock, MotionOutput, MotionStarts};
 use crate::laws::body::Body;
@@ -11,7 +11,7 @@ use core::f64::consts::FRAC_PI_2;
 
 const COUNT: usize = 2048;
 
-/// Bodies and states as columns.
+/// Bodies and states as columns of numbers.
 type Starts = ([Vec<f64>; 5], [Vec<f64>; 4]);
 
 /// Solid cylinders of ell 0.5 to 3 with a nutation, as in `docs/benchmarks.md`; for a `kick` of 0 random states.
@@ -35,8 +35,8 @@ fn starts(kick: f64) -> Starts {
     (bodies, states)
 }
 
-/// The number of motions of 2,048 that one series does not compute, and of those that the lanes do not
-/// compute; None without lanes.
+/// The number of motions of 2,048 that one series does not compute, and the number that SIMD lanes do not compute; None
+/// without lanes.
 fn left((bodies, states): &Starts, tol: f64, beyond: bool) -> Option<[usize; 2]> {
     let starts = MotionStarts::of(bodies.each_ref().map(Vec::as_slice), states.each_ref().map(Vec::as_slice));
     let times = [20.0];
@@ -79,8 +79,8 @@ fn series_and_marches_leave_few_motions_that_end_to_be_computed_alone() {
     holds(0.0, true, [(1e-6, all(5)), (1e-10, all(15)), (1e-12, all(380)), (1e-13, all(380))]);
 }
 
-/// The states at the end, the errors and the indices of the motions that lanes do not compute, as bits, of random states
-/// under static friction.
+/// The states at the end, the errors and the indices of the motions that are not computed in SIMD lanes, as bits, of
+/// random states under static friction.
 fn rubbing(since: Option<&[f64]>, times: &[f64]) -> Option<(Vec<u64>, Vec<usize>)> {
     let (bodies, states) = starts(0.0);
     let states =

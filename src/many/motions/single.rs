@@ -1,4 +1,4 @@
-//! Single motions with their ends, for the initial states for which the lanes have no result.
+//! Single motions with their ends, for the initial states for which SIMD lanes have no result.
 
 use super::{Answer, Job, MotionBlock, MotionOutput, Summary};
 use crate::error::{Error, room};
@@ -81,7 +81,7 @@ fn exact_with_events(
     }))
 }
 
-/// The motion at these times; None if the initial state has no motion. The error is `Memory`.
+/// The motion at these times; None if the initial state has no motion. The only error is `Memory`.
 fn roll_or_none(
     body: &Body,
     start: &State,

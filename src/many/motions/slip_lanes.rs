@@ -4,7 +4,7 @@
 //! y         s, c, w1, w2, w3, u_h, u_2; on a tilted table cos phi, sin phi and x; t
 //! margins   s,  sin(theta_end - theta),  N0,  1 - eps,  |u| - over
 //! ```
-//! On a tilted table the pull tan(beta) (cos phi, -sin phi) adds to the rates of the slip.
+//! On a tilted table the acceleration tan(beta) (cos phi, -sin phi) adds to the rates of the slip.
 
 use crate::laws::body::Shape;
 use crate::laws::contact::slip::{SlipResponse, Slipping};
@@ -17,18 +17,18 @@ use crate::motions::body::slide::{Slide, longest};
 use crate::motions::walk::numbers::{BodyNumbers, contact_velocity, heading_rates};
 use crate::numbers::side_by_side::SideBySide;
 
-/// Bodies in lanes that slip.
+/// Bodies in SIMD lanes whose contact points slip.
 #[derive(Clone, Copy)]
 pub(super) struct Slips<T> {
     law: Slipping<T>,
     side: [T; 3],
     over: T,
-    /// The tangent of the slope.
+    /// The tangent of the slope of the table.
     tilt: T,
 }
 
 impl<T: SideBySide> Slips<T> {
-    /// Placeholder bodies for SIMD lanes without a task.
+    /// Placeholder bodies for SIMD lanes without a motion.
     pub fn new(zero: T, dry: bool) -> Self {
         let one = zero.splat(1.0);
         let shape = Shape::of([zero, one, one, zero]);
@@ -36,7 +36,7 @@ impl<T: SideBySide> Slips<T> {
     }
 }
 
-/// On a tilted table K is 11, else 8.
+/// The number K of variables is 11 on a tilted table, else 8.
 impl<T: SideBySide, const K: usize> Flows<T, K, 5> for Slips<T> {
     type Seen = SlipResponse<T>;
     const LOOPS: bool = true;
@@ -51,7 +51,7 @@ impl<T: SideBySide, const K: usize> Flows<T, K, 5> for Slips<T> {
 
     #[inline(always)]
     fn rates(&self, y: &[T; K], rate: &mut [T; K]) -> SlipResponse<T> {
-        // What the compiler knows to be absent it does not compile.
+        // The compiler leaves out the terms that are known to be absent.
         let law = self.law.with_losses(None::<Couples<T>>).with_patch(None);
         if K == 8 {
             return law.rates(y, rate);

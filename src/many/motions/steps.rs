@@ -15,14 +15,14 @@ use crate::numbers::{Real, arctan2, here, sin_cos};
 /// Number of steps between two calls of `go_on`.
 const STEPS_PER_BREATH: u64 = 4096;
 
-/// The time derivative of (s, c, w1, w2, w3).
+/// The time derivatives of (s, c, w1, w2, w3), with the sine s and the cosine c of theta.
 #[inline(always)]
 fn derivative<T: Real>(rates: &Rates<T>, [s, c, w1, w2, w3]: [T; 5]) -> [T; 5] {
     let [d1, d2, d3] = rates.at(s, c, [w1, w2, w3]);
     [-(c * w2), s * w2, d1, d2, d3]
 }
 
-/// The numbers after one step.
+/// The variables (s, c, w1, w2, w3) after one RK4 step of length `h`.
 #[inline(always)]
 fn advance<T: Real>(rates: &Rates<T>, mut y: [T; 5], h: f64) -> [T; 5] {
     let rate = here(
@@ -36,7 +36,7 @@ fn advance<T: Real>(rates: &Rates<T>, mut y: [T; 5], h: f64) -> [T; 5] {
     y
 }
 
-/// Motions after `steps_taken` whole steps from the start.
+/// The motions in SIMD lanes after `steps_taken` whole steps from the start.
 pub(super) struct FixedSteps<T> {
     rates: Rates<T>,
     y: [T; 5],

@@ -1,10 +1,10 @@
-//! The results of a series for motions in lanes, as a trait object: the code that uses them is compiled once instead of
-//! once for each number of terms.
+//! The results of a series for motions in SIMD lanes, as a trait object: the code that uses them is then compiled only
+//! once, not for each number of terms.
 
 use crate::motions::exact::lanes::{Grip, Midpoints, Swings};
 use crate::numbers::side_by_side::{SideBySide, apart};
 
-/// Motions between their turning points; [`Swings`] documents each method.
+/// Motions between their turning points, in SIMD lanes; [`Swings`] documents each method.
 pub(super) trait SwingsInLanes<T> {
     fn state(&self, t: T) -> ([T; 4], T, T);
     fn fastest_turn(&self) -> T;

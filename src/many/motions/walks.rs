@@ -1,4 +1,4 @@
-//! Walks side by side, and the queues in which their flows wait for SIMD lanes.
+//! The computation of many motions side by side, phase by phase, and the queues for SIMD lanes.
 //!
 //! A walk computes one motion through its phases; a flow is a phase that is integrated by steps. Each kind of flow has
 //! its own queue. Steps that a lane cannot take, a few or all to the end, are taken outside the lanes.
@@ -17,11 +17,11 @@ use crate::numbers::side_by_side::{MOST, SideBySide};
 use core::f64::consts::PI;
 use std::collections::VecDeque;
 
-/// A flow in a lane makes this many evaluations where a single flow takes a step before the next look at its slip: a look
-/// takes it out of its lane for some steps.
+/// While a single flow takes one step, a flow in a SIMD lane makes this many evaluations; then the flow looks at its
+/// slip, for which it leaves its lane for some steps.
 const EVALUATIONS_PER_LOOK: u64 = 48;
 
-/// A flow for a lane: the index of its walk, and its start.
+/// A flow for a SIMD lane: the index of its walk (the motion of which it is a phase), and its start.
 pub(super) struct FlowTask<const N: usize> {
     walk: usize,
     y: [f64; N],
@@ -33,37 +33,39 @@ pub(super) struct FlowTask<const N: usize> {
     made: u64,
 }
 
-/// The kind of a flow; the flows in lanes at one time are all of one kind.
+/// The kind of a flow; the flows that are in SIMD lanes at one time are all of one kind.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum FlowKind {
-    /// Slips; `dry` means that the friction is dry and keeps a direction where the slip vanishes, unlike viscous
+    /// Slips; `dry` means Coulomb's friction, which has a direction also where the slip vanishes, unlike viscous
     /// friction or ice.
     Slips { dry: bool },
     /// Motions without slip that lose energy by the same laws, or whose table is tilted.
     Lossy(LossyKind),
 }
 
-/// The flows of one kind that wait for lanes.
+/// The flows of one kind that wait for SIMD lanes.
 pub(super) type Queue<const N: usize> = (FlowKind, VecDeque<FlowTask<N>>);
 
-/// The walks of a block: two for each motion, the second one with a larger tolerance.
+/// The walks of a block, two for each motion, of which the second one has a larger tolerance. A walk computes one
+/// motion through its phases.
 pub(super) struct Walks<'a, const N: usize> {
     pub walks: Vec<Result<BodyWalk<'a, N>, Error>>,
     pub queues: Vec<Queue<N>>,
-    /// The walks that wait for a phase of rolling, and the coefficient of static friction in that phase.
+    /// The indices of the walks (motions) that wait for a phase of rolling, each with its coefficient of static friction.
     pub rolls: Vec<(usize, f64)>,
-    /// Whether this processor has SIMD lanes; without lanes every walk is computed alone.
+    /// Whether this processor has SIMD lanes; without lanes every motion is computed alone.
     pub lanes: bool,
 }
 
-/// The kind of the flow of a walk, and the numbers that a lane needs; None for a walk that is computed alone.
+/// The kind of the present phase of a motion, and the parameters that a SIMD lane needs; None for a motion that is
+/// computed alone.
 fn kind_and_lane_numbers<const N: usize>(
     walk: &BodyWalk<'_, N>,
     y: &[f64; N],
 ) -> Option<(FlowKind, [f64; NUMBERS])> {
     let (body, mut numbers) = (&walk.of.body, [0.0; NUMBERS]);
     numbers[..4].copy_from_slice(&[body.ell(), body.i1(), body.i3(), body.fillet()]);
-    // A hop that rolls and loses nothing on a level table is short; the lanes know one circle of radius 1 or two equal rims.
+    // A hop that rolls and loses nothing on a level table is short. In lanes a body has one circle of radius 1 or two equal rims.
     let apart = walk.of.lying.is_some() || walk.of.standing.is_some();
     if body.has_row() || apart || walk.lossy().is_some() && walk.ask.losses.is_none() && !poses(N) {
         return None;
@@ -82,8 +84,8 @@ fn kind_and_lane_numbers<const N: usize>(
         .then_some((FlowKind::Slips { dry: slide.law.dry }, numbers))
 }
 
-/// The numbers of a walk in a lane, whose last one is the time. Walks have a pose on tilted tables only. There the lane also has
-/// cos phi and sin phi, without the sign of a rounding straight up or down, and x.
+/// The variables of a motion for a SIMD lane, the last of which is the time. They have a pose only on tilted tables,
+/// where the lane also has cos phi, sin phi and x; a cos phi that is only a rounding error, straight up or down, is 0.
 fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N]) -> [f64; K] {
     let mut all = core::array::from_fn(|i| y[i]);
     if poses(N) {
@@ -94,7 +96,7 @@ fn lane_numbers<const N: usize, const K: usize>(y: &[f64; N]) -> [f64; K] {
     all
 }
 
-/// The numbers of a walk that began with `from` and has reached these numbers in a lane.
+/// The variables of a motion whose phase began with `from` and has reached the variables `y` in a SIMD lane.
 fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K]) -> [f64; N] {
     let mut all = *from;
     let own = if poses(N) { K - 4 } else { K - 1 };
@@ -107,7 +109,7 @@ fn walk_numbers<const N: usize, const K: usize>(from: &[f64; N], y: &[f64; K]) -
 }
 
 impl<const N: usize> Walks<'_, N> {
-    /// Continues a walk up to its next flow for a lane, or to its end.
+    /// Continues a motion up to its next phase that a SIMD lane can compute, or to its end.
     pub fn continue_walk(
         &mut self,
         i: usize,
@@ -153,8 +155,8 @@ impl<const N: usize> Walks<'_, N> {
         }
     }
 
-    /// Continues a walk outside the lanes after its lane has stopped: from the state of the lane, with the
-    /// step that the lane would have taken.
+    /// Continues a motion outside the SIMD lanes after its lane has stopped: from the state of the lane, with the step
+    /// that the lane would have taken.
     fn handle(
         &mut self,
         task: &FlowTask<N>,
@@ -172,7 +174,7 @@ impl<const N: usize> Walks<'_, N> {
     }
 }
 
-/// The flows of one queue, including those in lanes.
+/// The flows of one queue, including those that are in SIMD lanes.
 struct Queued<'a, 'b, const N: usize> {
     all: &'a mut Walks<'b, N>,
     queue: usize,
@@ -201,7 +203,7 @@ impl<const N: usize, const K: usize, const M: usize> Waiting<K, M> for Queued<'_
     }
 }
 
-/// Computes all flows of a queue side by side, each until its lane stops running.
+/// Computes all flows of a queue in SIMD lanes, each until its lane stops.
 pub(super) fn lanes<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize, const N: usize>(
     like: T,
     queue: usize,

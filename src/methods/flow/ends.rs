@@ -18,19 +18,19 @@ use crate::methods::search::{crossing, least};
 use crate::numbers::Dual;
 use core::cell::RefCell;
 
-/// Within a step longer than this share of the longest step that rotation and nutation allow, a margin may fall and
-/// rise again; such a step is searched for that.
+/// A step that is longer than this share of the longest one that rotation and nutation allow is searched for a margin
+/// that falls and rises once more within it.
 const LONG_STEP_SHARE: f64 = 0.1;
 /// Number of parts of a step at whose ends a margin that may fail within the step is evaluated.
 const PARTS_OF_STEP: usize = 4;
-/// Largest number of halvings of a part that is short already.
+/// Largest number of halvings of a part of a step that is short already.
 const HALVINGS: u32 = 10;
-/// A margin counts as the cubic through both ends if it differs from that cubic in the middle by less than this share
-/// of its variation. A larger share would miss zeros, a smaller one would halve more steps.
+/// A margin counts as the cubic through both ends of a part of a step if it differs from that cubic in the middle by
+/// less than this share of its variation. A larger share would miss zeros, a smaller one would halve more steps.
 const CUBIC_DEVIATION: f64 = 0.02;
 const MARGIN_ROUNDING: f64 = 1e-15;
 
-/// A margin that rises from zero at the start of a step and falls again within this share of it has not risen.
+/// A margin that rises from zero at the start of a step and falls within this share of the step has not risen.
 const LEAST_RISE: f64 = 1e-15;
 
 /// The behaviour of the margins within a step.
@@ -39,13 +39,14 @@ enum Outlook {
     Clear,
     /// Each margin stays positive or falls through zero once.
     Falls,
-    /// A margin may become negative and positive again.
+    /// A margin may become negative and then positive within the step.
     Unsure,
 }
 
-/// What is asked within a step, at shares of it: all margins with their rates in sigma, one margin alone, and
-/// [`Flow::grazed`]. After `goes_on_from` a share of the step for which `middle` has given the margins, further parts begin
-/// there. Few steps are searched, so that the search is compiled once for all flows.
+/// The functions that a search for an end within a step uses: at a share of the step they give all margins with their
+/// rates in sigma, or one margin alone, or they call [`Flow::grazed`]. After `goes_on_from` a share of the step for
+/// which `middle` has given the margins, further parts of the step begin at this share. Few steps are searched, so that
+/// the search is compiled once for all flows.
 struct StepParts<'a, const M: usize> {
     margins: &'a dyn Fn(f64) -> [Dual<f64>; M],
     margin: &'a dyn Fn(f64, usize) -> f64,
@@ -60,8 +61,8 @@ struct StepParts<'a, const M: usize> {
 /// The margins at both ends of a step, and their rates in sigma.
 type Sides<'a, const M: usize> = (&'a [Dual<f64>; M], &'a [Dual<f64>; M]);
 
-/// The first margin that fails within a step of `h` from a place, and its zero as a share of the step. `calms` is the
-/// longest time step that rotation and nutation allow, divided by the time of this step.
+/// The first margin that falls to zero within a step of `h` from a place, and its zero as a share of the step. `calms`
+/// is the longest time step that rotation and nutation allow, divided by the time of this step.
 pub(super) fn first_failing_margin<F: Flow<M>, const M: usize, const N: usize>(
     flow: &F,
     (from, h): (&FlowPlace<N>, f64),
@@ -121,12 +122,12 @@ fn variation(a: Dual<f64>, b: Dual<f64>, h: f64) -> f64 {
     (b.value - a.value).abs() + h * (a.slope.abs() + b.slope.abs())
 }
 
-/// Whether a margin has a minimum between two places.
+/// Whether a margin has a minimum between two places, by its slopes there.
 fn is_least(a: Dual<f64>, b: Dual<f64>) -> bool {
     a.slope < 0.0 && b.slope >= 0.0
 }
 
-/// Whether a margin falls to zero in a part of length `h`, or dips below it, by the cubic through both ends.
+/// Whether a margin falls to zero, or dips below it, in a part of length `h`, by the cubic through both ends.
 fn may_fail(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
     let dips = || is_least(a, b) && lower_bound(a, b, h) <= 0.0;
     b.value.is_nan() || b.value <= 0.0 || dips()
@@ -138,7 +139,7 @@ fn is_near(a: Dual<f64>, b: Dual<f64>, h: f64) -> bool {
     left.is_nan() || left <= 0.0
 }
 
-/// The points of a step at three of its stages, with their times as shares of the step.
+/// The points of a step at three of its stages, each with its time as a share of the step.
 #[inline(always)]
 pub(crate) fn looks<F: Flow<M>, const M: usize, const N: usize>(
     (from, h): (&FlowPlace<N>, f64),
@@ -192,8 +193,8 @@ fn outlook<F: Flow<M>, const M: usize, const N: usize>(
 }
 
 impl<const M: usize> StepParts<'_, M> {
-    /// The first margin that fails within a part of the step. The part is halved until its parts are at most `long`; these
-    /// are halved up to `halvings` times, until no margin is `Unresolved`.
+    /// The first margin that falls to zero within a part of the step. The part is halved until its parts are at most
+    /// `long`; these are halved up to `halvings` times, until no margin is `Unresolved`.
     fn failure_by_halving(
         &self,
         [from, to]: [f64; 2],
@@ -231,7 +232,7 @@ impl<const M: usize> StepParts<'_, M> {
         })
     }
 
-    /// The first margin that fails within a part of the step, by the cubics through both ends.
+    /// The first margin that falls to zero within a part of the step, by the cubics through both ends.
     fn failure_by_cubics(&self, [from, to]: [f64; 2], (before, after): Sides<'_, M>) -> Option<(f64, usize)> {
         let (mut first, h): (Option<(f64, usize)>, f64) = (None, (to - from) * self.h);
         let share = |x: f64| from + x * (to - from);
@@ -263,15 +264,15 @@ impl<const M: usize> StepParts<'_, M> {
 /// The shape of a margin within a part of a step.
 #[derive(Clone, Copy, PartialEq)]
 enum MarginShape {
-    /// It stays positive.
+    /// The margin stays positive.
     Clear,
-    /// It falls through zero once, or has one minimum, as its cubic does.
+    /// The margin falls through zero once, or has one minimum, as its cubic does.
     LikeCubic,
     Unresolved,
 }
 
-/// The shape of a margin in a part of length `h`, from its values and slopes at the ends and in the middle;
-/// and a lower bound of the margin, which is used where it is clear.
+/// The shape of a margin in a part of length `h`, from its values and slopes at the ends and in the middle; and a lower
+/// bound of the margin, which is used where the margin is clear.
 fn shape_of_part(a: Dual<f64>, middle: Dual<f64>, b: Dual<f64>, h: f64) -> (MarginShape, f64) {
     let (rise, last, change) = (h * a.slope, h * b.slope, b.value - a.value);
     let (p, q) = (3.0 * change - 2.0 * rise - last, rise + last - 2.0 * change);
@@ -331,8 +332,8 @@ pub(super) fn only_zero(
     None
 }
 
-/// The zero before `x` of a margin that rises from zero at the start and has fallen to `value` there; the start if it does
-/// not rise.
+/// The zero of a margin that rises from zero at the start and has fallen to `value` at `x`; the start if the margin
+/// does not rise.
 fn zero_before(on: &dyn Fn(f64) -> f64, mut x: f64, mut value: f64) -> f64 {
     while x > LEAST_RISE {
         let before = on(0.5 * x);

@@ -19,7 +19,7 @@ use crate::numbers::{Real, here};
 /// parameters does not compile.
 pub(crate) const NUMBERS: usize = 32;
 
-/// Equations of motion in lanes, with N numbers, the last of which is the time, and M margins.
+/// Equations of motion in SIMD lanes, with N variables, the last of which is the time, and M margins.
 pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     /// Intermediate results of the rates, from which the margins follow.
     type Seen;
@@ -27,21 +27,21 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     const LOOPS: bool = rk8::LOOPS;
     fn of(numbers: &[T; NUMBERS], like: &Self) -> Self;
     fn rates(&self, y: &[T; N], rate: &mut [T; N]) -> Self::Seen;
-    /// The margins, which must stay positive for a step to be free of events.
+    /// The margins, functions of the variables; while all are positive no event happens.
     fn margins(&self, y: &[T; N], seen: &Self::Seen) -> [T; M];
     /// The error of a step divided by the allowed error.
     fn error(&self, tol: T, y: &[T; N], made: &rk8::Step<T, N>) -> T;
-    /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
-    /// errors lead away.
+    /// Moves the variables after a step back to the surface on which a conserved quantity has its value; rounding and
+    /// step errors lead away from it.
     #[inline(always)]
     fn kept(&self, y: [T; N]) -> [T; N] {
         y
     }
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest(&self, y: &[T; N]) -> T;
-    /// The longest time step that rotation and nutation allow.
+    /// The longest time step that rotation and nutation allow at a place.
     fn calm(&self, y: &[T; N]) -> T;
-    /// The shortest step from a place: a lane with a shorter step is stuck.
+    /// The shortest step from a place: a SIMD lane whose next step would be shorter is stuck.
     #[inline(always)]
     fn shortest(&self, y: &[T; N]) -> T {
         (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
@@ -50,27 +50,27 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
 
-/// The start of a lane.
+/// The initial data of a flow in a SIMD lane.
 pub(crate) struct Entry<const N: usize, const M: usize> {
     pub y: [f64; N],
     pub step: f64,
     pub numbers: [f64; NUMBERS],
     pub tol: f64,
     pub until: f64,
-    /// Number of steps that may hardly advance the time.
+    /// Number of crawling steps, which hardly advance the time, that the flow may take.
     pub patience: u64,
-    /// Number of evaluations that the lane counts at its start, besides those that it makes ([`evaluations_before_limit`]).
+    /// Number of evaluations from which the lane counts, in addition to those that it makes ([`evaluations_before_limit`]).
     pub made: u64,
 }
 
-/// The status of a lane after a step.
+/// The status of a SIMD lane after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum LaneStatus {
-    /// The lane takes the next step.
+    /// The lane can take its next step.
     Runs,
-    /// The next step may cross a margin, or the lane is stuck: a single flow must take some steps.
+    /// The next step may cross a margin, or the lane is stuck: a single [`Flow`](super::Flow) must take some steps.
     NeedsSingle,
-    /// The next step reaches the requested time and crosses no margin: a single flow must take this step.
+    /// The next step reaches the requested time and crosses no margin: a single [`Flow`](super::Flow) must take this step.
     TimeReached,
 }
 
@@ -78,47 +78,47 @@ pub(crate) enum LaneStatus {
 const NEEDS_SINGLE: f64 = 1.0;
 const TIME_REACHED: f64 = 2.0;
 
-/// A lane stops after this number of evaluations of its rates, so that the limit of the whole motion is checked.
+/// A SIMD lane stops after this number of evaluations of its rates, so that the limit of the whole motion can be checked.
 const TOIL_IN_LANES: f64 = 1e6;
 
-/// The evaluations that a lane counts at its start if it may make only `toil` evaluations.
+/// The number from which a lane counts evaluations, so that it stops after `toil` evaluations.
 pub(crate) fn evaluations_before_limit(toil: u64) -> u64 {
     (TOIL_IN_LANES as u64).saturating_sub(toil)
 }
 
-/// The progress of the motions in their lanes.
+/// The progress of the motions in their SIMD lanes.
 #[derive(Clone, Copy)]
 struct LaneProgress<T, const N: usize, const M: usize> {
     y: [T; N],
-    /// The rounding errors of the numbers, which are added in the next step.
+    /// The rounding errors of the variables, which are added in the next step.
     carry: [T; N],
     h: T,
     /// The margins at a place before the current one, and the distance back to that place.
     before: [T; M],
     back: T,
-    /// Number of crawling steps that are still allowed.
+    /// Number of crawling steps, which hardly advance the time, that are left.
     patience: T,
-    /// Number of evaluations of the rates.
+    /// Number of evaluations of the rates so far.
     made: T,
     /// The sum of the estimated errors of all steps, in units of the tolerance.
     erred: T,
 }
 
 impl<T: Copy, const N: usize, const M: usize> LaneProgress<T, N, M> {
-    /// Calls `f` for all numbers, one after the other.
+    /// Calls `f` for all data of the lanes, one vector after the other.
     fn each(&mut self, mut f: impl FnMut(&mut T)) {
         let Self { y, carry, h, before, back, patience, made, erred } = self;
         y.iter_mut().chain(carry).chain(before).chain([h, back, patience, made, erred]).for_each(&mut f);
     }
 }
 
-/// `yes` where a mask is positive, elsewhere `no`.
+/// Selects `yes` where the number `mask` is positive, elsewhere `no`.
 #[inline(always)]
 fn select_positive<T: SideBySide>(mask: T, yes: T, no: T) -> T {
     mask.splat(0.0).select_lt(mask, yes, no)
 }
 
-/// A new lane has an earlier place with margins, before its start by this share of its first step.
+/// In a new lane, margins are extrapolated to an earlier place, at this share of the first step before the start.
 const EARLIER_PLACE_SHARE: f64 = 0.03;
 /// Each of two chords is made steeper by this share of the difference of their slopes, as a reserve. Without this
 /// reserve a margin that bends unevenly could dip below zero unseen; a larger share stops more lanes than necessary.
@@ -171,17 +171,17 @@ fn margins_stay_positive<T: Real, const M: usize>(places: [&[T; M]; LOOKS.len() 
     sure
 }
 
-/// A set of motions, one in each lane.
+/// A set of motions, one in each SIMD lane, and the steps that they take.
 pub(crate) struct Set<T, L, const N: usize, const M: usize> {
     law: L,
     tol: T,
     until: T,
     way: LaneProgress<T, N, M>,
     rate: [T; N],
-    /// The margins at the current place.
+    /// The margins at the current place of each motion.
     margins: [T; M],
     status: T,
-    /// 0 in a lane with a task, else 1.
+    /// 0 in a SIMD lane that has a motion, else 1.
     idle: T,
     rows: Vec<[f64; MOST]>,
 }
@@ -209,7 +209,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         set
     }
 
-    /// Puts a task into lane `k` of the rows.
+    /// Puts a motion with its initial data into SIMD lane `k` of the rows.
     pub fn fill(&mut self, k: usize, entry: &Entry<N, M>) {
         let mut way = LaneProgress {
             y: entry.y,
@@ -279,13 +279,13 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         self.status = zero;
     }
 
-    /// Marks the SIMD lanes without a task as idle.
+    /// Marks the SIMD lanes without a motion as idle.
     pub fn mark_idle_lanes(&mut self, zero: T, idle: &[f64; MOST]) {
         self.idle = zero.load(idle);
         self.status = zero.splat(0.5).select_lt(self.idle, zero, self.status);
     }
 
-    /// The status of lane `k`.
+    /// The status of SIMD lane `k` after its last step.
     pub fn status(&self, k: usize) -> LaneStatus {
         let status = self.status.lane(k);
         if status == NEEDS_SINGLE {
@@ -297,7 +297,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         }
     }
 
-    /// The numbers of lane `k`, and its next step.
+    /// The variables of SIMD lane `k`, and the length of its next step.
     pub fn place(&self, k: usize) -> ([f64; N], f64) {
         (self.way.y.map(|x| x.lane(k)), self.way.h.lane(k))
     }
@@ -310,7 +310,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         Spent { evaluations: made.lane(k) as u64, erred: erred.lane(k), patience, exhausted: None }
     }
 
-    /// Takes at most `steps` steps, until a lane stops running.
+    /// Takes at most `steps` steps in all SIMD lanes, until a lane cannot take its next step.
     pub fn take_steps(&mut self, zero: T, steps: usize) {
         apart(
             zero,

@@ -1,4 +1,5 @@
-//! The integration of a flow: steps of eighth order within a tolerance, outputs at any time, and the end of the flow.
+//! The integration of a flow, that is, of a system of differential equations: steps of eighth order within a tolerance,
+//! outputs at any time, and ends.
 //!
 //! ```text
 //! y' = f(y)   in a variable sigma of the flow's own, dt/dsigma > 0; the time t is one of the numbers
@@ -25,15 +26,16 @@ use super::rk8::{self, growth, plus};
 use crate::error::Error;
 use crate::numbers::{COMPILES_AVX2, Dual, here, in_registers};
 
-/// A step shorter than this, relative to the elapsed time, is too short: rounding would swallow its advance.
+/// The shortest step relative to the elapsed time: rounding would swallow the advance by a shorter one.
 pub(crate) const SHORTEST: f64 = 1e-14;
-/// Time added to the elapsed time in that comparison, for fast changes right after the start.
+/// Time that is added to the elapsed time for the comparison with `SHORTEST`, since changes right after the start may be fast.
 pub(crate) const SOON: f64 = 1e-9;
-/// Rate of the fall of a face, relative to its inclination, beyond which the first step is not shortened further.
+/// Largest rate of the fall of a face, relative to its inclination, for which the first step is shortened.
 pub(crate) const FASTEST: f64 = 1e15;
-/// A step crawls if it is shorter than this share of the longest step that rotation and nutation allow.
+/// A step crawls, that is, hardly advances, if it is shorter than this share of the longest step that rotation and
+/// nutation allow.
 pub(crate) const SLOW: f64 = 0.01;
-/// A step also crawls if time advances by less than this share of that longest step.
+/// A step also crawls if time advances by less than this share of the longest step that rotation and nutation allow.
 pub(crate) const CRAWLING_TIME_SHARE: f64 = 1e-6;
 /// Largest error of the part of a step up to an event, in units of the allowed error. The error is large
 /// beyond a singularity, where the event is not real and the step is repeated; rounding errors near the table
@@ -41,31 +43,31 @@ pub(crate) const CRAWLING_TIME_SHARE: f64 = 1e-6;
 const ROUNDED: f64 = 100.0;
 /// Largest number of crawling steps of one motion, unless its caller allows more evaluations.
 pub(crate) const PATIENCE: u64 = 600_000;
-/// Largest number of evaluations of one motion; a long motion may take `TOIL_PER_TIME` for each unit of time.
+/// Largest number of evaluations of the rates in one motion; a long motion may take `TOIL_PER_TIME` for each unit of time.
 pub(crate) const TOIL: u64 = 8_000_000;
 const TOIL_PER_TIME: f64 = 40_000.0;
-/// Whether the stages form a loop in parts of steps and on processors without AVX2, which shortens the
-/// compilation.
+/// Whether the stages form a loop in parts of steps, and on processors without AVX2; this shortens the compilation.
 const PARTS_IN_LOOPS: bool = rk8::LOOPS || COMPILES_AVX2;
-/// The numbers right after an implicit step have an error this many times larger than the one that remains: that of the fast
-/// numbers, which decays in the next step.
+/// Ratio of the error of the variables right after an implicit step to the error that remains: the error of the fast
+/// variables decays in the next step.
 const ERROR_AFTER_IMPLICIT_STEP: f64 = 20.0;
-/// A part of an implicit step is divided into at most 2 to this power.
+/// A part of an implicit step is divided into at most 2 to this power smaller parts.
 const MOST_HALVINGS: i32 = 8;
 /// The longest part of a step in which an output is sought, and the largest number of parts that are tried for it.
 const LONGEST_PART: f64 = 1.1;
 const MOST_PARTS_TRIED: u32 = 100;
-/// Largest share of the time up to an extrapolated halt at which an output is shown: the slip is not zero before its end.
+/// Largest share of the time up to a halt at which an output is written, if the halt is extrapolated: the slip is not
+/// zero before its end.
 const LATEST_OUTPUT_SHARE: f64 = 1.0 - f64::EPSILON;
 /// Number of crawling steps between two calls of [`Flow::stuck`].
 const STEPS_BETWEEN_STUCK_TESTS: u64 = 20_000;
 
-/// Largest number of evaluations of a motion over the time `span`.
+/// Largest number of evaluations of the rates in a motion over the time `span`.
 pub(crate) fn toil_of(span: f64) -> u64 {
     TOIL.max((TOIL_PER_TIME * span) as u64)
 }
 
-/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is still allowed.
+/// Number of crawling steps before the next call of [`Flow::stuck`]; `patience` is the number that is left.
 pub(crate) fn steps_to_stuck_test(patience: u64) -> u64 {
     patience - patience.saturating_sub(1) / STEPS_BETWEEN_STUCK_TESTS * STEPS_BETWEEN_STUCK_TESTS
 }
@@ -74,11 +76,11 @@ pub(crate) fn steps_to_stuck_test(patience: u64) -> u64 {
 pub(crate) trait Flow<const M: usize>: Copy {
     /// The reasons for which this flow halts.
     type Halt: Copy + PartialEq;
-    /// The index of the time among the numbers.
+    /// The index of the time among the variables.
     const TIME: usize;
     /// The halt at the last of the requested times.
     const OVER: Self::Halt;
-    /// The halt after the allowed number of steps.
+    /// The halt after the allowed number of steps, from which the flow can continue.
     const PAUSE: Self::Halt;
     /// Number of steps between two calls of `go_on`.
     const BREATH: u64 = 256;
@@ -86,18 +88,18 @@ pub(crate) trait Flow<const M: usize>: Copy {
     const ENDLESS: Self::Halt = Self::PAUSE;
     /// Whether the stages of all steps form a loop: for rates so slow that the loop costs little in comparison.
     const LOOPS: bool = rk8::LOOPS;
-    /// Whether the rates take so long that a call of them costs nothing beside. They are then compiled once, and not at each
-    /// place where they are needed.
+    /// Whether the rates take so long that the call of a function costs little in comparison. They are then compiled
+    /// once, and not at each place where they are needed.
     const CALLS: bool = false;
-    /// Writes the rates of all numbers in sigma.
+    /// Writes the rates of change of all variables, in the variable sigma of the flow.
     fn write_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]);
-    /// The margins, which must stay positive, and their rates in sigma.
+    /// The margins, each with its rate of change in sigma; the flow ends where one of them falls to zero.
     fn margins<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; M];
-    /// The margin `i` at the numbers `y`.
+    /// The margin with the index `i`, from the variables `y`.
     fn margin<const N: usize>(&self, y: &[f64; N], i: usize) -> f64;
-    /// The halt of a flow whose margin `i` fails.
+    /// The halt of a flow whose margin `i` falls to zero.
     fn end(&self, i: usize) -> Self::Halt;
-    /// The error of a step, in units of the allowed error.
+    /// The error of a step from the variables `y`, in units of the allowed error.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64;
     /// The speed to which the error of a step is relative: the largest speed, at least 1.
     fn fastest<const N: usize>(&self, y: &[f64; N]) -> f64;
@@ -105,9 +107,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn effort(&self) -> u64 {
         1
     }
-    /// A first step that is short enough; the next steps grow fast.
+    /// The length of a first step that is short enough; the next steps grow fast.
     fn first<const N: usize>(&self, y: &[f64; N]) -> f64;
-    /// The longest time step that rotation and nutation allow.
+    /// The longest time step that rotation and nutation allow at the variables `y`.
     fn calm<const N: usize>(&self, y: &[f64; N]) -> f64;
     /// The shortest step in sigma from a point: a flow with a shorter step is stuck.
     fn shortest<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -115,41 +117,43 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
     /// The longest step in sigma that is allowed from a point.
     fn longest<const N: usize>(&self, place: &FlowPlace<N>) -> f64;
-    /// The halt of a flow that ends at this point, and the numbers at the halt, which may lie a little further on.
+    /// The halt of a flow that ends at this point for a reason other than a margin, and the variables at the halt,
+    /// which may lie a little later; else None.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Self::Halt, [f64; N])>;
     /// The halt of a flow whose steps become too short or crawl; None where the reason is unknown.
     fn stuck<const N: usize>(&self, _: &FlowPlace<N>, _: &[Dual<f64>; M]) -> Option<Self::Halt> {
         None
     }
-    /// For a halt at which a speed vanishes, the rate in time at which this speed falls; infinite for other halts.
+    /// The rate, in time, at which a speed falls that vanishes at this halt; infinite for other halts.
     fn slows<const N: usize>(&self, _: Self::Halt, _: &FlowPlace<N>) -> f64 {
         f64::INFINITY
     }
-    /// Whether the numbers at a halt are extrapolated linearly, since a slip vanishes there. An output at the very time of
-    /// such a halt belongs to the phase that follows, as the force of a slip that has vanished has no direction.
+    /// Whether the variables at a halt are extrapolated linearly, since a slip vanishes there. An output at exactly the
+    /// time of such a halt belongs to the phase of the motion that follows, as the force of a slip that has vanished
+    /// has no direction.
     fn is_extrapolated(_: Self::Halt) -> bool {
         false
     }
-    /// Whether the way to such a halt is a parabola that begins at the rates of the last point.
+    /// Whether the path to an extrapolated halt is a parabola that begins at the rates of the last point.
     fn is_curved(_: Self::Halt) -> bool {
         false
     }
-    /// The numbers of the output, from those of this flow.
+    /// The variables of the output, from those of this flow.
     fn shown<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         *y
     }
-    /// Moves the numbers after a step back to the surface of an invariant, from which rounding and step
-    /// errors lead away.
+    /// Moves the variables after a step back to the surface on which a conserved quantity has its value; rounding and
+    /// step errors lead away from it.
     #[inline(always)]
     fn kept<const N: usize>(&self, y: [f64; N]) -> [f64; N] {
         y
     }
-    /// Whether [`Flow::passed`] is called.
+    /// Whether [`Flow::passed`] is called after each step.
     const LOOKS_ON: bool = false;
     /// Whether [`Flow::is_stiff`] is called before each step.
     const MAY_BE_STIFF: bool = false;
-    /// Whether some numbers follow the others so fast from this point on that explicit steps longer than
-    /// [`Flow::stable`] are not stable. Longer steps are implicit, as long as they pay.
+    /// Whether some variables follow the others so fast from this point on that explicit steps longer than
+    /// [`Flow::stable`] are not stable. Longer steps are implicit, as long as they cost less.
     fn is_stiff<const N: usize>(&self, _: &FlowPlace<N>) -> bool {
         false
     }
@@ -157,7 +161,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
     fn stable<const N: usize>(&self, _: &FlowPlace<N>) -> f64 {
         STABLE
     }
-    /// A step of [`radau`] and its stages, by an iteration that begins with the changes `guess`.
+    /// A step of [`radau`] and its stages, by an iteration that begins with the changes `guess` of the variables.
     fn implicit_step<const N: usize>(
         &self,
         _: &FlowPlace<N>,
@@ -166,33 +170,33 @@ pub(crate) trait Flow<const M: usize>: Copy {
     ) -> (rk8::Step<f64, N>, radau::Collocated<N>) {
         unreachable!("only a stiff flow takes implicit steps")
     }
-    /// Whether a part of a step is implicit, also a short one: nothing tests its error, and an explicit step that is hardly
-    /// stable has a large one.
+    /// Whether a part of a step is implicit, also if it is short: the error of a part is not tested, and an explicit
+    /// step that is hardly stable has a large error.
     #[inline(always)]
     fn is_implicit<const N: usize>(&self, from: &FlowPlace<N>) -> bool {
         Self::MAY_BE_STIFF && self.is_stiff(from)
     }
-    /// Called for each step that is taken, with the step, the length in sigma of the part that is taken, and the point
-    /// at its end. The part ends where the flow ends; if that is at the last requested time, the length is that of the
-    /// whole step.
+    /// Called for each step that is taken, with the step, the length in sigma of the part that is used, and the point
+    /// at the end of this part. The part ends where the flow ends; if that is at the last requested time, the length is
+    /// that of the whole step.
     #[inline(always)]
     fn passed<const N: usize>(&self, _: TakenStep<'_, N>, _: f64, _: &FlowPlace<N>) {}
-    /// Whether only the end of the flow is asked for, and none of its steps is long: then it needs less code.
+    /// Whether only the end of the flow is requested and none of its steps is long: then the flow needs less code.
     const ONLY_ENDS: bool = false;
-    /// Whether short steps are also searched for margins that fail for a moment.
+    /// Whether short steps are also searched for margins that are negative only for a moment.
     const CLOSELY: bool = false;
     /// Called with a point within a step near which margin `i` has a minimum, and with that minimum, which is
     /// positive and less than the variation of the margin in the step.
     fn grazed<const N: usize>(&self, _: &[f64; N], _: usize, _: f64) {}
-    /// For a step that is too long to see what it passes, the share of it by which it is tried again.
+    /// For a step so long that an event within it may be missed, the share of the step with which it is repeated; else None.
     #[inline(always)]
     fn passes_unseen<const N: usize>(&self, _: &[f64; N], _: &[f64; N]) -> Option<f64> {
         None
     }
-    /// The inclination that an error names.
+    /// The inclination for the error message of an exhausted flow.
     fn theta<const N: usize>(&self, y: &[f64; N]) -> f64;
 
-    /// Writes the rates, in a single copy.
+    /// Writes the rates of change in a function that is compiled once.
     #[inline(never)]
     fn call_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) {
         in_registers!(self.write_rates(y, all));
@@ -212,7 +216,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         self.margins(place)
     }
 
-    /// A step; LOOP says whether its stages form a loop.
+    /// One step of the flow, explicit or implicit; LOOP says whether the stages of an explicit step form a loop.
     #[inline(always)]
     fn step<const LOOP: bool, const N: usize>(
         &self,
@@ -251,12 +255,12 @@ pub(crate) trait Flow<const M: usize>: Copy {
         }
     }
 
-    /// A point with these numbers, from which a flow can start.
+    /// The point of the flow with the variables `y`, from which it can start.
     fn place<const N: usize>(&self, y: [f64; N]) -> FlowPlace<N> {
         FlowPlace { y, carry: [0.0; N], rate: self.rates(&y) }
     }
 
-    /// A part of length `h` of a step from a point, and the numbers after it.
+    /// A part of length `h` of a step from a point, and the variables after it.
     #[inline(always)]
     fn parted<const LOOP: bool, const N: usize>(
         &self,
@@ -268,7 +272,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         (made, y)
     }
 
-    /// The numbers after a part of length `h` of a step from a point.
+    /// The variables after a part of length `h` of a step from a point.
     fn part<const N: usize>(&self, from: &FlowPlace<N>, h: f64) -> [f64; N] {
         let y = self.part_at_once(from, h);
         if Self::MAY_BE_STIFF && y[0].is_nan() {
@@ -305,9 +309,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
         y
     }
 
-    /// The numbers at time `t` within a step of `h` that ends at `after`, by Newton's iteration on parts of the step, and by
-    /// bisection where that leaves the parts between which the time lies; NaN if no part comes that near to the time. An
-    /// implicit part may be a little late at the end of the step.
+    /// The variables at time `t` within a step of `h` that ends at `after`. Newton's iteration on parts of the step
+    /// finds them, or bisection where Newton's iteration leaves the parts between which the time lies; NaN if no part
+    /// comes near enough to the time. An implicit part may be a little late at the end of the step.
     fn at_time<const N: usize>(&self, from: &FlowPlace<N>, after: &FlowPlace<N>, h: f64, t: f64) -> [f64; N] {
         let span = after.y[Self::TIME] - from.y[Self::TIME];
         let near = (1e-9 * span).max(f64::EPSILON * t.abs());
@@ -336,9 +340,9 @@ pub(crate) trait Flow<const M: usize>: Copy {
         [f64::NAN; N]
     }
 
-    /// Writes the numbers at those of the `times` that are not after `until`, within a step of `h` between two points, and
-    /// returns the number of those times; `last` gets the numbers at the last of them. Between the end of the step and a
-    /// halt after it the numbers are linear in time, or a parabola.
+    /// Writes the variables at those of the `times` that are not after `until`, within a step of `h` between two
+    /// points, and returns the number of those times; `last` gets the variables at the last of them. Between the end of
+    /// the step and a halt after it the variables are linear in time, or a parabola.
     #[inline(always)]
     fn write_times<const N: usize>(
         &self,
@@ -375,8 +379,8 @@ pub(crate) trait Flow<const M: usize>: Copy {
     }
 
     /// Computes the flow from a point, up to its halt, to the last of the `times`, or to a pause after the allowed
-    /// steps. `write` receives the numbers at each of the `times` that is reached. A flow that exceeds its limits of
-    /// work or of precision, or that `go_on` interrupts, ends where it is ([`Spent::exhausted`]).
+    /// number of steps. `write` receives the variables at each of the `times` that is reached. A flow that exceeds its
+    /// limits of work or of precision, or that `go_on` interrupts, ends at the present point ([`Spent::exhausted`]).
     fn run<const N: usize>(
         &self,
         here: FlowPlace<N>,
@@ -392,7 +396,7 @@ pub(crate) trait Flow<const M: usize>: Copy {
         )
     }
 
-    /// Computes the flow as [`Flow::run`] does. An exhausted flow is an error, and an interrupted one None.
+    /// Computes the flow as [`Flow::run`] does. An exhausted flow gives an error, and an interrupted one None.
     fn run_whole<const N: usize>(
         &self,
         here: FlowPlace<N>,

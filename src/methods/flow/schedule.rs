@@ -1,25 +1,25 @@
-//! Lanes that are refilled: as soon as one flow leaves its lane, the next one takes that lane.
+//! SIMD lanes that are refilled: as soon as one flow leaves its lane, the next waiting flow takes that lane.
 
 use super::Spent;
 use super::lanes::{Entry, Flows, LaneStatus, Set};
 use crate::numbers::side_by_side::{MOST, SideBySide};
 
-/// Largest number of steps of a set of lanes between two calls of `Waiting::go_on`.
+/// Largest number of steps in a set of SIMD lanes between two calls of [`Waiting::go_on`].
 const BURST: usize = 64;
-/// Number of steps that a flow takes outside the lanes before it gets a lane again.
+/// Number of steps that a flow takes outside the SIMD lanes before it gets another lane.
 pub(crate) const STEPS_ALONE: u64 = 3;
 
-/// Flows of one kind that wait for lanes, each with K numbers and M margins.
+/// Flows of one kind that wait for SIMD lanes, each with K variables and M margins.
 pub(crate) trait Waiting<const K: usize, const M: usize> {
-    /// The next flow, which gets lane `k`; None if no flow waits.
+    /// The initial data of the next flow, which gets SIMD lane `k`; None if no flow waits.
     fn enter(&mut self, k: usize) -> Option<Entry<K, M>>;
-    /// Receives the flow of lane `k`, which has left its lane with these numbers and this next step.
+    /// Receives the flow of SIMD lane `k`, which has left its lane with the variables and the next step `at`.
     fn leave(&mut self, k: usize, status: LaneStatus, at: ([f64; K], f64), spent: Spent);
     /// Whether the flows continue; false if the caller interrupts them.
     fn go_on(&mut self) -> bool;
 }
 
-/// Runs all waiting flows in lanes, each until its lane stops.
+/// Runs all waiting flows in SIMD lanes, each until its lane stops.
 pub(crate) fn follow<T: SideBySide, L: Flows<T, K, M>, const K: usize, const M: usize>(
     like: T,
     law: L,

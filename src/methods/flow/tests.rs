@@ -204,7 +204,7 @@ fn the_zero_of_a_margin_that_falls_takes_three_looks() {
     assert_eq!(only_zero(&mut { wrong }, [0.5, -1.5, -0.5, -1.5]), None);
 }
 
-/// A clock in a lane, whose margin (a - t) (b - t) + up is a parabola of time.
+/// A clock in a SIMD lane, whose margin (a - t) (b - t) + up is a parabola of time.
 #[cfg(feature = "many")]
 #[derive(Clone, Copy)]
 struct LaneClock<T>([T; 3]);

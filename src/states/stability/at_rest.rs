@@ -1,5 +1,5 @@
-//! Kappa, rate and energy of the steady state with the centre at rest in closed form, which is fast. For any state
-//! `stability` computes kappa with dual numbers.
+//! Kappa, rate and energy of the steady state with the centre at rest in closed form, for maps. For any other state
+//! `stability` computes kappa with dual numbers, which takes longer.
 //!
 //! ```text
 //! sharp, with n and m = n + d cos of `steady`, r = I1/I3:
@@ -28,14 +28,14 @@ use core::f64::consts::FRAC_PI_2;
 
 use super::region::region_of;
 
-/// The numbers of a body that enter kappa, computed once for a whole row of inclinations.
+/// The numbers of a body that enter kappa, computed once for all inclinations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moments<T> {
     pub(super) ell: T,
     excess: Sum<T>,
     i1: T,
     ratio: T,
-    // The next six numbers give X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s.
+    // The numbers tilt, along, across, drag, lift and spin give X/(I3 J) = tilt + (along c + across s)(c - drag s) + lift (spin s + ell c) s.
     tilt: T,
     along: T,
     across: T,
@@ -109,7 +109,7 @@ fn smooth_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T
     where_rate_is_real([n, m], turning / s - of.ell.fma(c, s) / inertia)
 }
 
-/// Rolling kappa of the state with the centre at rest, from n and m; NaN where no such state exists.
+/// Kappa in rolling of the state with the centre at rest, from n and m; NaN where no such state exists.
 #[inline(always)]
 fn rolling_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T {
     let turn = of.along.fma(c, of.across * s) * (-of.drag).fma(s, c);
@@ -125,7 +125,7 @@ fn energy_at_rest<T: Real>((s, c): (T, T), [n, m]: [T; 2], of: &Moments<T>) -> T
     where_rate_is_real([n, m], (n / m) * s * moment + of.ell.fma(c, s))
 }
 
-/// Returns `x` where the squared rate is positive, NaN elsewhere.
+/// Returns `x` where the squared rate n/(m s) is positive, NaN elsewhere.
 #[inline(always)]
 fn where_rate_is_real<T: Real>([n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
@@ -133,7 +133,7 @@ fn where_rate_is_real<T: Real>([n, m]: [T; 2], x: T) -> T {
     zero.select_lt(sign, x, nan)
 }
 
-/// Returns `x` where theta is in (0, `most`] and the squared rate is positive, NaN elsewhere.
+/// Returns `x` where theta is in (0, `most`] and the squared rate n/(m s) is positive, NaN elsewhere.
 #[inline(always)]
 fn where_steady<T: Real>(theta: T, most: T, [n, m]: [T; 2], x: T) -> T {
     let (zero, nan) = (x.splat(0.0), x.splat(f64::NAN));
@@ -151,7 +151,7 @@ pub(crate) struct Rounded<T> {
     i1: T,
     i3: T,
     per_i1: T,
-    /// The upper end of the range of inclinations.
+    /// The largest inclination for which steady states are computed.
     most: T,
 }
 
@@ -175,7 +175,7 @@ impl<T: Real> Rounded<T> {
         Rim { ell: self.ell, a: self.a.hi, rho: self.rho }
     }
 
-    /// Omega^2, and L sigma with sigma = s/A, from one division.
+    /// The squared precession rate Omega^2, and L sigma with sigma = s/A; one division serves both.
     #[inline(always)]
     fn turning(&self, angle: (T, T), of: &RateTerms<T>) -> [T; 2] {
         let (radius, sine) = (of.radius.hi, of.sine.hi);
@@ -190,7 +190,7 @@ impl<T: Real> Rounded<T> {
         RoundedParts { ell: self.ell, rho: self.rho, a: self.a, excess: self.excess }
     }
 
-    /// The wanted quantities, from the terms of the rate.
+    /// The requested quantities at the inclination `theta`, from the terms of the squared rate.
     #[inline(always)]
     fn point(&self, theta: T, angle: &SinCos<T>, of: &RateTerms<T>, wanted: Wanted) -> SteadyPoint<T> {
         let plain = (angle.sin.hi, angle.cos.hi);
@@ -253,12 +253,13 @@ impl<T: Real> Rounded<T> {
     }
 }
 
-/// The quantities that are wanted at a point: rate (or its square), rolling kappa, smooth kappa, energy, region.
+/// The quantities that are requested at a point of a map: rate (or its square), kappa in rolling and on a smooth table,
+/// energy, region.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Wanted {
     pub rate: bool,
     pub squared: bool,
-    /// Whether the rate of a sharp rim is wanted in single precision.
+    /// Whether the rate of a sharp rim is requested in single precision.
     pub single: bool,
     pub rolling: bool,
     pub smooth: bool,
@@ -266,7 +267,7 @@ pub(crate) struct Wanted {
     pub region: bool,
 }
 
-/// The quantities of a point; those that are not wanted are NaN.
+/// The quantities at a point of a map; those that are not requested are NaN.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SteadyPoint<T> {
     pub rate: T,
@@ -284,7 +285,7 @@ impl<T: Real> SteadyPoint<T> {
         Self { rate: nan, rolling: nan, smooth: nan, energy: nan, region: nan }
     }
 
-    /// Each quantity from this point and from another one, as `pick` chooses.
+    /// Combines this point and another one: `pick` chooses each quantity from both.
     #[inline(always)]
     #[must_use]
     pub fn with(self, other: Self, pick: impl Fn(T, T) -> T) -> Self {
@@ -299,7 +300,8 @@ impl<T: Real> SteadyPoint<T> {
 }
 
 impl<T: Real> Moments<T> {
-    /// The wanted quantities except the rate, from sine, cosine, n and m; n or m is NaN where its sign is not known.
+    /// The requested quantities except the rate, from theta, its sine and cosine, and n and m; n or m is NaN where its
+    /// sign is not known.
     #[inline(always)]
     fn other_quantities(&self, theta: T, angle: (T, T), of: [T; 2], wanted: Wanted) -> SteadyPoint<T> {
         let mut found = SteadyPoint::nothing(theta);
@@ -319,7 +321,7 @@ impl<T: Real> Moments<T> {
         found
     }
 
-    /// The wanted quantities, with more digits, for any inclination, also tiny or outside (0, pi/2].
+    /// The requested quantities, computed with more digits, for any inclination, also tiny or outside (0, pi/2].
     #[inline(always)]
     fn carefully(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let angle = sincos(theta);
@@ -421,7 +423,7 @@ pub(crate) trait AtRest<T: Real> {
 
     fn angle(theta: T) -> Self::Angle;
 
-    /// The wanted quantities at the inclination `theta`, whose sine and cosine are `angle`.
+    /// The requested quantities at the inclination `theta`, whose sine and cosine are `angle`.
     fn found(&self, theta: T, angle: &Self::Angle, wanted: Wanted) -> SteadyPoint<T>;
 }
 

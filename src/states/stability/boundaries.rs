@@ -26,8 +26,8 @@ pub fn boundaries(body: &Body, contact: Contact) -> [f64; MOST] {
     steady::inclinations_of(body, cubic(body, contact, divided))
 }
 
-/// A cubic in T = tan theta whose sign is that of kappa m, for a sharp rim: kappa times its denominators over
-/// cos^3, where 1/cos^2 = 1 + T^2. The factor n of a critical body can be `divided` out.
+/// A cubic in T = tan theta that has the sign of kappa m, for a sharp rim: kappa times its denominators over cos^3,
+/// where 1/cos^2 = 1 + T^2. With `divided` the factor n of a critical body is left out.
 pub(super) fn cubic<C: Coefficient>(body: &Body, contact: Contact, divided: bool) -> Cubic<C> {
     let (i1, i3, ell) = (body.i1(), body.i3(), body.ell());
     let d_sharp = i1 * i3 + i1 + i3 * ell * ell;

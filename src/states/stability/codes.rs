@@ -2,21 +2,21 @@
 //!
 //! For a sharp rim bisection finds the changes of sign along the inclinations, as in `runs`. Every inclination is
 //! evaluated where a sign is uncertain, and for a rounded rim. The codes equal those of [`region`](super::region()):
-//! two tests of `sweep` check it.
+//! two tests of `sweep` check this.
 
 use super::{Region, regions, runs};
 use crate::laws::body::Body;
 use core::f64::consts::FRAC_PI_2;
 
-/// The codes of the [`Region`] for all inclinations (ascending) and all bodies: row-major (inclination, body), on one
-/// thread.
+/// Writes the codes of the [`Region`] for all inclinations (ascending) and all bodies: row-major (inclination, body),
+/// on one thread. A body that is None has the code of `Invalid`.
 ///
 /// # Panics
 /// Panics if `codes` does not hold `theta.len() * bodies.len()` codes, or theta does not ascend.
 pub fn codes(theta: &[f64], bodies: &[Option<Body>], codes: &mut [u8]) {
     assert!(
         theta.is_sorted() && codes.len() == theta.len() * bodies.len(),
-        "theta ascending, a code for each"
+        "expected theta to ascend, and theta.len() * bodies.len() codes"
     );
     codes.fill(Region::Invalid as u8);
     let [first, last] = [0.0, FRAC_PI_2].map(|end| theta.partition_point(|x| *x <= end));

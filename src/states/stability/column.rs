@@ -1,4 +1,4 @@
-//! Columns of eight bodies, with either kind of rim, for which `at_rest` computes eight points at a time.
+//! Columns of eight bodies, with sharp or rounded rims, for which `at_rest` computes eight points of a map at a time.
 
 use super::at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 use crate::laws::body::Body;
@@ -6,14 +6,14 @@ use crate::numbers::{LANES, Narrow, Real};
 
 /// Eight bodies, stored as arrays of numbers.
 pub(crate) trait Stored: Sync {
-    /// As many of these bodies as the number type has lanes.
+    /// The form in which as many of these bodies as a number has SIMD lanes are computed.
     type Of<T: Narrow>: AtRest<T>;
 
-    /// The bodies from index `k` on.
+    /// The bodies from index `k` on, one in each SIMD lane.
     fn load<T: Narrow>(&self, like: T, k: usize) -> Self::Of<T>;
 }
 
-/// A number with the values of `eight` from `k` on in its lanes; a number with eight lanes or more has all of them.
+/// A number whose SIMD lanes are the values of `eight` from `k` on; a number with eight lanes or more has all of them.
 #[inline(always)]
 fn lanes_from<T: Narrow>(like: T, eight: &[f64; LANES], k: usize) -> T {
     like.load(if T::COUNT < LANES { &eight[k..] } else { eight })
@@ -43,8 +43,8 @@ impl Stored for Rounded<[f64; LANES]> {
     }
 }
 
-/// One body or eight bodies, on sharp rims, on rounded rims, or on both kinds; a lane of one kind is then NaN in the
-/// other.
+/// One body, or eight bodies in SIMD lanes, on sharp rims, on rounded rims, or on both kinds; a lane of one kind is NaN
+/// in the numbers of the other kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column<T> {
     sharp: Option<Moments<T>>,
@@ -58,7 +58,7 @@ impl<T: Real> Column<T> {
         Self { sharp: Some(Moments::tube(half, bore)), round: None }
     }
 
-    /// The column of uniform tubes with rounded edges; if `mixed`, some edges may be sharp.
+    /// The column of uniform tubes with rounded edges; if `mixed`, the edges of some tubes may be sharp.
     #[inline(always)]
     pub fn rounded_tube(half: T, bore: T, fillet: T, mixed: bool) -> Self {
         let round = Some(Rounded::tube(half, bore, fillet));
@@ -70,7 +70,7 @@ impl<T: Real> Column<T> {
 }
 
 impl<T: Narrow> Column<T> {
-    /// The wanted quantities at an inclination.
+    /// The requested quantities at an inclination, for each body.
     #[inline(always)]
     pub fn found(&self, theta: T, wanted: Wanted) -> SteadyPoint<T> {
         let (mut a, mut ell) = (SteadyPoint::nothing(theta), theta.splat(f64::NAN));
@@ -115,7 +115,7 @@ impl<T: Copy> Column<T> {
 }
 
 impl Column<[f64; LANES]> {
-    /// The column of at most eight bodies; a lane without a body is NaN.
+    /// The column of at most eight bodies; a SIMD lane without a body is NaN.
     pub fn gather(bodies: &[Option<Body>]) -> Self {
         let (mut sharp, mut round) = ([[f64::NAN; 12]; LANES], [[f64::NAN; 10]; LANES]);
         let mut kinds = [false; 2];
@@ -134,13 +134,13 @@ impl Column<[f64; LANES]> {
         Self { sharp: (kinds[0] || !kinds[1]).then(sharp), round: kinds[1].then(round) }
     }
 
-    /// The bodies on sharp rims; the other SIMD lanes are NaN.
+    /// The bodies on sharp rims; the SIMD lanes of other bodies are NaN.
     pub fn sharp(bodies: &[Option<Body>]) -> Moments<[f64; LANES]> {
         let found = Self::gather(bodies).sharp;
         found.unwrap_or_else(|| Moments::from_numbers([[f64::NAN; LANES]; 12]))
     }
 
-    /// The bodies on rounded rims; the other SIMD lanes are NaN.
+    /// The bodies on rounded rims; the SIMD lanes of other bodies are NaN.
     pub fn rounded(bodies: &[Option<Body>]) -> Rounded<[f64; LANES]> {
         Self::gather(bodies).round.unwrap_or_else(|| Rounded::from_numbers([[f64::NAN; LANES]; 10]))
     }

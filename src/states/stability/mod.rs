@@ -1,4 +1,4 @@
-//! Stability of a steady state, by two criteria: smooth and rolling.
+//! Stability of a steady state, by two criteria: on a smooth table, and in rolling.
 //!
 //! ```text
 //! kappa = -d/dtheta [tilting(theta, w1(theta), w3(theta))]/J        tilting, J and the lines w1, w3: `contact::reduced`
@@ -67,7 +67,7 @@ pub fn at_rest(body: &Body, theta: f64, contact: Contact) -> f64 {
     }
 }
 
-/// Tolerance for a steady state: for the sum of the terms of theta'' over the largest term, and for |w2|.
+/// Tolerances for a steady state: of the sum of the terms of theta'' over the largest term, and of |w2| in sqrt(g/R).
 const STEADY: f64 = 1e-6;
 
 /// Squared nutation frequency, in g/R, of any steady state on a frictionless table: the energy at fixed Lz and L3 is
@@ -113,15 +113,15 @@ fn of_state(contact: Contact, body: &Body, y: &State) -> f64 {
     Some(stiffness(contact, body, y)).filter(|kappa| kappa.is_finite()).unwrap_or(f64::NAN)
 }
 
-/// The squared frequency of the nutation about any state, steady or not: minus the derivative of J theta'' along the
-/// lines w1(theta) and w3(theta), over J. The change of J is left out.
+/// The squared frequency, in g/R, of the nutation about any state, steady or not: minus the derivative of J theta''
+/// with respect to theta along the lines w1(theta) and w3(theta), over J. The change of J is left out.
 pub(crate) fn stiffness(contact: Contact, body: &Body, y: &State) -> f64 {
     let (law, angle) = (contact.reduced(body), y.theta.sin_cos());
     let tilting = law.tilting_along(angle, y.w1, y.w3);
     -tilting.slope / law.inertia(|| angle)
 }
 
-/// The least spin w3, in sqrt(g/R), with which a ball is stable upright (theta = 0) on its pole, like a sleeping top.
+/// The least spin w3, in sqrt(g/R), with which a ball is stable upright on its pole (theta = 0), like a sleeping top.
 ///
 /// ```text
 /// rolling   n^2 = 4 ell (I1 + H^2)/(I3 + rho H)^2,   H = ell + rho         smooth   n^2 = 4 ell I1/I3^2

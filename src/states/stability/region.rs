@@ -1,4 +1,4 @@
-//! The region of a point of the map: forbidden, or stable or unstable by each of the two criteria.
+//! The region of a point of the map, that is, of a body at an inclination: forbidden, or stable or unstable by two criteria.
 //!
 //! ```text
 //! code = 4 + [rolling kappa > 0] + 2 [smooth kappa > 0];   1 where n/m < 0,   2 where a sign is not known,   0 elsewhere
@@ -8,7 +8,7 @@ use crate::numbers::Real;
 use crate::numbers::codes::coded;
 
 coded! {
-    /// The region of a point of the theta-ell map. The number is its code on a grid.
+    /// The region of a point of the map of inclination theta and aspect ratio ell. The number is its code in arrays.
     pub enum Region {
         /// Theta is outside (0, pi/2], or the body is impossible.
         Invalid = 0,
@@ -27,7 +27,7 @@ coded! {
     }
 }
 
-/// The code of the [`Region`] of a point, as a number in a lane.
+/// The code of the [`Region`] of a point of the map, in each SIMD lane.
 #[inline(always)]
 pub(super) fn region_of<T: Real>(theta: T, most: T, ell: T, [n, m]: [T; 2], smooth: T, rolling: T) -> T {
     let x = |v: f64| theta.splat(v);

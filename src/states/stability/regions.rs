@@ -1,4 +1,4 @@
-//! The regions of a body at one inclination and at many.
+//! The region of a body at one inclination, and the codes of its regions at many inclinations.
 
 use super::at_rest::Wanted;
 use super::column::Column;

@@ -21,7 +21,7 @@ use crate::states::steady;
 /// that rounding errors cause; a larger one leaves more bodies to the caller.
 const VALUE_DOUBT: f64 = 1.0 / (1_u64 << 44) as f64;
 
-/// A number, and the sum of the sizes of its terms.
+/// A number, and the sum of the absolute values of the terms of which it is the sum.
 #[derive(Clone, Copy)]
 struct Terms {
     value: f64,
@@ -43,7 +43,7 @@ impl Coefficient for Terms {
     }
 }
 
-/// The coefficients of a cubic in T, and for each coefficient the sum of the sizes of its terms.
+/// The coefficients of a cubic in T, and for each coefficient the sum of the absolute values of its terms.
 struct Curve {
     p: [f64; 4],
     sizes: [f64; 4],
@@ -73,8 +73,8 @@ impl Curve {
         if one < other { [one, other] } else { [other, one] }
     }
 
-    /// Adds to `changes` the indices in `tangents` (ascending, not empty) from which on the cubic has another sign than
-    /// before. Returns whether the cubic is negative at the first tangent; None if any sign is uncertain.
+    /// Adds to `changes` the indices in `tangents` (ascending, not empty) at which the cubic changes its sign. Returns
+    /// whether the cubic is negative at the first tangent; None if any sign is uncertain.
     fn signs(&self, tangents: &[f64], changes: &mut Changes, which: u8) -> Option<bool> {
         let start = self.is_negative(tangents[0])?;
         let [one, other] = if self.sizes[2] == 0.0 && self.sizes[3] == 0.0 {
@@ -106,8 +106,8 @@ impl Curve {
     }
 }
 
-/// The index of each change of sign, in ascending order, and the bit of its curve. Each of the four curves changes its
-/// sign at most five times.
+/// The indices of the changes of sign, in ascending order, each with the bit of its polynomial. Each of the four
+/// polynomials changes its sign at most five times.
 struct Changes {
     all: [(usize, u8); 20],
     count: usize,
@@ -126,9 +126,9 @@ impl Changes {
     }
 }
 
-/// Calls `report` with the [`Region`], the first index and the end of each run, and returns true. The body has a sharp
-/// rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is uncertain, the function
-/// returns false without a call.
+/// Calls `report` with the [`Region`], the first index and the end index of each run, and returns true. The body must
+/// have a sharp rim and the range (0, pi/2]; `tangents` are those of ascending inclinations. If a sign is uncertain,
+/// the function returns false without a call.
 pub(crate) fn runs(body: &Body, tangents: &[f64], mut report: impl FnMut(Region, usize, usize)) -> bool {
     if tangents.is_empty() {
         return true;

@@ -8,28 +8,28 @@
 //! folds:   n^2 a c + d A^2 (a c^3 + ell s^3) = 0;  for ell = 0  a^2 + d A^2 = 0;  a ball has none
 //! ridge:   d/dtheta [n (I1 s^2 + I3 (L sigma)^2)/(2 I3 sigma m) + h] = 0,   sigma = s/A
 //! ```
-//! The equations of the folds and of the ridge follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and from
-//! the energy E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. They contain the
-//! moments only as the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold,
+//! The equations of the folds and of the ridge follow from Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019) and
+//! from the energy E = (I1 + I3 ell^2) w1^2/2 + ell cos theta + sin theta of a body whose centre rests. They depend on
+//! the moments only through the ratio I1/I3. A critical body (d = 0 exactly) has rate^2 = 1/sin theta; it has no fold,
 //! and its ridge is at n = -(1 + ell^2)/2.
 //!
-//! Error: 16 ulp times the conditioning of the root in (ell, d), also where d is small.
+//! Error: 16 ulp times the condition number of the root in (ell, d), also where d is small.
 
 use super::BodyPolynomials;
 use super::{MOST, rate};
 use crate::laws::body::Body;
 use crate::methods::roots::{Coefficient, Cubic, Trig};
 
-/// Beyond this aspect ratio (and its square for I1/I3) the coefficients would overflow.
+/// Largest aspect ratio, whose square is the largest I1/I3: for larger ones the coefficients would overflow.
 const LARGEST_ASPECT: f64 = 1e30;
 
-/// The polynomial n = 1 - ell T, which numerator and denominator of the squared rate share.
+/// The polynomial n = 1 - ell T of T = tan theta, which numerator and denominator of the squared rate share.
 pub(crate) fn shared_factor<C: Coefficient>(body: &Body) -> Cubic<C> {
     Cubic::of(1.0) - Cubic::of(body.ell()) * Cubic::tangent()
 }
 
-/// Inclinations in (0, pi/2) of the folds, in ascending order, NaN after the last. At a fold the rate is stationary
-/// along the branch, where two steady states with the same rate merge.
+/// Inclinations in (0, pi/2) of the folds, in ascending order, NaN after the last one. At a fold the rate is stationary
+/// along the branch, and two steady states with the same rate merge.
 ///
 /// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn folds(body: &Body) -> [f64; MOST] {
@@ -44,8 +44,8 @@ pub fn folds(body: &Body) -> [f64; MOST] {
     inclinations_of(body, n * n + d * (Cubic::of(1.0) + ell * t * t * t))
 }
 
-/// Inclinations in (0, pi/2) where the energy of the steady state with the centre at rest is
-/// stationary along the branch, ascending, NaN after the last.
+/// Inclinations in (0, pi/2), in ascending order, where the energy of the steady state with the centre at rest is
+/// stationary along the branch; NaN after the last one.
 ///
 /// All are NaN for `ell` above 1e30 or I1/I3 above 1e60. The error is 16 ulp times the conditioning.
 pub fn ridge(body: &Body) -> [f64; MOST] {
@@ -100,8 +100,8 @@ fn rounded_ridge(body: &Body) -> [f64; MOST] {
     if body.ell() == 0.0 { with_side(body, found) } else { keep_steady(body, found) }
 }
 
-/// Adds pi/2 to the inclinations `found` if the body can be inclined beyond pi/2 and has a steady state there: where
-/// ell = 0 or d = 0 the rate is even about pi/2, and so is stationary there.
+/// Adds pi/2 to the inclinations `found` if the body can be inclined beyond pi/2 and has a steady state at pi/2: where
+/// ell = 0 or d = 0 the rate is an even function about pi/2, and so is stationary there.
 fn with_side(body: &Body, mut found: Vec<f64>) -> [f64; MOST] {
     const SIDE: f64 = core::f64::consts::FRAC_PI_2;
     if body.range() > SIDE {
@@ -126,12 +126,12 @@ pub(crate) fn edges(body: &Body) -> Vec<f64> {
 }
 
 /// The inclinations within the range of a body where a polynomial vanishes and a steady state with the centre at rest
-/// exists, ascending, NaN after the last.
+/// exists, in ascending order, NaN after the last one.
 pub(crate) fn in_range(body: &Body, of: &Trig) -> [f64; MOST] {
     keep_steady(body, of.angles())
 }
 
-/// The inclinations of `found` that lie within the range of a body and have a steady state, NaN after the last.
+/// The inclinations of `found` that lie within the range of a body and have a steady state, NaN after the last one.
 fn keep_steady(body: &Body, found: Vec<f64>) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
     let inside = found.into_iter().filter(|x| *x < body.range()).filter_map(|x| allowed(body, x));
@@ -141,8 +141,8 @@ fn keep_steady(body: &Body, found: Vec<f64>) -> [f64; MOST] {
     theta
 }
 
-/// The inclinations in (0, pi/2) where a cubic in tan theta vanishes and a steady state with the
-/// centre at rest exists, ascending, NaN after the last.
+/// The inclinations in (0, pi/2) where a cubic in tan theta vanishes and a steady state with the centre at rest exists,
+/// in ascending order, NaN after the last one.
 pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
     let mut theta = [f64::NAN; MOST];
     if body.ell() > LARGEST_ASPECT || body.ratio() > LARGEST_ASPECT * LARGEST_ASPECT {
@@ -154,7 +154,7 @@ pub(crate) fn inclinations_of(body: &Body, cubic: Cubic) -> [f64; MOST] {
     theta
 }
 
-/// Returns `theta`, or the nearest of its neighbours among the doubles at which a steady state exists: right at the
+/// Returns `theta`, or the nearest of its neighbours among the doubles at which a steady state exists, or None: at the
 /// limit of the forbidden band the double nearest to a root may lie on the wrong side.
 pub(crate) fn allowed(body: &Body, theta: f64) -> Option<f64> {
     let (below, above) = (theta.next_down(), theta.next_up());

@@ -3,7 +3,7 @@
 use crate::Body;
 use core::f64::consts::FRAC_PI_2;
 
-/// A tube and an inclination: anywhere on the map up to ell = 3, or of any size and near an inclination where
+/// A random tube and an inclination: anywhere on the map up to ell = 3, or of any size and near an inclination where
 /// digits are lost.
 pub fn drawn(i: u32) -> (Body, f64) {
     let part = |k: f64| (f64::from(i) * k).fract();

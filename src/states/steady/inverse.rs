@@ -25,7 +25,7 @@ use crate::methods::roots;
 use crate::numbers::{Real, Sum};
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Largest r rate^2 and ell rate^2 for which no coefficient overflows.
+/// Largest (I1/I3) rate^2 and ell rate^2 for which no coefficient overflows.
 const LARGEST: f64 = 1e300;
 
 /// The inclinations in (0, pi/2) of all steady states with the centre at rest that have the reduced rate `rate` >= 0:
@@ -72,7 +72,7 @@ fn solve(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     Some(theta)
 }
 
-/// The inclinations of [`solve`] for a rounded rim.
+/// The inclinations of a body with a rounded rim that have a rate with the square `speed`; None where [`count`] is None.
 fn rounded_inclinations(body: &Body, speed: f64) -> Option<[f64; MOST]> {
     let (a, rho, ell, d) =
         (body.rim_sum(), Sum::from(body.fillet()), Sum::from(body.ell()), body.excess_sum());

@@ -50,13 +50,13 @@ use crate::laws::body::Body;
 use crate::laws::state::State;
 use crate::numbers::{Lane, Real, Short, SinCos, Sum, in_lanes, level, sincos};
 
-/// The largest number of inclinations in any result: 3 for a sharp rim, 5 for a rounded one.
+/// The largest number of inclinations in any result: 3 for a sharp rim, 5 for a rounded rim.
 pub const MOST: usize = 5;
 
 const HALF_PI: f64 = core::f64::consts::FRAC_PI_2;
 
-/// The sign of `n` or of `m` is unknown below this bound, relative to the terms that were subtracted: the errors of
-/// sine and cosine together.
+/// The sign of `n` or of `m` is unknown below this bound, relative to the terms whose difference they are: it is the
+/// error of sine and cosine together.
 const UNSURE: f64 = 1.0 / (1_u64 << 55) as f64;
 
 /// The terms of the squared rate of a sharp rim, n and m, with more digits than [`quick_terms`] has.
@@ -71,7 +71,7 @@ pub(crate) fn terms<T: Real>(angle: &SinCos<T>, ell: T, excess: Sum<T>) -> RateT
     RateTerms { n, m, radius, sine: angle.sin }.nan_where_small(limits)
 }
 
-/// The numerator n = cos theta - ell sin theta, with an error below a quarter ulp of the cosine.
+/// The numerator n = cos theta - ell sin theta of the squared rate, with an error below a quarter ulp of the cosine.
 #[inline(always)]
 fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
     let (s, c) = (angle.sin, angle.cos);
@@ -83,7 +83,7 @@ fn numerator<T: Real>(angle: &SinCos<T>, ell: T) -> Sum<T> {
 /// Reduced rotation rate at an inclination, NaN where no steady state exists. The quick terms give the rate; the terms
 /// with more digits are computed only where a sign is uncertain.
 ///
-/// The closure for uncertain lanes owns its inputs: borrowed inputs would be kept in memory at every point.
+/// The closure for uncertain SIMD lanes owns its inputs: borrowed inputs would be kept in memory at every point.
 #[inline(always)]
 pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Sum<T>) -> T {
     let of = quick_terms(angle, ell, excess);
@@ -98,7 +98,7 @@ pub(crate) fn rate_lanes<T: Lane>(theta: T, angle: &Short<T>, ell: T, excess: Su
     of.where_certain(careful, rate)
 }
 
-/// The rate of [`rate_lanes`] for callers that rarely need it, kept apart from their frequent work.
+/// The rate of [`rate_lanes`] for callers that rarely need it, compiled apart from their frequent work.
 #[inline(always)]
 pub(crate) fn rare_rate<T: Lane>(theta: T, ell: T, excess: Sum<T>) -> T {
     theta.aside(
@@ -145,7 +145,7 @@ pub fn rate(body: &Body, theta: f64) -> f64 {
     )
 }
 
-/// The terms of a rounded rim, compiled for the best SIMD level of this machine, which has a fused product.
+/// The terms of the squared rate of a rounded rim, compiled for the best SIMD level of this machine, which has a fused product.
 fn terms_of(body: &Body, theta: f64) -> RateTerms<f64> {
     let (a, excess) = (body.rim_sum(), body.excess_sum());
     let of = RoundedParts { ell: body.ell(), rho: body.fillet(), a, excess };
@@ -193,7 +193,7 @@ pub fn rests(body: &Body, y: &State) -> bool {
     })
 }
 
-/// The steady state with the centre at rest that has this rate: w3 = (L/A) w1.
+/// The steady state with the centre at rest that has this reduced rate at this inclination: w3 = (L/A) w1.
 pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     let speed = rate / body.i3().sqrt();
     let (rim, angle) = (body.shape().rim, theta.sin_cos());
@@ -206,7 +206,7 @@ pub(crate) fn turning(body: &Body, theta: f64, rate: f64) -> State {
     State { theta, w1, w2: 0.0 * theta, w3 }
 }
 
-/// Returns `theta` if it lies within the range of the body.
+/// Returns `theta` if it lies within the range of the body, else an error.
 fn check(body: &Body, theta: f64) -> Result<f64, Error> {
     let expected = if body.range() == HALF_PI {
         "0 < theta <= pi/2 (radians)"
@@ -241,7 +241,7 @@ pub fn circular(body: &Body, theta: f64, precession: f64) -> Result<State, Error
 /// such a steady state. The radius is positive where the centre moves against e2, as for a coin that rolls round a wide
 /// circle and leans inward, and negative where the centre moves along e2.
 ///
-/// The circular state is that of [`circular`]. Error: 8 ulp, times the share of the largest of the terms lever, k
+/// The state is then that of [`circular`]. Error: 8 ulp, times the share of the largest of the terms lever, k
 /// depth/radius and k radius in their sum.
 ///
 /// # Errors
@@ -259,7 +259,7 @@ pub fn precession_of_radius(body: &Body, theta: f64, radius: f64) -> Result<f64,
 /// Both precessions phi' of circular steady states with this spin w3 about the axis, the slower one first; NaN without
 /// such a state. For w3 = 0 the two are opposite.
 ///
-/// The circular state is that of [`circular`]. Error: 8 ulp for the faster precession; for the slower one this is
+/// The states are then those of [`circular`]. Error: 8 ulp for the faster precession; for the slower one this is
 /// multiplied by the cancellation between k^2 w3^2 and 4 lever n.
 ///
 /// # Errors

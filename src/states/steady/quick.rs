@@ -13,7 +13,7 @@
 
 use crate::numbers::{Lane, Real, Short, Sum, short_sincos};
 
-/// Relative to the terms that were subtracted, n or m is uncertain below this bound.
+/// n or m is uncertain below this bound, relative to the terms whose difference they are.
 const DOUBT: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// A theta below this bound is uncertain, because products with its sine would lose digits.
@@ -25,8 +25,8 @@ pub(crate) fn quick_angle<T: Real>(theta: T) -> Short<T> {
     short_sincos(theta, TINY)
 }
 
-/// Numerator and denominator as sums, and the size below which their signs are uncertain. The low part of the
-/// denominator does not contain the rounding error of its own last addition.
+/// Numerator and denominator of the squared rate as sums, and the size below which their signs are uncertain. The low
+/// part of the denominator does not contain the rounding error of its own last addition.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QuickTerms<T> {
     n: Sum<T>,
@@ -50,7 +50,7 @@ pub(crate) fn quick_terms<T: Real>(angle: &Short<T>, ell: T, excess: Sum<T>) -> 
 }
 
 impl<T: Lane> QuickTerms<T> {
-    /// Whether any lane is uncertain.
+    /// Whether n or m is uncertain in any SIMD lane.
     #[inline(always)]
     pub fn in_doubt(&self) -> bool {
         self.n.hi.abs().any_lt(self.limit) | self.m.hi.abs().any_lt(self.limit)
@@ -71,7 +71,7 @@ impl<T: Real> QuickTerms<T> {
         [self.n.hi + self.n.lo, self.m.hi + self.m.lo]
     }
 
-    /// The squared rate; it is negative where no steady state exists.
+    /// The squared rate n/(m s); it is negative where no steady state exists.
     #[inline(always)]
     pub fn square(&self, sin: Sum<T>) -> T {
         let (n, m) = (self.n, self.m);
@@ -85,8 +85,8 @@ impl<T: Real> QuickTerms<T> {
     }
 }
 
-/// Whether the squared rate may be below `low` or above `high` in any lane, to forty bits and without a
-/// division. The result is true wherever the square is outside, and also where cancellation leaves too few
+/// Whether the squared rate may be below `low` or above `high` in any SIMD lane, to forty bits and without a division.
+/// The result is true wherever the squared rate is outside of the bounds, and also where cancellation leaves too few
 /// digits to exclude it.
 #[inline(always)]
 pub(crate) fn may_exceed<T: Lane>(angle: &Short<T>, ell: T, excess: T, [low, high]: [T; 2]) -> bool {
@@ -136,10 +136,10 @@ fn sizes<T: Real>(least: T, most: T) -> [T; 2] {
     [zero.select_lt(most, least, -most), zero.select_lt(most, most, -least)]
 }
 
-/// Relative to the terms that were subtracted, n and m have at least forty bits above this bound.
+/// n and m above this bound, relative to the terms whose difference they are, have at least forty bits.
 const FORTY_BIT_SHARE: f64 = 1.0 / 4096.0;
 
-/// The bounds for `may_exceed`: the least and the greatest square so far, moved closer together by more than its error.
+/// The bounds for `may_exceed`: the least and the greatest squared rate so far, moved closer together by more than its error.
 pub(crate) fn bounds_beyond_error([least, greatest]: [f64; 2]) -> [f64; 2] {
     const BOUNDS_MARGIN: f64 = 1.0 / (1_u64 << 36) as f64;
     [least * (1.0 + BOUNDS_MARGIN), greatest * (1.0 - BOUNDS_MARGIN)]

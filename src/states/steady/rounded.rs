@@ -20,8 +20,8 @@
 use crate::laws::body::Rim;
 use crate::numbers::{Lane, Real, SinCos, Sum, long_sin_cos_falls};
 
-/// Relative to the terms that were subtracted, a sign is not known below these bounds: the errors of sine and cosine,
-/// their errors with twice the digits, and the errors of sums of two doubles.
+/// Three bounds, relative to the terms that were subtracted, below which a sign is not known: the errors of sine and
+/// cosine, their errors with twice the digits, and the errors of sums of two doubles.
 const ROUNDED_UNSURE: f64 = 1.0 / (1_u64 << 54) as f64;
 const UNSURE_LONG: f64 = 1.0 / (1_u128 << 98) as f64;
 const UNSURE_SUM: f64 = ROUNDED_UNSURE * ROUNDED_UNSURE;
@@ -39,13 +39,13 @@ pub(crate) struct RateTerms<T> {
     /// n and m, for a ball divided by the sine; each is NaN where its sign is not known.
     pub n: Sum<T>,
     pub m: Sum<T>,
-    /// A, for a ball divided by the sine.
+    /// The radius A of the circle of contact, for a ball divided by the sine.
     pub radius: Sum<T>,
-    /// The sine, for a ball 1.
+    /// The sine of theta; for a ball 1.
     pub sine: Sum<T>,
 }
 
-/// The numbers of a body that enter the terms: ell, rho, a and d.
+/// The numbers of a body that enter the terms of the squared rate: ell, rho, a and d.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoundedParts<T> {
     pub ell: T,
@@ -55,7 +55,7 @@ pub(crate) struct RoundedParts<T> {
 }
 
 impl RoundedParts<f64> {
-    /// The terms at one inclination.
+    /// The terms of the squared rate at one inclination.
     #[inline(always)]
     pub fn terms(&self, theta: f64, angle: &SinCos<f64>) -> RateTerms<f64> {
         let (terms, spare) = self.quick(angle);
@@ -68,7 +68,8 @@ impl RoundedParts<f64> {
 }
 
 impl<T: Lane> RoundedParts<T> {
-    /// The terms, with twice the digits if any lane needs them, and 1 in the SIMD lanes that need them, 0 elsewhere.
+    /// The terms of the squared rate, with twice the digits if any SIMD lane needs them; and 1 in the lanes that need
+    /// them, 0 elsewhere.
     #[inline(always)]
     pub fn carefully(&self, theta: T, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let (terms, bend) = self.terms_and_size(angle);
@@ -91,14 +92,14 @@ impl<T: Real> RoundedParts<T> {
         yes.splat(0.0).select_lt(self.a.hi, no, yes)
     }
 
-    /// The terms by few operations, and a number that is negative where m may have too few digits.
+    /// The terms of the squared rate by few operations, and a number that is negative where m may have too few digits.
     #[inline(always)]
     pub fn quick(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let (terms, bend) = self.terms_and_size(angle);
         (self.without_uncertain_signs(terms, angle, bend), terms.m.hi.abs() * bend.splat(BENT) - bend)
     }
 
-    /// The terms, also where their signs are uncertain, and |d rho s c|, for a ball divided by the sine.
+    /// The terms of the squared rate, also where their signs are uncertain, and |d rho s c|, for a ball divided by the sine.
     #[inline(always)]
     fn terms_and_size(&self, angle: &SinCos<T>) -> (RateTerms<T>, T) {
         let Self { ell, rho, a, excess } = *self;
@@ -134,7 +135,7 @@ impl<T: Real> RoundedParts<T> {
         of.nan_where_small([unsure * lever.min(out.abs()), unsure.fma(lever + bend, sum)])
     }
 
-    /// 1 in the lanes where m has too few digits for the bound with kappa_c, 0 elsewhere.
+    /// 1 in the SIMD lanes where m has too few digits for an error below 2 (1 + kappa_c) ulp, 0 elsewhere.
     #[inline(always)]
     fn where_digits_lack(&self, theta: T, (s, c): (T, T), of: &RateTerms<T>, bend: T) -> T {
         let (zero, one) = (s.splat(0.0), s.splat(1.0));
@@ -149,7 +150,8 @@ impl<T: Real> RoundedParts<T> {
         (s.splat(BENT) * (m.abs() + steep)).select_lt(bend, one, zero)
     }
 
-    /// The terms with twice the digits. The form of m keeps the digits of 1 - |cos| or 1 - sin, whichever is small:
+    /// The terms of the squared rate with twice the digits. The form of m keeps the digits of 1 - |cos| or 1 - sin,
+    /// whichever is small:
     ///
     /// ```text
     /// next to pi/2   m = c (a + d - d rho (1 - s)) - ell s;   elsewhere, with w the sign of the cosine,
@@ -187,26 +189,26 @@ impl<T: Real> RateTerms<T> {
         Self { n, m, ..self }
     }
 
-    /// `yes` where the sine is so small that it is scaled, else 1.
+    /// Returns `yes` where the sine is so small that it is scaled, else 1.
     #[inline(always)]
     fn if_small(&self, yes: f64) -> T {
         let sine = self.sine.hi;
         sine.select_lt(sine.splat(SMALL_SINE), sine.splat(yes), sine.splat(1.0))
     }
 
-    /// The steady rate for theta in (0, `most`]; NaN elsewhere.
+    /// The reduced rate of the steady state for theta in (0, `most`]; NaN elsewhere.
     #[inline(always)]
     pub fn rate(&self, theta: T, most: T) -> T {
         self.scaled(theta, most).sqrt() * self.if_small(f64::from_bits(0x4F90_0000_0000_0000)) // 2^250
     }
 
-    /// The square of the steady rate, for comparisons only: it is infinite where theta is subnormal.
+    /// The square of the reduced rate, for comparisons only: it is infinite where theta is subnormal.
     #[inline(always)]
     pub fn square(&self, theta: T, most: T) -> T {
         self.scaled(theta, most) * self.if_small(SMALL_SINE_SCALE)
     }
 
-    /// The square of the steady rate, divided by 2^500 where the sine is below `SMALL_SINE`.
+    /// The square of the reduced rate, divided by 2^500 where the sine is below `SMALL_SINE`.
     #[inline(always)]
     fn scaled(&self, theta: T, most: T) -> T {
         let x = |v: f64| theta.splat(v);

@@ -12,7 +12,7 @@
 
 use crate::numbers::{Narrow, Short};
 
-/// Relative to the terms that were subtracted, n or m has too few digits below this bound.
+/// n or m has too few digits below this bound, relative to the terms whose difference they are.
 const NEAR: f64 = 1.0 / (1_u64 << 18) as f64;
 
 /// Where theta or n/m is below this bound, the rate may leave the range of single numbers.
@@ -53,7 +53,7 @@ mod tests {
     use crate::numbers::{LANES, Pair, Sum, in_lanes, level};
     use fearless_simd::{Simd, SimdFrom, f64x8};
 
-    /// The rate in single precision of sixteen tubes and inclinations in lanes.
+    /// The rate in single precision of sixteen tubes and inclinations in SIMD lanes.
     #[inline(always)]
     fn sixteen<S: Simd>(simd: S, of: &[(Body, f64)]) -> [f32; 2 * LANES] {
         let lanes = |f: fn(&(Body, f64)) -> f64| {

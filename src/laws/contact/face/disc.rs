@@ -22,11 +22,11 @@ use crate::numbers::{here, in_lanes, level};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 use fearless_simd::{SimdBase, f64x8};
 
-/// The ratio s/v below which the means are series, and the number of terms.
+/// The ratio s/v below which the means are series, and the number of terms of the series.
 const SERIES_BELOW: f64 = 0.1;
 const MEAN_TERMS: usize = 9;
 
-/// The means over the whole disc.
+/// The means over the whole disc, for the speed v of the centre and the speed s of the rim.
 pub(super) fn whole(v: f64, s: f64) -> WholeMeans {
     let spins = v <= s;
     let q = if spins { v / s } else { s / v };
@@ -81,7 +81,7 @@ pub(super) fn whole(v: f64, s: f64) -> WholeMeans {
     }
 }
 
-/// What a part of the disc gives at the speeds `v` and `s` for a height lam.
+/// The result for a pressed part of the disc, at the speeds `v` of the centre and `s` of the rim, for lam = mu Z/a.
 pub(super) fn on_disc(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFace {
     in_lanes!(
         level(),
@@ -90,8 +90,8 @@ pub(super) fn on_disc(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFa
     )
 }
 
-/// A place near which the integrand has a singularity, at this distance to the side of the real axis. A sharp place is
-/// an end of panels.
+/// A place on the real axis near which the integrand has a singularity, at this distance from the axis. At a sharp
+/// place a panel ends.
 #[derive(Clone, Copy)]
 struct Singular {
     at: f64,
@@ -99,12 +99,12 @@ struct Singular {
     sharp: bool,
 }
 
-/// The largest length of a panel over its distance from a singularity, the least such distance, and the longest panel.
+/// The largest ratio of a panel's length to its distance from a singularity, the least such distance, and the longest panel.
 const GRADE: f64 = 4.0;
 const NEAREST_SINGULARITY: f64 = 1e-8;
 const WIDE_PANEL: f64 = 1.6;
 
-/// The end of the panel that begins at `left`.
+/// The end of the panel of the quadrature that begins at `left`.
 fn panel_end(left: f64, last: f64, singular: &[Singular]) -> f64 {
     let mut right = last.min(left + WIDE_PANEL);
     for of in singular {
@@ -120,7 +120,7 @@ fn panel_end(left: f64, last: f64, singular: &[Singular]) -> f64 {
     right
 }
 
-/// The integrals over the part of the disc.
+/// The integrals over the pressed part of the disc, at the speeds v of the centre and s of the rim.
 #[inline(always)]
 fn disc_integrals<T: SideBySide>(like: T, part: &PressedPart, v: f64, s: f64) -> FaceIntegrals<T> {
     let number = here(

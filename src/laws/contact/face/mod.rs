@@ -7,11 +7,12 @@
 //! end ratio   v/s = k at which a slide ends:   G_x = k gg/i3,   G_x > k gg/i3 above
 //! ```
 //! The moment of friction about the centre of mass tilts the pressure, and the tilt changes friction: two equations for
-//! X. The pressure is that of a stiff, damped elastic bed: linear in the place, and zero where that is negative. While the
-//! whole face presses, X is in closed form; otherwise Newton's method finds the width and the direction of the pressed
-//! part. For lam > 1 the body topples above a fold of the solutions, whose ratio v/s is found once.
+//! X. The pressure is that of a stiff, damped elastic bed: linear in the place, and zero where that is negative. While
+//! the whole face presses, X is in closed form; otherwise Newton's method finds the width and the direction of the
+//! pressed part. For lam > 1 the body topples above a limit of v/s, a fold of the solutions, which is computed once for
+//! each face.
 //!
-//! Error: see [`ring`] and [`disc`]; measured beside quadrature of 30 digits (`face_means.csv`).
+//! Error: see [`ring`] and [`disc`]; compared with quadrature of 30 digits (`face_means.csv`).
 
 mod disc;
 mod part;
@@ -26,26 +27,26 @@ coded! {
     /// The model of the pressure of the table on a face, since the pressure on a rigid face is not determined.
     #[derive(Default)]
     pub enum Face {
-        /// On its rim alone, as below a tube, a can or a coin: the default.
+        /// The face presses on its rim alone, as below a tube, a can or a coin: the default.
         #[default]
         Ring = 0,
-        /// On the whole face, as below a puck or a lapped end.
+        /// The whole face presses, as below a puck or a lapped end.
         Disc = 1,
     }
 }
 
-/// Friction over mu N, and its couple over mu a N, of a face that spins counterclockwise.
+/// Friction over mu N, and its couple over mu a N, on a face that spins counterclockwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FaceForce {
-    /// Along the velocity, and to the left of it.
+    /// The force `along` the velocity, and the force `across`, to the left of it.
     pub along: f64,
     pub across: f64,
     pub couple: f64,
-    /// The centre of the pressure, over a: along the velocity, and to the left of it.
+    /// The centre of the pressure relative to the axis, over a: along the velocity, and to the left of it.
     pub centre: [f64; 2],
 }
 
-/// The friction of a face under Coulomb's law.
+/// The friction of a face under Coulomb's law, with lam = mu Z/a.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FaceFriction {
     form: Face,
@@ -63,7 +64,7 @@ impl FaceForce {
         Self { along, across, couple: found.couple, centre }
     }
 
-    /// At the point of the rim where the slip is outward, for s/v.
+    /// The friction of a pressure at a single point of the rim, where the slip is outward; q = s/v.
     fn at_a_point(q: f64, lam: f64) -> Self {
         let [along, across] = [((1.0 - q) * (1.0 + q)).sqrt(), q];
         let centre = [lam * along, lam * across];
@@ -71,7 +72,7 @@ impl FaceForce {
     }
 }
 
-/// A part whose friction is along X, and the lam of which that is a solution.
+/// A pressed part whose friction is along X, and the lam for which this part is a solution.
 #[derive(Debug, Clone, Copy)]
 struct OnCurve {
     part: PressedPart,
@@ -79,33 +80,34 @@ struct OnCurve {
     determinant: f64,
 }
 
-/// Most steps of Newton's method, which double the digits, and the relative step that is the last one.
+/// Most steps of Newton's method, which double the digits; and the relative size below which a step is the last one.
 const STEPS_TO_PART: usize = 60;
 const LAST_STEP: f64 = 1e-8;
-/// The ratios between which an end ratio is sought.
+/// The ratios v/s between which the ratio at the end of a slide is sought.
 const SLOW_END: f64 = 1e-5;
 const FAST_END: f64 = 1e6;
-/// Below this lam there is one centre of the pressure for each ratio.
+/// Below this lam there is only one centre of the pressure for each ratio v/s.
 const UNIQUE_BELOW: f64 = 0.97;
-/// How far the centre of the pressure moves in a step along a branch.
+/// Largest distance, over a, that the centre of the pressure moves in a step along one branch of solutions.
 const SAME_BRANCH: f64 = 0.02;
-/// The largest root of the ratio of a fold less 1, and the relative accuracy of its place, whose square is that of lam.
+/// The largest sqrt(v/s - 1) at a fold, and the relative accuracy of its place; lam there is accurate to the square of that.
 const WIDEST_FOLD: f64 = 0.37;
 const FOLD_STEP: f64 = 1e-7;
-/// The last turn of a direction, and the ratio of widths in a search for the widest part.
+/// In the search for a pressed part: the least turn of its direction, the ratio of successive widths, and the least width.
 const TURN: f64 = 1e-12;
 const NARROWER: f64 = 0.5;
 const NARROWEST: f64 = 1e-9;
-/// The ratio of speeds, less 1, of the part near the point to which a disc shrinks, and the ratios between such parts.
+/// 1 - v/s of the part from which the search goes to the point to which a pressed part shrinks, and the ratio of
+/// successive values.
 const NEAR_POINT: f64 = 1e-3;
 const NEARER: f64 = 0.1;
-/// A slide with lam = 1 presses a point beyond this ratio.
+/// A slide with lam = 1 and v/s beyond this presses at a point.
 const A_POINT_BEYOND: f64 = 1.2;
-/// A part of this width is a point.
+/// A pressed part of less than this width is a point.
 const POINT: f64 = 1e-24;
 
 impl FaceFriction {
-    /// The friction of a face whose centre of mass is lam a/mu above it.
+    /// The friction of a face of radius a whose centre of mass is lam a/mu above it.
     pub fn new(form: Face, lam: f64) -> Self {
         let mut friction = Self { form, lam, fold: f64::INFINITY, near: None };
         if lam > 1.0 {
@@ -118,13 +120,14 @@ impl FaceFriction {
         friction
     }
 
-    /// The ratio of `v` to `s` above which the body topples.
+    /// The ratio of the speed `v` of the centre to the speed `s` of the rim above which the body topples.
     pub fn fold(&self) -> f64 {
         self.fold
     }
 
-    /// The force at the speed `v` of the centre and the speed `s` of the rim; none where the body topples. Where there
-    /// are several centres of the pressure, that next to the `last` one, else the one nearest to the axis.
+    /// The force at the speed `v` of the centre and the speed `s` of the rim; None where the body topples. Where there
+    /// are several centres of the pressure, the force of the one next to `last`, or without `last` of the one nearest
+    /// to the axis.
     pub fn at(&self, v: f64, s: f64, last: Option<[f64; 2]>) -> Option<FaceForce> {
         let lam = self.lam;
         if s == 0.0 {
@@ -167,18 +170,18 @@ impl FaceFriction {
         found.or_else(|| (lam <= 1.0 && s <= v).then(|| FaceForce::at_a_point(s / v, lam)))
     }
 
-    /// Whether the part of a disc that presses shrinks to a point where slide and spin are as fast as each other.
+    /// Whether the part of a disc that presses shrinks to a point as v/s approaches 1.
     pub fn shrinks(&self) -> bool {
         self.near.is_some()
     }
 
-    /// The part that presses, from the whole face, or else from ever narrower parts.
+    /// The part that presses, by a search from the whole face, or else from ever narrower parts.
     fn first_part(&self, whole: PressedPart, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         self.solved(whole, v, s).or_else(|| self.narrowed(v, s))
     }
 
-    /// The force where the part that presses shrinks to a point: its width is in proportion to the ratio of speeds less 1,
-    /// and its direction tends to the side with the root of that.
+    /// The force near v/s = 1, where the part that presses shrinks to a point: its width is in proportion to 1 - v/s,
+    /// and the angle from its direction to the side goes as the root of 1 - v/s.
     fn near_point(&self, v: f64, s: f64) -> Option<FaceForce> {
         let (mut part, short) = (self.near?, (s - v) / s);
         let mut at = NEAR_POINT;
@@ -196,7 +199,7 @@ impl FaceFriction {
         None
     }
 
-    /// The width of the part whose centre of pressure is this far from the axis, nearly.
+    /// The width, approximately, of the part whose centre of pressure is at this distance from the axis, over a.
     fn width_of(&self, centre: f64) -> f64 {
         let short = 1.0 - centre;
         let (first, last) = match self.form {
@@ -206,7 +209,7 @@ impl FaceFriction {
         (short * (first - last * short)).clamp(1e-18, 1.0)
     }
 
-    /// The part that presses, by Newton's method from another one.
+    /// The part that presses, by Newton's method from a nearby part; None if the method fails.
     fn solved(&self, mut arc: PressedPart, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         let mut close = false;
         for _ in 0..STEPS_TO_PART {
@@ -224,7 +227,7 @@ impl FaceFriction {
             if !(width.is_finite() && angle.is_finite()) {
                 return None;
             }
-            // The next step is below rounding, as each has the square of the one before.
+            // The next step would be below rounding, since each relative step is the square of the one before.
             close = width.abs() <= LAST_STEP * arc.width
                 && angle.abs() <= LAST_STEP * arc.angle.min(arc.off).abs();
             let bounded = (arc.width + width).max(0.2 * arc.width).min(1.0) - arc.width;
@@ -233,7 +236,8 @@ impl FaceFriction {
         None
     }
 
-    /// The same, from the first of ever narrower parts whose lam is not smaller. It is negative beyond infinity.
+    /// The part that presses, by Newton's method from the first of ever narrower parts that belongs to a larger lam
+    /// than this face's. A negative lam lies beyond infinity.
     fn narrowed(&self, v: f64, s: f64) -> Option<(PressedPart, PressedFace)> {
         let mut wide = self.on_curve(PressedPart::towards(1.0, [1.0, 0.7]), v, s);
         let mut step = 0.2;
@@ -255,7 +259,7 @@ impl FaceFriction {
         None
     }
 
-    /// The direction of a part of this width whose friction is along X, and the lam that belongs to it.
+    /// The direction of a part of this width whose friction is along X, and the lam for which this part is a solution.
     fn on_curve(&self, part: PressedPart, v: f64, s: f64) -> OnCurve {
         let mut found = OnCurve { part, lam: 1.0, determinant: 0.0 };
         for _ in 0..STEPS_TO_PART {
@@ -278,21 +282,21 @@ impl FaceFriction {
         }
     }
 
-    /// The fold: the ratio whose largest lam, over all parts that press, is this one. The largest lam is smooth in the
-    /// root of the ratio less 1.
+    /// The fold, above which the body topples: the ratio v/s at which lam of this face is the largest lam of all
+    /// pressed parts. That largest lam is a smooth function of sqrt(v/s - 1).
     fn highest_ratio(&self) -> f64 {
         let miss = |y: f64| self.largest_lam(1.0 + y * y) - self.lam;
         let near = miss(0.0);
         if near <= 0.0 {
             return 1.0;
         }
-        // Beyond, lam = 1 belongs to a point.
+        // At larger ratios lam = 1 belongs to pressure at a point.
         let y = crossing(miss, 0.0, WIDEST_FOLD, near, 1.0 - self.lam);
         1.0 + y * y
     }
 
-    /// The largest lam that has a centre of the pressure at the ratio `k`. At a given width the direction of X follows from
-    /// the force across, and lam from that along.
+    /// The largest lam for which the ratio v/s = `k` has a centre of the pressure. At a given width the direction of X
+    /// follows from the force across X, and lam from the force along X.
     fn largest_lam(&self, k: f64) -> f64 {
         let mut part = PressedPart::towards(1.0, [1.0, 0.7]);
         let mut on_curve = |width: f64| {
@@ -311,7 +315,7 @@ impl FaceFriction {
                 return 1.0;
             }
         }
-        // Regula falsi, as in `crossing`, but only as far as the square needs.
+        // Regula falsi, as in `crossing`, but only to the accuracy whose square lam needs.
         let (mut a, mut b, mut at_a, mut at_b) = (width, NARROWER * width, wide.1, narrow.1);
         let mut best = narrow;
         while (a - b).abs() > FOLD_STEP * b {
@@ -332,9 +336,9 @@ impl FaceFriction {
     }
 }
 
-/// The friction of viscous film below a ring, F = -c u over its length: F over -1 and its couple over -1, for the speed
-/// `v` of the centre and the rate `w` of a body of radius `a` whose centre of mass is `height` above the face. It topples
-/// where the centre of the pressure is outside of the ring.
+/// The friction of a viscous film below a ring, F = -c u over its length, for the speed `v` of the centre and the rate
+/// `w` of a body of radius `a` whose centre of mass is `height` above the face: minus the force and minus its couple.
+/// The body topples where the centre of the pressure is outside of the ring.
 pub(crate) fn viscous(c: f64, [a, height]: [f64; 2], v: f64, w: f64) -> FaceForce {
     let tilt = c * height * w;
     let along = c * v / (1.0 + tilt * tilt);
@@ -349,9 +353,9 @@ pub(crate) fn viscous(c: f64, [a, height]: [f64; 2], v: f64, w: f64) -> FaceForc
 }
 
 /// The ratio of the speed of the centre to the speed a |w| of the rim with which a body comes to rest that slides and
-/// spins on its face: 0 or infinity if one of them ends before the other in proportion. None if the body topples on the
-/// way there. `lam` is the coefficient of friction times the height of the centre of mass over the radius of the face,
-/// `i3` the axial moment over the square of this radius. Error: 1e-12.
+/// spins on its face; 0 or infinity if one speed vanishes faster than the other. None if the body topples before it
+/// comes to rest. `lam` is the coefficient of friction times the height of the centre of mass over the radius of the
+/// face, `i3` the axial moment of inertia over M times the square of this radius. Error: 1e-12.
 ///
 /// ```
 /// use spincyl::contact::{Face, end_ratio};
@@ -362,7 +366,7 @@ pub(crate) fn viscous(c: f64, [a, height]: [f64; 2], v: f64, w: f64) -> FaceForc
 /// ```
 pub fn end_ratio(form: Face, lam: f64, i3: f64) -> Option<f64> {
     let friction = FaceFriction::new(form, lam);
-    // The growth of the ratio, over the speed of the centre where that is small.
+    // The growth of the ratio, divided by the speed of the centre where that is small.
     let mut last = None;
     let mut growth = |k: f64| {
         let force = friction.at(k.min(1.0), if k > 1.0 { 1.0 / k } else { 1.0 }, last)?;

@@ -6,8 +6,8 @@
 //! d<f>/d width = 2 (int f - <f> int 1)/int p,   dG/dc = int (across) u/|u|/int p,   dX/dc = |X| across
 //! couple   gg = <(1 - cos d) across> - <(1 - along) sin d>,   as <sin d> = 0 of a solution
 //! ```
-//! All of these are integrals over the same nodes, so that Newton's method has exact derivatives. In this frame the
-//! sums are of terms as small as themselves for a slow spin and for a small part.
+//! All quantities above are integrals over the same nodes, so that Newton's method has exact derivatives. In the frame
+//! of X the terms are as small as their sums for a slow spin and for a small part.
 
 use crate::numbers::side_by_side::SideBySide;
 use crate::numbers::{LANES, Pair, here};
@@ -28,7 +28,7 @@ pub(super) const GAUSS_WEIGHTS: [f64; 24] = [
     0.08619016153195327, 0.0733464814110803, 0.05929858491543678, 0.04427743881741981, 0.028531388628933663, 0.0123412297999872,
 ];
 
-/// A part of the face that presses: `width` = sin^2(b/2), and the angle c of its middle from v, with pi/2 - c.
+/// A part of the face that presses: its width sin^2(b/2), the angle c of its middle from the velocity v, and pi/2 - c.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PressedPart {
     pub width: f64,
@@ -37,31 +37,32 @@ pub(super) struct PressedPart {
 }
 
 impl PressedPart {
-    /// The part turned and widened by these amounts.
+    /// The part with this increase of its width and this increase of its angle.
     pub fn moved(&self, width: f64, angle: f64) -> Self {
         Self { width: self.width + width, angle: self.angle + angle, off: self.off - angle }
     }
 
-    /// The part in the direction of this vector.
+    /// The part of this width whose middle is in the direction of this vector from the axis.
     pub fn towards(width: f64, centre: [f64; 2]) -> Self {
         Self { width, angle: centre[1].atan2(centre[0]), off: centre[0].atan2(centre[1]) }
     }
 }
 
 const INTEGRALS: usize = 11;
-/// Numbers that are summed side by side: eight on every machine, so that each adds in the same order.
+/// Numbers that are summed side by side: always eight, so that sums are added in the same order on every machine.
 pub(super) type ArcSides = Pair<Pair<Pair<f64>>>;
 /// Eight zeros.
 pub(super) const ZEROS: ArcSides =
     Pair(Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)), Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)));
 
-/// FaceIntegrals over a part, of numbers in lanes.
+/// Sums of integrals over a pressed part, in SIMD lanes.
 pub(super) struct FaceIntegrals<T> {
     sums: [T; INTEGRALS],
 }
 
-/// A node: its weight, the pressure, 1 - along and across of its place, and sin d and 1 - cos d of its slip. Along and
-/// across are the directions of X.
+/// The terms at one node of the quadrature: its weight, the pressure, 1 - along and across of its place, and sin d and
+/// 1 - cos d of its slip. Here along and across are components along X and across it, and d is the angle of the slip
+/// from X.
 #[derive(Clone, Copy)]
 pub(super) struct ElementForce<T> {
     pub weight: T,
@@ -72,7 +73,7 @@ pub(super) struct ElementForce<T> {
     pub back: T,
 }
 
-/// 1 - cos d, without loss where it is small.
+/// 1 - cos d from sin d and cos d, without loss of digits for small d.
 #[inline(always)]
 pub(super) fn one_less<T: SideBySide>(sine: T, cosine: T) -> T {
     let size = sine.splat(1.0) + cosine.abs();
@@ -85,7 +86,7 @@ impl<T: SideBySide> FaceIntegrals<T> {
         Self { sums: [like.splat(0.0); INTEGRALS] }
     }
 
-    /// Adds integrals over a chord or at a node.
+    /// Adds the integrals over a chord, or the terms of a node.
     #[inline(always)]
     pub fn add(&mut self, terms: [T; INTEGRALS]) {
         for (sum, term) in self.sums.iter_mut().zip(terms) {
@@ -93,7 +94,7 @@ impl<T: SideBySide> FaceIntegrals<T> {
         }
     }
 
-    /// Adds a node.
+    /// Adds the terms of a node.
     #[inline(always)]
     pub fn rub(&mut self, of: ElementForce<T>) {
         let ElementForce { weight, pressed, short, across, aside, back } = of;
@@ -113,7 +114,7 @@ impl<T: SideBySide> FaceIntegrals<T> {
         self.add(terms);
     }
 
-    /// The integrals, and the force and the centre of the pressure that follow from them for a height lam.
+    /// The residual, force and centre of the pressure that follow from the integrals, for lam = mu Z/a.
     #[inline(always)]
     pub fn pressed(&self, lam: f64) -> PressedFace {
         let total = here(
@@ -141,21 +142,22 @@ impl<T: SideBySide> FaceIntegrals<T> {
     }
 }
 
-/// What a part gives: the residual X - lam G in the frame of X, its derivatives by width and angle, and the means.
+/// The result for one pressed part: the residual X - lam G in the frame of X, its derivatives by width and angle, and the means.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PressedFace {
     pub residual: [f64; 2],
     pub by_width: [f64; 2],
     pub by_angle: [f64; 2],
-    /// |X|.
+    /// The distance |X| of the centre of the pressure from the axis, over a.
     pub centre: f64,
-    /// G along X, and gg.
+    /// The mean G along X (`force`), and the mean couple gg.
     pub force: f64,
     pub couple: f64,
 }
 
 impl PressedFace {
-    /// The determinant of the derivatives, which is negative where the centre of the pressure is the nearest one.
+    /// The determinant of the derivatives of the residual; it is negative for the centre of the pressure that is
+    /// nearest to the axis.
     pub fn determinant(&self) -> f64 {
         self.by_width[0] * self.by_angle[1] - self.by_width[1] * self.by_angle[0]
     }

@@ -24,8 +24,8 @@ use crate::numbers::{here, in_lanes, level};
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4};
 use fearless_simd::{SimdBase, f64x8};
 
-/// The sum of half axes of an ellipse round an interval, outside of which a function is analytic whose integral 24
-/// nodes find to 1e-15: 2.1^-48 with 2.1 + 1/2.1 = 2 times this.
+/// The semi-major axis (2.1 + 1/2.1)/2 of an ellipse with foci -1 and 1: if a function is analytic inside of the
+/// ellipse, 24 nodes give its integral to 1e-15, about 2.1^-48.
 const SMOOTH: f64 = 1.29;
 /// The half angle beyond which the opposite side of the ring has its own panel, and the largest ratio of a panel's ends.
 const FAR: f64 = 1.4;
@@ -61,8 +61,8 @@ pub(super) fn quarter_integrals(q: f64) -> [f64; 2] {
     }
 }
 
-/// The means that a pressure needs which is linear in the place and presses everywhere: those of u_x/|u| and n x u/|u|
-/// over the uniform pressure, and those of x u_y/|u|, y u_x/|u| and y (n x u)/|u|.
+/// The means that give the friction under a pressure that is linear in the place and positive everywhere: those of
+/// u_x/|u| and n x u/|u| over the uniform pressure, and those of x u_y/|u|, y u_x/|u| and y (n x u)/|u|.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WholeMeans {
     pub along: f64,
@@ -73,7 +73,7 @@ pub(super) struct WholeMeans {
 }
 
 impl WholeMeans {
-    /// The means over the ring.
+    /// The means over the whole ring, for the speed v of the centre and the speed s of the rim.
     pub fn of_ring(v: f64, s: f64) -> Self {
         let spins = v <= s;
         let q = if spins { v / s } else { s / v };
@@ -87,7 +87,7 @@ impl WholeMeans {
         }
     }
 
-    /// Force along v and across and the couple, for a pressure 1 + `slope` X.n with X = lam G.
+    /// The force along v, the force across v, and the couple, for a pressure 1 + `slope` X.n with X = lam G.
     pub fn pressed(&self, lam: f64, slope: f64) -> [f64; 3] {
         let tilt = slope * lam;
         let along = self.along / (1.0 - tilt * tilt * self.x_across * self.y_along);
@@ -96,18 +96,18 @@ impl WholeMeans {
     }
 }
 
-/// The speeds and the part, with what all nodes share.
+/// Terms of the speeds and of the pressed part that all nodes of the quadrature share.
 struct RubsAlong<T> {
     /// v cos c, s, and s - v sin c.
     forward: T,
     spin: T,
     base: T,
-    /// sin(b/2).
+    /// sin(b/2), where b is half the angle of the pressed arc.
     reach: T,
 }
 
 impl<T: SideBySide> RubsAlong<T> {
-    /// A node of weight dt with sin(t/2), cos(t/2) and 1/|u|.
+    /// The terms of a node of weight dt at the angle t from X, from sin(t/2), cos(t/2) and 1/|u|.
     #[inline(always)]
     fn at(&self, weight: T, [sh, ch]: [T; 2], over: T) -> ElementForce<T> {
         let twice = sh + sh;
@@ -120,7 +120,7 @@ impl<T: SideBySide> RubsAlong<T> {
     }
 }
 
-/// Runs through the nodes between `left` and `right`: group, place and weight.
+/// Calls `each` with the place and the weight of the nodes between `left` and `right`, several at a time in SIMD lanes.
 #[inline(always)]
 pub(super) fn nodes<T: SideBySide>(like: T, left: f64, right: f64, mut each: impl FnMut(T, T)) {
     let (middle, half) = (like.splat(0.5 * (left + right)), like.splat(0.5 * (right - left)));
@@ -130,7 +130,7 @@ pub(super) fn nodes<T: SideBySide>(like: T, left: f64, right: f64, mut each: imp
     }
 }
 
-/// What a part of the ring gives at the speeds `v` and `s` for a height lam.
+/// The result for a pressed part of the ring, at the speeds `v` of the centre and `s` of the rim, for lam = mu Z/a.
 pub(super) fn on_ring(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFace {
     let large = v.max(s);
     let (v, s) = (v / large, s / large);
@@ -141,7 +141,7 @@ pub(super) fn on_ring(part: &PressedPart, lam: f64, v: f64, s: f64) -> PressedFa
     )
 }
 
-/// The integrals over the part of the ring.
+/// The integrals over the pressed part of the ring, at the speeds v of the centre and s of the rim.
 #[inline(always)]
 fn ring_integrals<T: SideBySide>(like: T, part: &PressedPart, v: f64, s: f64) -> FaceIntegrals<T> {
     let number = |x: f64| like.splat(x);

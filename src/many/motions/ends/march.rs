@@ -1,14 +1,14 @@
-//! A queue of marches for SIMD lanes: a lane whose march is over takes the next march.
+//! A queue of marches for SIMD lanes: when a march is over, its lane takes the next march.
 
 use super::run::{Run, RunOutcome};
 use super::set::{MarchKind, PanelForces, RunLanes, extents, panels};
 use crate::motions::exact::lanes::march::Rule;
 use crate::numbers::side_by_side::{MOST, SideBySide};
 
-/// Number of panels of a set of lanes between two calls of `go_on`.
+/// Number of panels of all lanes that are computed between two calls of `go_on`.
 const PANELS_PER_BREATH: usize = 64;
 
-/// Computes panels of all runs until each run is over, or until `go_on` returns false.
+/// Computes panels of all marches until each march is over, or until `go_on` returns false.
 fn advance_all<T: SideBySide, P: Copy>(
     runs: impl IntoIterator<Item = Run>,
     go_on: &mut dyn FnMut() -> bool,
@@ -37,8 +37,8 @@ fn advance_all<T: SideBySide, P: Copy>(
     }
 }
 
-/// Marches all runs up to the time `span` of their clock, or to their targets if `span` is None; `tell` is called with
-/// each run that is over and its outcome.
+/// Computes all marches up to the time `span` of their clock, or to their targets if `span` is None; `tell` is called
+/// with each march that is over and its outcome.
 pub(super) fn march<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,
@@ -63,7 +63,7 @@ pub(super) fn march<T: SideBySide, const N: usize>(
     );
 }
 
-/// Computes the forces along all runs, panel by panel; `tell` is called with each panel.
+/// Computes the forces along all marches, panel by panel; `tell` is called with each panel.
 pub(super) fn forces_along<T: SideBySide, const N: usize>(
     like: T,
     kind: MarchKind,

@@ -28,18 +28,18 @@ use set::{FEW, MANY, MarchKind};
 use std::sync::LazyLock;
 use summed::SolvedBlock;
 
-/// The finest rule may have this error under any tolerance, because it is a rounding error, as large as for a motion
+/// The finest rule may have this error whatever the tolerance, because it is a rounding error, as large as for a motion
 /// that is computed alone.
 const FINEST_RULE_ERROR: f64 = 4e-12;
 
 /// The quadrature rules of the three marches.
 static RULES: LazyLock<[Rule; 3]> = LazyLock::new(|| [16, 64, 320].map(Rule::new));
 
-/// The cosine of the double next to pi/2.
+/// The cosine of the double that is nearest to pi/2.
 const RIGHT_ANGLE_COSINE: f64 = 6.123_233_995_736_766e-17;
 
-/// Coefficient of friction below which lanes do not compute a motion that may slip, because its margin is a rounding
-/// error.
+/// Least coefficient of friction for which motions that may slip are computed in SIMD lanes; for a smaller one the
+/// margin of slip is a rounding error.
 const LEAST_FRICTION_COEFFICIENT: f64 = 1e-9;
 
 /// Square of w2 below which a start counts as a turning point, which is then at most about 1e-18 away in
@@ -49,8 +49,8 @@ const TURNING_START_SQUARE: f64 = 1e-36;
 /// Sine and cosine of pi, an inclination that no body reaches.
 const UNREACHABLE_SIDE: [f64; 2] = [0.0, -1.0];
 
-/// Sine and cosine of theta_end, the inclination at which something other than the rim lands; for most bodies
-/// it is a right angle.
+/// Sine and cosine of theta_end, the inclination at which a part other than the rim lands; for most bodies it is a
+/// right angle.
 fn sin_cos_of_theta_end(theta_end: f64) -> [f64; 2] {
     if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
@@ -82,15 +82,15 @@ impl SolvedRun {
     }
 }
 
-/// The marches of motions on rims of one kind.
+/// The marches of motions in a block, all on sharp rims or all on rounded rims.
 pub(super) struct Marches<'a, 'b> {
     pub work: &'a MotionBlock<'b>,
-    /// Whether the rims are rounded, which holds for all of the bodies or for none.
+    /// Whether the rims are rounded, which is the same for all of the bodies.
     pub round: bool,
 }
 
 impl Marches<'_, '_> {
-    /// The error that the rule of a rung may have.
+    /// The error that the result of a march with the rule `rule_index` may have.
     fn allowed(&self, rule_index: usize) -> f64 {
         let tol = self.work.job.tol;
         if rule_index + 1 == RULES.len() { tol.max(FINEST_RULE_ERROR) } else { tol }
@@ -145,7 +145,7 @@ impl Marches<'_, '_> {
         left
     }
 
-    /// Marches with the rule and the terms of `rule_index`, up to the time `span`, or to the targets if `span` is None.
+    /// Computes marches with the rule and the terms of `rule_index`, up to the time `span`, or to the targets if `span` is None.
     fn march_on<T: SideBySide>(
         &self,
         like: T,
@@ -163,7 +163,7 @@ impl Marches<'_, '_> {
         }
     }
 
-    /// The task of a motion, or its end if the motion is over at its start.
+    /// The first march of a motion, or its end if the motion is over at its start.
     fn begin(&self, i: usize) -> MarchStart {
         let (job, row) = (self.work.job, self.work.first + i);
         let (body, start) = (self.work.starts.body(row), self.work.starts.state(row));
@@ -209,8 +209,8 @@ impl Marches<'_, '_> {
         }
     }
 
-    /// Writes the results of the solved motions, with their states at the times of the job; returns the
-    /// motions whose states do not reach the tolerance.
+    /// Writes the results of the solved motions, with their states at the times of the job; returns the motions whose
+    /// states do not reach the tolerance.
     fn write_results<T: SideBySide>(
         &self,
         like: T,
@@ -303,7 +303,7 @@ fn ending(comes: PanelEvent) -> Ending {
     }
 }
 
-/// The event for an ending at time 0.
+/// The event in a panel for an ending at time 0.
 fn event_of(ending: Ending) -> PanelEvent {
     match ending {
         Ending::Side => PanelEvent::Side,

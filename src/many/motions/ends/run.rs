@@ -15,27 +15,26 @@ use crate::motions::exact::lanes::march::{Knot, PanelEvent};
 use crate::numbers::larger_or_nan;
 use core::f64::consts::PI;
 
-/// Greatest number of panels in one direction; a march that needs more gives no result.
+/// Greatest number of panels in one direction; a march that needs more panels gives no result.
 const MOST_PANELS: u32 = 48;
 
-/// A motion to be marched: its body, its start and its direction.
+/// A motion to be computed by a march: its body, its start and its direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MarchTask {
     /// The index of the motion in the block.
     pub index: usize,
     /// The body: ell, I1, I3 and fillet.
     pub shape: [f64; 4],
-    /// Sine and cosine of the inclination at which something other than the rim lands, or of a limit of the
-    /// march.
+    /// Sine and cosine of the inclination at which a part other than the rim lands, or of a limit of the march.
     pub side: [f64; 2],
-    /// The inclination at which something other than the rim lands.
+    /// The inclination at which a part other than the rim lands, in radians.
     pub theta_end: f64,
     pub start: Knot<f64>,
     /// 1 if the inclination grows, -1 if it falls.
     pub way: f64,
     /// Square of the coefficient of friction.
     pub mu_square: f64,
-    /// The time at which the motion begins, on the clock of the times up to which it is marched.
+    /// The time at which the motion begins, on the clock of the times up to which the march goes.
     pub since: f64,
 }
 
@@ -70,7 +69,7 @@ pub(super) struct Run {
     turn: [f64; 2],
 }
 
-/// The outcome of a panel for one lane; `exact::lanes::march::Met` has the meaning of the numbers.
+/// The outcome of a panel for one SIMD lane; `exact::lanes::march::Met` has the meaning of the numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelOutcome {
     pub comes: PanelEvent,
@@ -88,13 +87,13 @@ pub(super) enum RunOutcome {
     On,
     /// The motion has ended, or the march has reached the time of its target.
     There(EventState),
-    /// The motion does not end before the time up to which it is marched.
+    /// The motion does not end before the time up to which the march goes.
     Free(FreeMotion),
     /// This march gives no result.
     Unknown,
 }
 
-/// The end of a march: its event, its time, the state there, and the error of these.
+/// The end of a march: its event, its time, the state at that time, and the error of these.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EventState {
     pub comes: PanelEvent,
@@ -105,7 +104,7 @@ pub(super) struct EventState {
     pub before: FreeMotion,
 }
 
-/// A motion without an end: the times from time 0 to its turning points, as far as they are known.
+/// A motion without an end: the times from time 0 to its turning points, as far as the march has reached them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FreeMotion {
     pub first: Option<f64>,
@@ -138,7 +137,7 @@ impl FreeMotion {
         self.first.zip(self.second).map_or(f64::INFINITY, |(first, second)| 2.0 * (first + second))
     }
 
-    /// The uncertainty of the period and of the precession in a period, whichever are wanted.
+    /// The uncertainty of the period (if `timed`) and of the precession in a period (if `turned`).
     pub fn errors(&self, timed: bool, turned: bool) -> f64 {
         let rounded = 4.0 * f64::EPSILON;
         let time = if timed { 2.0 * self.late + rounded * self.period() } else { 0.0 };
@@ -146,7 +145,7 @@ impl FreeMotion {
         larger_or_nan(time, turn)
     }
 
-    /// The uncertainty of the motion after the time `time`, as a time.
+    /// The uncertainty of the motion at the time `time`, as a time.
     pub fn time_uncertainty(&self, time: f64) -> f64 {
         self.late * self.uncertainty_factor(time)
     }
@@ -156,7 +155,7 @@ impl FreeMotion {
         2.0 + 2.0 * time / self.period()
     }
 
-    /// Least and greatest inclination up to a time at which the inclination is `last`.
+    /// Least and greatest inclination from the inclination `start` up to a time at which it is `last`.
     pub fn inclinations(&self, start: f64, last: f64, time: f64) -> [f64; 2] {
         let first = self.first.unwrap_or(f64::INFINITY);
         let second = self.second.map_or(f64::INFINITY, |second| 2.0 * first + second);
@@ -183,7 +182,7 @@ impl Run {
         }
     }
 
-    /// The march to the place of a free motion at `time`.
+    /// The march to the place of a motion without an end at the time `time`.
     pub fn to(task: &MarchTask, free: &FreeMotion, slot: usize, time: f64) -> Self {
         let mut run = Self::new(task);
         let (mut left, mut returning) = (time, false);
@@ -221,7 +220,7 @@ impl Run {
     /// Continues after a panel, up to the time `span`, or to the target if `span` is None.
     pub fn advance(&mut self, met: &PanelOutcome, span: Option<f64>) -> RunOutcome {
         self.panels += 1;
-        // A ball has no face: so close to its pole its numbers need the time of the passage (`exact`).
+        // A ball has no face: so close to its pole its variables need the time of the passage (`exact`).
         let pole = met.comes == PanelEvent::Face && self.task.shape[3] == 1.0;
         if self.panels > MOST_PANELS || met.comes == PanelEvent::Unknown || pole {
             return RunOutcome::Unknown;

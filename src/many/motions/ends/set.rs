@@ -11,15 +11,15 @@ use crate::numbers::side_by_side::{MOST, SideBySide, apart};
 #[derive(Clone, Copy)]
 pub(super) struct MarchKind {
     pub contact: Contact,
-    /// Whether the rims are rounded, which holds for all of the bodies or for none.
+    /// Whether the rims are rounded, which is the same for all of the bodies.
     pub round: bool,
     pub sought: Sought,
 }
 
-/// Runs in lanes, or one result for each lane; a lane may be empty.
+/// Marches in SIMD lanes, or one result for each lane; a lane may be empty.
 pub(super) type RunLanes<R> = [Option<R>; MOST];
 
-/// The extremes of the forces in a panel, whether the march ends in it, and the knot at the end of the panel.
+/// The extremes of the forces in a panel, whether the march ends in it, and the state at the end of the panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelForces {
     pub normal: f64,
@@ -28,7 +28,7 @@ pub(super) struct PanelForces {
     pub knot: Knot<f64>,
 }
 
-/// Numbers of terms of the first march (`FEW`) and of its repetitions (`MANY`).
+/// Numbers of terms of the series in the first march (`FEW`) and in its repetitions (`MANY`).
 pub(super) const FEW: usize = 32;
 pub(super) const MANY: usize = 56;
 
@@ -37,7 +37,7 @@ const MARCH_INPUTS: usize = 16;
 const MARCH_OUTPUTS: usize = 15;
 type Rows<const N: usize> = [[f64; MOST]; N];
 
-/// The inputs of the runs in rows; a lane without a run repeats another run. None if no lane has a run.
+/// The inputs of the marches in rows; a SIMD lane without a march repeats another march. None if no lane has a march.
 fn gather_inputs(runs: &RunLanes<Run>, count: usize) -> Option<Rows<MARCH_INPUTS>> {
     let mut rows = [[0.0; MOST]; MARCH_INPUTS];
     let spare = runs.iter().flatten().next()?;
@@ -56,7 +56,8 @@ fn gather_inputs(runs: &RunLanes<Run>, count: usize) -> Option<Rows<MARCH_INPUTS
     Some(rows)
 }
 
-/// The inputs in lanes: the march, its knot, its direction and the time that is left to the target.
+/// The inputs in SIMD lanes: the march, the state at the start of its panel, its direction and the time that is left to
+/// the target.
 #[inline(always)]
 fn load_inputs<T: SideBySide>(
     like: T,
@@ -82,7 +83,7 @@ fn load_inputs<T: SideBySide>(
     (march, knot, like.load(&rows[14]), like.load(&rows[15]))
 }
 
-/// Writes lanes into rows.
+/// Writes outputs in SIMD lanes into rows.
 #[inline(always)]
 fn unload_outputs<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<MARCH_OUTPUTS>) {
     for (row, x) in rows.iter_mut().zip(&all) {
@@ -92,13 +93,13 @@ fn unload_outputs<T: SideBySide, const N: usize>(all: [T; N], rows: &mut Rows<MA
     }
 }
 
-/// The knot of lane `k`, from seven rows.
+/// The state in SIMD lane `k` at the end of a panel, from seven rows of numbers.
 fn knot(rows: &[[f64; MOST]], k: usize) -> Knot<f64> {
     let at = |i: usize| rows[i][k];
     Knot { theta: at(0), sin: at(1), cos: at(2), w1: at(3), w3: at(4), force: at(5), doubt: at(6) }
 }
 
-/// The outputs of a kernel for all lanes; None if no lane has a run.
+/// The outputs of the computation `kernel` for all SIMD lanes; None if no lane has a march.
 #[inline(always)]
 fn run_kernel<T: SideBySide, const M: usize>(
     like: T,
@@ -119,7 +120,7 @@ fn run_kernel<T: SideBySide, const M: usize>(
     Some(found)
 }
 
-/// Computes one panel of each run, with `N` terms.
+/// Computes one panel of each march, with series of `N` terms.
 #[inline(never)]
 pub(super) fn panels<T: SideBySide, const N: usize>(
     like: T,
@@ -156,7 +157,7 @@ pub(super) fn panels<T: SideBySide, const N: usize>(
     }
 }
 
-/// Computes the extremes of the forces in one panel of each run, with `N` terms.
+/// Computes the extremes of the forces in one panel of each march, with series of `N` terms.
 #[inline(never)]
 pub(super) fn extents<T: SideBySide, const N: usize>(
     like: T,

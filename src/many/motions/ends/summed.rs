@@ -22,8 +22,7 @@ pub(super) struct SolvedBlock<'a, 'b, 'c> {
 }
 
 impl SolvedBlock<'_, '_, '_> {
-    /// Writes the summary numbers that are wanted; returns the motions for which they do not reach the
-    /// tolerance.
+    /// Writes the requested summaries; returns the motions for which they do not reach the tolerance.
     pub fn run<T: SideBySide>(
         &self,
         like: T,
