@@ -227,7 +227,7 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     }
 }
 
-/// Whether a body starts on its face: sin(theta) = 0 on a body that is no ball.
+/// Whether a body starts on its face: its rim has a radius, and theta is 0, or pi where no other rim lands before.
 pub(crate) fn on_face(body: &Body, y: &State) -> bool {
     (y.theta == 0.0 || y.theta == PI && body.theta_end() == PI) && body.rim() > 0.0
 }
