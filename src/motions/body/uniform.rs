@@ -43,8 +43,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (at, angle)
     }
 
-    /// Adds to the errors those of a phase that lasts for the time `t`, in which the ball turns by `angle`, and whose
-    /// end has the relative error of a time `late`.
+    /// Adds the errors of a phase that lasts for the time `t`, in which the ball turns by `angle`. The error of the
+    /// time grows in proportion to `t` + `late`.
     fn rounds(&mut self, t: f64, angle: f64, late: f64) {
         let of = &mut self.of.roundings;
         of.count += ROUNDINGS_PER_PHASE;

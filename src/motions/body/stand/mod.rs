@@ -58,7 +58,7 @@ const JUST_HOLDS: f64 = 1e-9;
 /// A face that lands within this time is computed with constant rates.
 const SOON_DOWN: f64 = 1e-5;
 
-/// What becomes of a body at rest on its face.
+/// What a body at rest on its face does next.
 enum FromRest {
     Stays,
     Slides,
