@@ -3,10 +3,10 @@
 //! ```text
 //! ell = height/R,   I1 = i1/(M R^2),   I3 = i3/(M R^2),   R = outer_diameter/2 of a tube
 //! ```
-//! A motion is computed in natural units like any other motion. Its times are given in seconds, and each [`Reading`] is
-//! in SI, along the axes of the laboratory: z is up, the table is z = 0, and the body is inclined from +x at time 0.
-//! States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a few
-//! roundings.
+//! A motion is computed in natural units like any other motion. Its times are given in seconds, and each [`Reading`]
+//! is in SI, along the axes of the laboratory: z is up, the table is z = 0, and the body is inclined from +x at time
+//! 0. States, slips and coefficients stay in natural units; [`Scale`] converts them. Error: that of the motion, and a
+//! few roundings of double precision.
 //!
 //! ```
 //! use spincyl::measured::{Measured, Tube};
@@ -113,7 +113,7 @@ impl Tube {
     }
 }
 
-/// The numbers of a body of which the moments of inertia are known, in SI.
+/// Height, edge radius and moments of inertia of a body, in SI, for [`Measured::with_moments`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct MeasuredMoments {
@@ -133,14 +133,14 @@ impl MeasuredMoments {
         Self { height, fillet: 0.0, i1, i3 }
     }
 
-    /// Returns these numbers with this radius of the rounded edge, in metres.
+    /// Returns a copy with this radius of the rounded edge, in metres.
     #[must_use]
     pub fn with_fillet(self, fillet: f64) -> Self {
         Self { fillet, ..self }
     }
 }
 
-/// A body with a size and a mass.
+/// A body in natural units, with its size and mass in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -169,33 +169,33 @@ pub struct Reading {
     /// The contact point in metres; in the air, the lowest point of the rim; for a body on both rims, one of the two
     /// points.
     pub contact_point: Point3<f64>,
-    /// The force of the table in newtons, on both rims together; zero in the air.
+    /// The force of the table on the body in newtons, summed over both rims if both touch; zero in the air.
     pub force: Vector3<f64>,
     /// Kinetic and potential energy in joules.
     pub energy: f64,
-    /// The kind of the phase, with a law of friction, losses or a restitution.
+    /// What the body is doing, such as rolling or slipping; None without a law of friction, losses and a restitution.
     pub kind: Option<Kind>,
 }
 
-/// A motion of a measured body.
+/// A motion of a measured body; [`readings`](Self::readings) are its states in SI.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct MeasuredMotion {
     /// The motion in natural units.
     pub natural: Motion,
-    /// The measured body.
+    /// The measured body that moves.
     pub of: Measured,
     /// The requested times in seconds.
     pub seconds: Vec<f64>,
-    /// The turn of the body about its axis at the start, in radians: 0 unless it started in the world
+    /// The angle psi of the body about its axis at the start, in radians: 0 unless the start was given as a pose
     /// ([`world`](super::world)).
     #[cfg_attr(feature = "serde", serde(default))]
     pub turn: f64,
 }
 
 impl core::fmt::Display for Measured {
-    /// The body in its natural units, and these units in SI.
+    /// Writes the body in natural units (ell, I1, I3), then R, M and g in SI.
     ///
     /// ```
     /// use spincyl::measured::{Measured, Tube};
@@ -212,7 +212,7 @@ impl core::fmt::Display for Measured {
 }
 
 impl Measured {
-    /// Makes a measured body from a body and its natural units in SI.
+    /// Makes a measured body from a body in natural units and the sizes of these units in SI.
     pub fn new(body: Body, scale: Scale) -> Self {
         Self { body, scale }
     }
@@ -220,8 +220,8 @@ impl Measured {
     /// Makes a measured body from the dimensions of a uniform tube.
     ///
     /// # Errors
-    /// Those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube of less than 0.01 kg/m^3, a
-    /// hundredth of the density of air, as of one whose millimetres were taken for metres.
+    /// Those of [`Body::from_metres`] and of [`Scale::new`], and `OutOfRange` for a tube with a density below 0.01
+    /// kg/m^3, a hundredth of that of air, which it has if its lengths are in millimetres.
     pub fn tube(of: &Tube) -> Result<Self, Error> {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
         let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
@@ -230,7 +230,7 @@ impl Measured {
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
-    /// Makes an axisymmetric body of this size with these moments of inertia.
+    /// Makes a body of revolution with the radius and mass of `scale` and these moments of inertia.
     ///
     /// ```
     /// use spincyl::measured::{Measured, MeasuredMoments};
@@ -266,7 +266,7 @@ impl Measured {
         &self.scale
     }
 
-    /// The motion from a start, at these times in seconds; poses and forces are always computed. The start and the
+    /// Computes the motion from a start, at these times in seconds, always with poses and forces. The start and the
     /// options are in natural units. `go_on` is as for [`roll_with`](motion::roll_with), whose times are in natural
     /// units.
     ///
@@ -299,7 +299,7 @@ impl Measured {
 }
 
 impl MeasuredMotion {
-    /// The motion at each of its times, in SI.
+    /// Returns the state of the body at each requested time, in SI.
     pub fn readings(&self) -> impl Iterator<Item = Reading> {
         let Measured { body, scale } = &self.of;
         let length = |x: f64| scale.metres(x);
@@ -322,8 +322,8 @@ impl MeasuredMotion {
         })
     }
 
-    /// The readings of a motion that began with this orientation, from which [`Start::from_twist`] took its state, and with
-    /// the centre of mass above the point `(x, y)` of the table, in metres.
+    /// Returns the states in SI of a motion whose start [`Start::from_twist`] made from this orientation, with the
+    /// centre of mass above the point `(x, y)` of the table, in metres, at the start.
     ///
     /// ```
     /// use spincyl::{measured::{Measured, Tube}, motion::{Ask, Start}};
@@ -362,7 +362,8 @@ impl MeasuredMotion {
         })
     }
 
-    /// Bounds of the errors at any time, in SI. That of the states holds in radians, in rad/s and in seconds.
+    /// Bounds of the errors at any time, in SI. The bound for the states is one number, for angles in radians, rates
+    /// in rad/s and times in seconds.
     pub fn bounds(&self) -> Bounds {
         let (found, scale) = (self.natural.bounds(self.of.body()), &self.of.scale);
         Bounds {
@@ -376,7 +377,7 @@ impl MeasuredMotion {
         }
     }
 
-    /// The ending of the motion, and its time in seconds if it came before the last time.
+    /// Why the motion ended, and when, in seconds; no time if it reached the last requested time.
     pub fn end(&self) -> (Ending, Option<f64>) {
         let scale = &self.of.scale;
         (self.natural.ending(), self.natural.event.map(|event| scale.seconds(event.time)))

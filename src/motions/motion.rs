@@ -37,10 +37,11 @@ use crate::motions::exact::event::{self, Limits};
 use crate::motions::exact::method::conserved;
 use crate::motions::slope::check_slope;
 
-/// Computes the motion of `body`, which rolls, from the state `start` at the first of the `times`, up to the event that
-/// ends it.
+/// Computes the rolling motion of `body` from the state `start` at the first of the `times`, up to the event that
+/// ends the motion.
 ///
-/// The times are in sqrt(R/g). The method is exact, without poses and forces; [`roll_with`] has the other options.
+/// The times are in sqrt(R/g). The method is that of the first integrals, exact up to rounding. Poses and forces are
+/// not computed; [`roll_with`] has these and all other options.
 ///
 /// ```
 /// use spincyl::{Body, roll, steady};
@@ -66,9 +67,9 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// a slip. The times are in order and all after or all before the initial time; with a law of friction or losses they
 /// are not before it. `ask` chooses the contact, the losses, the method and the outputs.
 ///
-/// `go_on` is called about fifty times a second. If it returns false, the motion ends there with [`Ending::Bounded`]
-/// and [`Limit::Interrupted`], and its error is infinite unless the first integrals show it; the result is `Ok(None)`
-/// if the motion has not advanced.
+/// `go_on` is called about fifty times per second of computing. If it returns false, the motion ends there with
+/// [`Ending::Bounded`] and [`Limit::Interrupted`], and its error is infinite unless the first integrals show it; the
+/// result is `Ok(None)` if the motion has not advanced.
 ///
 /// ```
 /// use spincyl::{Body, Slip, State, contact::Friction, motion::{Ask, Start, roll_with}};
@@ -86,10 +87,10 @@ pub fn roll(body: &Body, start: &State, times: &[f64]) -> Result<Motion, Error> 
 /// ```
 ///
 /// # Errors
-/// Before any work: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of range; `Step`
-/// for a fixed step that is too long for fast precession or nutation; `Painleve` for an initial state without a unique
-/// contact force. At any time: `Memory` if the memory does not suffice for the outputs; for a body that slips or loses
-/// energy also the errors of [`path::follow`].
+/// Before the motion is computed: `OutOfRange` for a body, state, slip, time, step, tolerance or coefficient out of
+/// range; `Step` for a fixed step that is too long for fast precession or nutation; `Painleve` for an initial state
+/// without a unique contact force. At any time: `Memory` if the memory does not suffice for the outputs; for a body
+/// that slips or loses energy also the errors of [`path::follow`].
 pub fn roll_with(
     body: &Body,
     start: impl Into<Start>,
@@ -121,8 +122,8 @@ fn rolled(
     Ok(Motion { smooth, ..found }.advanced(start.time))
 }
 
-/// The first event of an exact motion that the model does not cover, from time 0 on; `mu` is the coefficient of friction
-/// of a body that rolls.
+/// The first event after which an exact motion is not that of the real body, from time 0 on; None if there is none.
+/// `mu` is the coefficient of friction of a body that rolls.
 ///
 /// ```
 /// use spincyl::{Body, Contact, exact::Swing, motion, steady};
@@ -137,8 +138,8 @@ pub fn first_event(swing: &Swing, mu: f64) -> Option<Event> {
     event::first_event(swing, &Limits::new(swing.body(), &Table::of(swing.contact(), mu)), 1.0)
 }
 
-/// The initial data of a motion: sine and cosine of theta, the rate of the state, and the ending if the motion is over
-/// at once.
+/// The initial data of a motion: sine and cosine of theta, the time derivative of the state, and the reason for
+/// ending if the motion is over at time 0.
 pub(crate) struct InitialData {
     pub angle: (f64, f64),
     pub rate: State,

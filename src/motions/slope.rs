@@ -1,19 +1,21 @@
-//! Motions on a slope, or on a table that turns, in the units in which the part of gravity across the table is 1.
+//! Motions on a slope or on a turntable. On a slope the units are those in which the component of gravity normal to
+//! the table is 1.
 //!
 //! ```text
 //! gravity (sin, 0, -cos) of the slope beta along x, y, z      x points downhill, z is the normal of the table
 //! time sqrt(cos beta) t,   velocities over sqrt(cos beta),   forces and energies over cos beta
 //! in these units: a level table with g = 1, and the pull tan(beta) on the centre along x
 //! ```
-//! The walks know the pull alone, which on a slope is G = tan(beta) (cos phi, -sin phi) along e_h and e2: it adds to the acceleration
-//! of the slip, and acts on a contact that rolls like the couple r x G about it. Here motions are converted at the
-//! way in and at the way out.
+//! In these units gravity has the component G = tan(beta) (cos phi, -sin phi) along the table, in the directions e_h
+//! and e2. G adds to the acceleration of the slip, and acts on a body that rolls like the couple r x G about the
+//! contact point. This module converts starts to these units, and motions back from them.
 //!
 //! ```text
 //! a table that turns at the rate om about z carries the contact point P with U = om z x P
 //! P' = p = u + (rho w2) e_h + (A psi') e2 + U,   pull += om (p_2, -p_h)
 //! ```
-//! The slip u is that over the table, and U changes with P and with the axes along which u is told.
+//! The slip u is relative to the turning table. The components of U along e_h and e2 change with P and with these
+//! axes.
 
 use super::walk::two_runs::Followed;
 use super::{AboveTable, Ask, Motion, Moving, Start};
@@ -27,14 +29,15 @@ use crate::laws::scale::Scale;
 use crate::laws::state::{Slip, State};
 use core::f64::consts::FRAC_PI_2;
 
-/// A slope: the conversion from the units in which its motions are computed.
+/// The conversion between natural units and those of a slope, in which the component of gravity normal to the table
+/// is 1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slope {
-    /// Natural units are those in which the part of gravity across the table is 1.
+    /// The units in which the component of gravity normal to the table is 1.
     scale: Scale,
 }
 
-/// Returns an error for a slope out of range, or on which a law of `ask` is not computed.
+/// Returns an error if the slope is out of range, or if a law in `ask` cannot be computed on a slope or a turntable.
 pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     let slope = ask.slope;
     let most = FRAC_PI_2.next_down();
@@ -63,8 +66,8 @@ pub(crate) fn check_slope(ask: &Ask) -> Result<(), Error> {
     }
 }
 
-/// What the energy has beside that on a level table at rest, in M g R: the fall of the centre downhill, and the velocity with
-/// which a table that turns carries it. None without a pose.
+/// The difference of the energy from that on a level table at rest, in M g R: by the fall of the centre downhill and
+/// by the velocity of a turntable. None if no pose is computed.
 pub(crate) fn energy_beside(body: &Body, ask: &Ask, m: &Motion, i: usize) -> Option<f64> {
     let of = m.sample(i);
     let (centre, velocity, point) = (of.centre(body)?, of.velocity(body)?, of.pose?.contact_point);
@@ -73,7 +76,8 @@ pub(crate) fn energy_beside(body: &Body, ask: &Ask, m: &Motion, i: usize) -> Opt
     Some(carried + energy_of_fall(ask, m, i, [centre.x, centre.z]))
 }
 
-/// The part of the fall of a centre at these x and z. On a smooth slope the centre has also gained speed for a time.
+/// The change of the energy by the slope, for a centre of mass at these x and z. On a smooth slope it includes the
+/// speed that the centre has gained downhill.
 pub(crate) fn energy_of_fall<S: Moving>(ask: &Ask, m: &Motion<S>, i: usize, [x, z]: [f64; 2]) -> f64 {
     let (sin, cos) = ask.slope.sin_cos();
     let begun = m.path.as_ref().and_then(|path| path.phases.first()).map_or(m.times[i], |phase| phase.time);
@@ -82,10 +86,10 @@ pub(crate) fn energy_of_fall<S: Moving>(ask: &Ask, m: &Motion<S>, i: usize, [x, 
     0.5 * falls * falls - (1.0 - cos) * z - sin * x
 }
 
-/// A law of the user on a slope: its state, its speeds, and its forces are those in units with the full gravity.
+/// A user-defined law on a slope, whose arguments and results are converted to natural units, with the full gravity.
 pub(crate) struct AtPace<'a, L: ?Sized> {
     pub law: &'a L,
-    /// The root of the part of gravity across the table.
+    /// The square root of the component of gravity normal to the table, in g.
     pub pace: f64,
 }
 
@@ -126,7 +130,7 @@ impl DriveLaw for AtPace<'_, dyn DriveLaw + '_> {
     }
 }
 
-/// What a wrong value of such a law says, in units with the full gravity.
+/// Converts the error for a wrong value of a user-defined law on a slope to natural units, with the full gravity.
 pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
     match fault {
         Error::Coefficient { mu, expected, speed } => {
@@ -143,7 +147,8 @@ pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
     }
 }
 
-/// Computes a motion on a slope in its own units: `run` gets the start, the times, the laws, and the unit of velocity.
+/// Computes a motion on a slope in units in which the normal component of gravity is 1. `run` gets the start, the
+/// times, the laws, and the unit of velocity.
 pub(crate) fn on_slope<S: Moving>(
     ask: &Ask,
     start: &Start<S>,
@@ -159,7 +164,7 @@ pub(crate) fn on_slope<S: Moving>(
 }
 
 impl Slope {
-    /// The slope of a motion; None on a level table.
+    /// The conversion of units for the slope in `ask`; None on a level table.
     pub fn of(ask: &Ask) -> Result<Option<Self>, Error> {
         check_slope(ask)?;
         if ask.is_level() {
@@ -168,7 +173,7 @@ impl Slope {
         Scale::new(1.0, 1.0, ask.slope.cos()).map(|scale| Some(Self { scale }))
     }
 
-    /// The laws in the units of the slope.
+    /// The options `ask`, converted to the units in which gravity normal to the slope is 1.
     pub fn ask(&self, ask: &Ask) -> Ask {
         let mut losses = Losses::NONE;
         for (law, coefficient) in ask.losses.iter() {
@@ -183,14 +188,14 @@ impl Slope {
         Ask { table, losses, turning: self.scale.angular_velocity(ask.turning), ..*ask }
     }
 
-    /// The times since `t0` in the units of the slope.
+    /// The times since `t0`, in the units in which gravity normal to the slope is 1.
     pub fn times(&self, times: &[f64], t0: f64) -> Result<Vec<f64>, Error> {
         let mut since = room(times.len())?;
         since.extend(times.iter().map(|t| self.scale.time(t - t0)));
         Ok(since)
     }
 
-    /// The initial conditions at time 0, in the units in which gravity across the slope is 1.
+    /// The initial conditions at time 0, in the units in which gravity normal to the slope is 1.
     pub fn start<S: Moving>(&self, start: &Start<S>) -> Start<S> {
         let speed = |u: f64| self.scale.speed(u);
         Start {
@@ -202,7 +207,7 @@ impl Slope {
         }
     }
 
-    /// The motion from `start` at these times, from one in the units of the slope.
+    /// Converts a motion from the units in which gravity normal to the slope is 1 to natural units, at these times.
     pub fn motion<S: Moving>(&self, found: Followed<S>, start: &Start<S>, times: &[f64]) -> Followed<S> {
         let Self { scale } = self;
         let Followed { mut motion, mut path } = found;

@@ -10,14 +10,15 @@
 //! J^2 > I3^2 h^4 (h - rho)/(rho (I3 h - I1))      of one on its end, for its end's radius of curvature rho and I1 -> I1 rho
 //! (I3 a^2 - I1 b^2) cos + I3 d sqrt(b^2 + (a^2 - b^2) cos^2) > 0    on the whole way to the end at cos = 1; < 0 to the other
 //! ```
-//! A body can rise only if the least energy with the same J falls on the whole way. For a top that needs
-//! 1 - l < I1/I3 < 1 + l. Friction at a point conserves J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so that this is the
-//! least spin for any coefficient of friction. On a patch the couple of drilling reduces J. In creep both the rise and
-//! that loss are proportional to the radius of the patch, so that a top needs more spin on the smallest patch, too.
-//! That spin is computed from motions.
+//! A body can rise only if the least energy at the same J decreases all the way up. For a top that needs 1 - l <
+//! I1/I3 < 1 + l. Friction at a point conserves J (Jellett 1872; Ebenfeld and Scheck, Ann. Phys. 243, 195 (1995)), so
+//! that this is the least spin for any coefficient of friction. On a patch of contact drilling friction reduces J. In
+//! creep both the rise and this loss are proportional to the radius of the patch, so that a top needs more spin even
+//! on the smallest patch. The least spin on a patch is computed from motions.
 //!
-//! Error of the search: 1e-3 of the spin, within the time of the search. A motion decides only if its estimated error is
-//! smaller than what separates it from the other decision; else it is computed again with a smaller tolerance.
+//! Error of the search: 1e-3 of the spin, within the time of the search. A motion decides whether the body turns over
+//! only if its estimated error is smaller than the distance of the axis from the limiting angle; else the motion is
+//! computed again with a smaller tolerance.
 //!
 //! ```
 //! use spincyl::{Ellipsoid, turning};
@@ -42,24 +43,28 @@ use core::f64::consts::PI;
 const UPSIDE_DOWN: f64 = 0.14;
 /// An egg stands on an end when its axis is this close to the vertical, in radians.
 const ON_END: f64 = 0.2;
-/// The search ends at this relative width.
+/// The search for the least spin ends when its interval has this relative width.
 const SPIN_KNOWN: f64 = 1e-3;
-/// Share of the sum of two terms by which it may be negative by rounding.
+/// A sum of two terms counts as zero if it is negative by at most this share of them, which may be rounding.
 const ROUNDED_OFF: f64 = 1e-14;
-/// The spins of the first search grow by this factor, up to `MOST_SPIN` times that of Jellett's number.
+/// Each spin that is tried is this factor larger than the one before, up to `MOST_SPIN` times the spin by Jellett's
+/// number.
 const SPIN_STEP: f64 = 1.15;
 const MOST_SPIN: f64 = 10.0;
-/// A top that drills slows down within 1/(mu eps) units of time at a spin of about 1, and by default its motion is
-/// computed for that time; at a point, and on a film, for the shorter time `LEAST_TIME`.
+/// Shortest default time of a motion, in sqrt(R/g). Drilling friction on a patch of radius eps stops a spin of about
+/// 1 in the time 1/(mu eps), which is the default if it is longer.
 const LEAST_TIME: f64 = 400.0;
-/// The state is computed at this number of times, or once in each unit of time, but at most at `MOST_LOOKS` times.
+/// The search computes the state of each motion at this number of times, or once in each unit of time if these are
+/// more, but at most at `MOST_LOOKS` times.
 const LEAST_LOOKS: f64 = 400.0;
 const MOST_LOOKS: f64 = 40_000.0;
-/// The tolerances with which a motion is computed, one after the other, until its error lets it decide.
+/// The tolerances with which a motion is computed, one after the other, until its error is small enough to decide
+/// whether the body turns over.
 const DECISION_TOLERANCES: [f64; 3] = [1e-8, 1e-11, 1e-14];
 
-/// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's number;
-/// infinite if with every spin the top is unstable upside down or stable upright, unless 1 - l < I1/I3 < 1 + l.
+/// The least spin w3, in sqrt(g/R), with which a nearly upright top turns over if friction conserves Jellett's
+/// number; infinite unless 1 - l < I1/I3 < 1 + l, with l = |ell|: otherwise the top is unstable upside down or stable
+/// upright at every spin.
 ///
 /// Error: a few roundings.
 ///
@@ -78,7 +83,8 @@ pub fn jellett_spin(top: &Body) -> Result<f64, Error> {
     Ok(over.max(up))
 }
 
-/// The least spins with which a top is stable upside down, and with which it is unstable upright.
+/// The least spin w3 with which a top is stable upside down, and the least with which it is unstable upright, in
+/// sqrt(g/R).
 fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
     let low = -top.ell();
     if !top.is_ball() {
@@ -104,15 +110,15 @@ fn jellett_spins(top: &Body) -> Result<[f64; 2], Error> {
 /// in which drilling takes the spin. The result is infinite if the top does not turn over in that time with ten times
 /// the spin of [`jellett_spin`]. The weaker the friction, the longer a top needs; with more time the result may be less.
 ///
-/// The top has turned over when its axis comes within 0.14 rad of the vertical. A top that leaves the table comes down
-/// again, without a bounce. Error: 1e-3 of the spin. On rough tables a larger spin may fail where a smaller one does
-/// not, and the result is one limit of several. The result is never less than half of the spin with which the top is
-/// stable upside down.
+/// The top has turned over when its axis comes within 0.14 rad of the vertical. A top that leaves the table lands
+/// without a bounce (restitution 0). Error: 1e-3 of the spin. On rough tables a larger spin may fail where a smaller
+/// one succeeds; the result is then one of several limits. The result is never less than half of the spin with which
+/// the top is stable upside down.
 ///
 /// # Errors
 /// Those of [`jellett_spin`]; `OutOfRange` for a `lean` outside [1e-6, 1], a `time` outside (0, 1e6] or coefficients
-/// out of range; those of [`roll_with`](super::motion::roll_with); `Undecided` for a motion that is given up, or whose
-/// error at the smallest tolerance is too large to tell.
+/// out of range; those of [`roll_with`](super::motion::roll_with); `Undecided` if the computation of a motion stops
+/// early, or if its error at the smallest tolerance is too large to decide.
 pub fn turning_spin(
     top: &Body,
     friction: Friction,
@@ -127,7 +133,8 @@ pub fn turning_spin(
 }
 
 /// The least spin about the vertical, in sqrt(g/a), with which a lying egg rises to an end if friction conserves
-/// Jellett's number; infinite if with every spin the egg is unstable on its ends, or stable in between.
+/// Jellett's number; infinite if the egg is unstable on its ends at every spin, or stable at an inclination in
+/// between.
 ///
 /// An egg is a spheroid whose third semi-axis is the longest, with a mass that is symmetric about that axis. Error: a
 /// few roundings.
@@ -179,7 +186,7 @@ pub fn rising_spin(
     search_least_spin(least, least, rises)
 }
 
-/// The times at which the state is computed, up to the time of the search.
+/// The times at which the search computes the state of each motion.
 fn times_to_look(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec<f64>, Error> {
     friction.check()?;
     within("lean", lean, (1e-6, 1.0), "1e-6 to 1 rad")?;
@@ -191,7 +198,8 @@ fn times_to_look(friction: Friction, lean: f64, time: Option<f64>) -> Result<Vec
     Ok((1..=count as u32).map(|k| until / count * f64::from(k)).collect())
 }
 
-/// The least spin for which `turns` is true, from half of `least` to ten times `most`; None if the search is interrupted.
+/// Searches the least spin for which `turns` is true, from half of `least` to ten times `most`; None if the search is
+/// interrupted.
 fn search_least_spin(
     least: f64,
     most: f64,
@@ -258,8 +266,8 @@ fn rises(
     })
 }
 
-/// Whether `room` is positive in a state of a motion. The motion is computed with smaller tolerances until its error
-/// lets it decide; what happens after the first such state does not matter. None if the motion is interrupted.
+/// Whether the function `room` of the state is positive at some time of a motion. The motion is computed with smaller
+/// and smaller tolerances until its error is small enough to decide. None if the motion is interrupted.
 fn decide_whether_positive<S: Moving>(
     friction: Friction,
     times: &[f64],
@@ -294,12 +302,13 @@ fn decide_whether_positive<S: Moving>(
 struct LyingEgg {
     theta: f64,
     height: f64,
-    /// The moment of inertia about the vertical.
+    /// The moment of inertia about the vertical, in M a^2.
     moment: f64,
 }
 
 impl LyingEgg {
-    /// The egg on its side, or an error that names the property that no egg has.
+    /// The egg at rest on its side. An error if the ellipsoid is no egg: the message names the axis or moment that is
+    /// wrong.
     fn of(egg: &Ellipsoid) -> Result<Self, Error> {
         let ([b, c, a], [x, y, d]) = (egg.axes(), egg.offset());
         let Symmetric([i1, i2, i3, one, two, three]) = egg.inertia;

@@ -1,15 +1,16 @@
-//! A measured body that starts anywhere in the world, and its motion there: pose and twist in, readings out, all in SI.
+//! Motions of a measured body whose start is a pose and velocities along the axes of the world, in SI; so are the
+//! results.
 //!
 //! ```text
 //! q = axes(phi, theta) Rz(psi)                      phi the heading of the start, psi the turn of the body about its axis
 //! contact point = centre + (lever) (cos phi, sin phi) below the lowest point of the body
 //! ```
-//! A motion in natural units counts psi from 0, since nothing depends on it. Here the orientation of each reading has the psi
-//! of the start, so that the first reading is the pose that was given. The world has its z along the normal of the table,
-//! which is z = 0; on a slope x points downhill.
+//! A motion in natural units counts psi from 0, since no rate depends on psi. In this module the orientation of each
+//! reading includes the psi of the start, so that the first reading is the pose that was given. The world has its z
+//! along the normal of the table, which is z = 0; on a slope x points downhill.
 //!
-//! Error: a few roundings; near an upright axis phi and psi have each an error of these over sin theta, but not the
-//! orientation.
+//! Error: a few roundings. Near an upright axis phi and psi separately have an error of a few roundings over sin
+//! theta, but the orientation does not.
 //!
 //! ```
 //! use spincyl::measured::{Measured, Tube};
@@ -33,7 +34,7 @@ use crate::laws::state::State;
 use crate::motions::measured::{Measured, MeasuredMotion};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
-/// A body whose lowest point is this close to the table touches it, in units of R.
+/// A body whose lowest point is at most this far above the table, in units of R, touches the table.
 const NEAR_THE_TABLE: f64 = 1e-9;
 
 /// The pose and the velocities with which a motion begins, along the axes of the world, in SI.
@@ -69,8 +70,8 @@ pub struct WorldStart {
 }
 
 impl WorldStart {
-    /// A start from the pose of the body, whose translation is the centre of mass in metres, and its velocities:
-    /// that of the centre in m/s and the angular velocity in rad/s, along the axes of the world.
+    /// A start from the pose of the body, whose translation is the centre of mass in metres, the velocity of the
+    /// centre in m/s, and the angular velocity in rad/s, all along the axes of the world.
     #[must_use]
     pub fn new(pose: Isometry3<f64>, velocity: Vector3<f64>, angular_velocity: Vector3<f64>) -> Self {
         let position = pose.translation.vector.into();
@@ -119,8 +120,8 @@ impl Measured {
         Ok(found.with_heading(phi).with_place([x + lever * cos, y + lever * sin]))
     }
 
-    /// Computes the motion of the body from a start in the world, at these times in seconds; its readings are along the axes
-    /// of the world. Options are in natural units, and `go_on` is as for [`roll`](Self::roll).
+    /// Computes the motion of the body from a start in the world, at these times in seconds; its results are along
+    /// the axes of the world, in SI. Options are in natural units, and `go_on` is as for [`roll`](Self::roll).
     ///
     /// # Errors
     /// Those of [`start_in_world`](Self::start_in_world) and of [`roll`](Self::roll).

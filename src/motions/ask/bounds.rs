@@ -1,4 +1,4 @@
-//! Bounds of the errors of what follows from states, poses and forces.
+//! Bounds of the errors of results that are computed from states, poses and forces.
 //!
 //! ```text
 //! e, p, f             estimated errors of the states, of the poses and of the forces
@@ -16,12 +16,12 @@ use crate::laws::body::Body;
 use crate::motions::Motion;
 use crate::numbers::larger_or_nan;
 
-/// Upper bounds of the errors at any time of a motion, in natural units, or in SI for a measured body.
+/// Upper bounds of the estimated errors at any time of a motion, in natural units, or in SI for a measured body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Bounds {
-    /// Error of every number of the states, of slips, and of the times of phases and of the end.
+    /// Error of every component of the states and slips, and of the times of phases and of the end.
     pub state: f64,
     /// Error of the position of the centre of mass, in R; NaN without poses, as are all errors below.
     pub position: f64,
@@ -31,15 +31,15 @@ pub struct Bounds {
     pub velocity: f64,
     /// Error of the angular velocity along the axes of the laboratory, in sqrt(g/R).
     pub angular_velocity: f64,
-    /// Error of the force of the table along the axes of the laboratory, in M g; NaN without forces, too.
+    /// Error of the force of the table along the axes of the laboratory, in M g; NaN without poses or without forces.
     pub force: f64,
     /// Error of the energy, in M g R.
     pub energy: f64,
 }
 
 impl Bounds {
-    /// The bounds from the errors of states, poses and forces; from the largest distance of the surface from the centre
-    /// and the largest moment of inertia; and from the largest angular velocity, velocity and force.
+    /// Computes the bounds from the errors of states, poses and forces, the largest distance of the surface from the
+    /// centre, the largest moment of inertia, and the largest angular velocity, velocity and force.
     pub(crate) fn of([e, p, f]: [f64; 3], [reach, inertia]: [f64; 2], [w, v, press]: [f64; 3]) -> Self {
         let root = 3f64.sqrt();
         let moved = e * (root * (1.0 + reach) + w * reach);

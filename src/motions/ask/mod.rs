@@ -22,12 +22,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// The default tolerance of a step of a motion with friction or losses.
 pub const FINE: f64 = 1e-14;
 
-/// Share of the velocities below which a vertical velocity of the lowest point counts as a rounding error of the input.
+/// A vertical velocity of the lowest point counts as a rounding error of the input below this share of the
+/// velocities.
 pub(crate) const NO_RISE: f64 = 1e-9;
-/// Share of the velocities below which a slip counts as zero: 16 ulp.
+/// A slip counts as zero below this share of the velocities: 16 roundings (ulp).
 const NO_SLIP: f64 = 16.0 * f64::EPSILON;
 
-/// The method that computes a motion.
+/// The numerical method that computes a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -42,8 +43,8 @@ pub enum Method {
     Tolerance(f64),
 }
 
-/// The options of a motion, with any contact and any losses. Each option has a method `with_` and its name. For an option that
-/// is on or off the method turns it on; one that is known only at run time is a field.
+/// The options of a motion, with any contact and any losses. Each option has a method whose name is `with_` and the
+/// name of the option. For an option that is on or off the method turns it on. All options are also fields.
 ///
 /// ```
 /// use spincyl::{contact::Friction, loss::{Law, Losses}, motion::Ask};
@@ -63,11 +64,12 @@ pub enum Method {
 pub struct Ask {
     /// The law of the contact with the table.
     pub table: Table,
-    /// The loss laws, in addition to the friction of a slip.
+    /// The loss laws that act in addition to the friction of a slip.
     pub losses: Losses,
-    /// When rolling resistance acts. Only while the body rolls, it needs a table on which a body can roll: no smooth one, no
-    /// viscous friction, and no patch of contact, which creeps. Then a motion ends where the body lies on two rims, and
-    /// where it can neither roll under the resistance nor slip without it. Stones always resist.
+    /// Whether rolling resistance acts always, or only while the body rolls. The second choice needs a table on which
+    /// a body can roll: not a smooth one, no viscous friction, and no patch of contact, which creeps. With it a
+    /// motion ends where the body lies on two rims, and where it can neither roll under the resistance nor slip
+    /// without it. For stones rolling resistance always acts.
     #[cfg_attr(feature = "serde", serde(default))]
     pub resistance: Resistance,
     /// The method that computes the motion.
@@ -87,17 +89,17 @@ pub struct Ask {
     /// The slope of the table, in radians, between -pi/2 and pi/2; x points downhill.
     #[cfg_attr(feature = "serde", serde(default))]
     pub slope: f64,
-    /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are over the table, and
-    /// the other numbers of a motion are those in the laboratory. A motion ends where a face or a second rim lands, or where
-    /// the body comes to rest on a level table that carries it.
+    /// The rate at which the table turns about its normal through x = y = 0, in sqrt(g/R). Slips are relative to the
+    /// table, and all other results are relative to the laboratory. A motion ends where a face or a second rim lands,
+    /// or where the body comes to rest on a level table that carries it.
     #[cfg_attr(feature = "serde", serde(default))]
     pub turning: f64,
     /// Whether the motion ends where the body begins to roll; only with a law of friction.
     pub stop_at_rolling: bool,
-    /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a motion
-    /// that needs more ends where it is, with [`Ending::Bounded`](super::Ending::Bounded). With `None` a motion that
-    /// slips, loses energy or hops, and steps within a tolerance, may take 8 million, or 40,000 for each unit of time if
-    /// this is more, and steps of fixed length as many as they are. First integrals need none.
+    /// The largest number of evaluations of the equations of motion ([`Motion::evaluations`](super::Motion)); a
+    /// motion that needs more ends there with [`Ending::Bounded`](super::Ending::Bounded). With `None` the limit for
+    /// a motion that slips, loses energy or hops, and for steps within a tolerance, is 8 million, or 40,000 per unit
+    /// of time if this is more. Steps of fixed length then have no limit, and first integrals need no evaluations.
     pub max_evaluations: Option<u64>,
     /// Whether poses are computed.
     pub pose: bool,
@@ -150,7 +152,7 @@ impl Ask {
         Self { method, ..self }
     }
 
-    /// Returns these options, with a continuation past events.
+    /// Returns these options, so that the motion continues past events (`beyond`).
     #[must_use]
     pub fn with_beyond(self) -> Self {
         Self { beyond: true, ..self }
@@ -168,31 +170,31 @@ impl Ask {
         Self { impact_law, ..self }
     }
 
-    /// Returns these options with this pressure on a face.
+    /// Returns these options with this model of the pressure on a face.
     #[must_use]
     pub fn with_face(self, face: Face) -> Self {
         Self { face, ..self }
     }
 
-    /// Returns these options on a table that turns at this rate.
+    /// Returns these options on a table that turns at this rate, in sqrt(g/R).
     #[must_use]
     pub fn with_turning(self, turning: f64) -> Self {
         Self { turning, ..self }
     }
 
-    /// Returns these options on a table with this slope.
+    /// Returns these options on a table with this slope, in radians.
     #[must_use]
     pub fn with_slope(self, slope: f64) -> Self {
         Self { slope, ..self }
     }
 
-    /// Returns these options, with an end at rolling.
+    /// Returns these options, so that the motion ends where the body begins to roll.
     #[must_use]
     pub fn with_stop_at_rolling(self) -> Self {
         Self { stop_at_rolling: true, ..self }
     }
 
-    /// Returns these options with this largest number of evaluations; `None` is no limit.
+    /// Returns these options with this largest number of evaluations; `None` stands for the default limit.
     #[must_use]
     pub fn with_max_evaluations(self, most: impl Into<Option<u64>>) -> Self {
         Self { max_evaluations: most.into(), ..self }
@@ -210,7 +212,7 @@ impl Ask {
         Self { force: true, ..self }
     }
 
-    /// Whether some rolling resistance acts only while the contact point does not slip.
+    /// Whether there is rolling resistance that acts only while the contact point does not slip.
     pub(crate) fn resists_only_rolling(&self) -> bool {
         self.resistance == Resistance::WhileRolling
             && self.losses.coefficient(Law::RollingResistance) != 0.0
@@ -227,8 +229,8 @@ impl Ask {
         self.slope == 0.0 && self.turning == 0.0
     }
 
-    /// Whether energy is conserved and no law of friction acts on a level table, so that three first integrals
-    /// determine the motion.
+    /// Whether the motion conserves energy, without a law of friction and on a level table, so that three first
+    /// integrals determine it.
     pub fn conserves(&self) -> bool {
         self.is_level() && !self.table.rubs() && self.losses.is_none() && self.restitution.is_none()
     }
@@ -250,14 +252,14 @@ pub struct AboveTable {
 }
 
 impl AboveTable {
-    /// A lowest point at this height, in R, with this vertical velocity, in sqrt(g R).
+    /// A body whose lowest point is at this height, in R, with this vertical velocity, in sqrt(g R).
     pub const fn new(height: f64, lift: f64) -> Self {
         Self { height, lift }
     }
 }
 
 impl From<[f64; 2]> for AboveTable {
-    /// The height and the vertical velocity.
+    /// Converts the array of height and vertical velocity.
     fn from([height, lift]: [f64; 2]) -> Self {
         Self { height, lift }
     }
@@ -276,7 +278,8 @@ impl From<AboveTable> for [f64; 2] {
 pub struct Start<S = State> {
     /// The initial state.
     pub state: S,
-    /// The initial slip of the contact point, in sqrt(g R); for a stone see [`stone::roll`](super::stone::roll), too.
+    /// The initial slip of the contact point, in sqrt(g R); [`stone::roll`](super::stone::roll) says which components
+    /// a stone has.
     #[cfg_attr(feature = "serde", serde(default))]
     pub slip: Slip,
     /// The initial time, in sqrt(R/g).
@@ -294,7 +297,7 @@ pub struct Start<S = State> {
 }
 
 impl<S> From<S> for Start<S> {
-    /// The state at time 0 on the table, without a slip.
+    /// Starts from this state at time 0 on the table, without a slip.
     fn from(state: S) -> Self {
         Self { state, slip: Slip::default(), time: 0.0, aloft: None, heading: 0.0, place: [0.0; 2] }
     }
@@ -336,7 +339,7 @@ impl<S> Start<S> {
         Self { heading, ..self }
     }
 
-    /// Returns this start with the contact point at this place.
+    /// Returns this start with the contact point at this place (x, y), in R.
     #[must_use]
     pub fn with_place(self, place: [f64; 2]) -> Self {
         Self { place, ..self }
@@ -357,8 +360,8 @@ impl Start {
         self.with_slip(if told.0.view().over { slip.map(|u| 0.0 - u) } else { slip })
     }
 
-    /// The body with the circle carrying that does so at the start, and the start as seen from the end of that circle. Both
-    /// are told from the lower end of the body.
+    /// The body with the circle of contact that carries it at the start, and the start counted from the end of the
+    /// body at which that circle is. The given body and start are counted from the body's lower end.
     pub(crate) fn seen_on(&self, body: &Body) -> (Body, Self) {
         let body = body.at(self.state.theta);
         let view = body.view();
@@ -374,10 +377,12 @@ impl Start {
 
     /// The initial conditions of a body from its orientation, its angular velocity and the velocity of its centre of
     /// mass. The orientation is the rotation from the axes of the body to those of the laboratory, of which the third
-    /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is that
-    /// of the centre above the table, for a body in the air; with `None` the body is on the table. The motion counts
-    /// phi and psi from this orientation, which has the angles [`euler_angles`](crate::laws::pose::euler_angles);
-    /// [`readings_from`](crate::measured::MeasuredMotion::readings_from) puts it back to where it began.
+    /// is the vertical; the vectors are along the axes of the laboratory, in sqrt(g/R) and sqrt(g R). `height` is
+    /// that of the centre above the table, in R, for a body in the air; with `None` the body is on the table. The
+    /// motion counts phi and psi from this orientation, whose angles are
+    /// [`euler_angles`](crate::laws::pose::euler_angles);
+    /// [`readings_from`](crate::measured::MeasuredMotion::readings_from) returns the motion from the given
+    /// orientation and place.
     ///
     /// Error of the slip: 16 ulp of the velocities, divided by sin theta; a slip below 16 ulp counts as zero.
     ///

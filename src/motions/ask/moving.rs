@@ -8,45 +8,46 @@ use crate::numbers::larger_or_nan;
 use core::f64::consts::PI;
 use core::fmt::Debug;
 
-/// The trait that only the states of this crate have, so that [`Moving`] can grow.
+/// A private trait that only the states of this crate have, so that [`Moving`] can get more methods later.
 pub(crate) mod sealed {
-    /// A state of this crate.
+    /// A state that this crate defines.
     pub trait OwnState {}
 }
 
-/// A state of a moving body, as a few numbers, with the types of its pose and of its contact force. The states of a body and
-/// of a stone are the only ones.
+/// A state of a moving body: [`State`] or the state of a stone, with the types of its components, its pose and its
+/// contact force.
 pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
-    /// Safety factor in the estimated error, which multiplies the scaled difference of two runs.
+    /// Safety factor of the estimated error, which multiplies the scaled difference of two runs.
     const SAFETY: f64 = 30.0;
-    /// The numbers of the state.
+    /// The array type of the components of the state.
     type Numbers: AsRef<[f64]>;
     /// The position and the orientation of the body.
     type Pose: Copy + Debug + PartialEq;
     /// The contact force.
     type Force: Copy + Debug + PartialEq;
 
-    /// The numbers of the state.
+    /// The components of the state, as an array.
     fn numbers(&self) -> Self::Numbers;
     /// The inclination, in radians.
     fn theta(&self) -> f64;
-    /// The largest angular velocity in the state.
+    /// The largest component of the angular velocity by size.
     fn fastest(&self) -> f64;
-    /// The largest difference between the numbers of two poses.
+    /// The largest difference between the components of two poses.
     fn pose_distance(a: &Self::Pose, b: &Self::Pose) -> f64;
     /// The sum of the sizes of a pose's angles, in radians, to which their rounding errors are proportional.
     fn turning(pose: &Self::Pose) -> f64;
-    /// The largest difference between the numbers of two forces.
+    /// The largest difference between the components of two forces.
     fn force_distance(a: &Self::Force, b: &Self::Force) -> f64;
     /// The state with all speeds multiplied by `pace`, as in other units of time.
     fn at_pace(&self, pace: f64) -> Self;
     /// A force multiplied by `weight`.
     fn force_at(force: &Self::Force, weight: f64) -> Self::Force;
-    /// The same state with the inclination and the axes of the other one of two equal rims; None for a stone.
+    /// The same state counted from the other one of two equal rims; None for a stone.
     fn seen_from_other_rim(&self) -> Option<Self> {
         None
     }
-    /// Converts a state that refers to the upper end of a body to its lower end, where it has this inclination.
+    /// Converts a state that is counted from the upper end of a body to one counted from the lower end, with the
+    /// inclination `theta`.
     fn told(&self, _theta: f64) -> Self {
         *self
     }
@@ -54,8 +55,8 @@ pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     fn pose_told(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
-    /// Converts a pose as `pose_told`, for a motion whose poses all refer to the upper end, after a half turn of the
-    /// laboratory about the vertical, so that phi begins with 0.
+    /// Converts a pose as [`pose_told`](Self::pose_told), for a motion all of whose poses refer to the upper end, and
+    /// turns the laboratory by half a turn about the vertical, so that phi begins with 0.
     fn pose_told_from_start(pose: &Self::Pose) -> Self::Pose {
         *pose
     }
@@ -63,7 +64,8 @@ pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     fn force_told(force: &Self::Force) -> Self::Force {
         *force
     }
-    /// The largest difference between two poses that refer to different circles, whose points of contact differ.
+    /// The largest difference between two poses that refer to different circles of contact, without the contact
+    /// points, which differ.
     fn pose_distance_apart(a: &Self::Pose, b: &Self::Pose) -> f64 {
         Self::pose_distance(a, b)
     }
@@ -72,7 +74,7 @@ pub trait Moving: Copy + Debug + PartialEq + sealed::OwnState {
     fn pose_distance_over(a: &Self::Pose, b: &Self::Pose) -> f64 {
         Self::pose_distance(a, b)
     }
-    /// The largest difference between the numbers of two states.
+    /// The largest difference between the components of two states.
     fn distance(&self, other: &Self) -> f64 {
         let (a, b) = (self.numbers(), other.numbers());
         a.as_ref().iter().zip(b.as_ref()).fold(0.0, |most, (a, b)| larger_or_nan(most, (a - b).abs()))

@@ -1,13 +1,14 @@
-//! What a body lies or stands on once it is at rest: heads or tails.
+//! On which part (face, side or edge) a body rests at the end of its motion: heads or tails.
 //!
 //! ```text
 //! a face    the motion ended where a face landed, or at rest on it; e3 points up on the first face, and down on the other
 //! its side  no velocity is left, and both rims or any two circles touch the table, or theta has reached theta_end
 //! an edge   no velocity is left, and dry losses hold the body, or it is balanced: theta'' = 0
 //! ```
-//! A motion that ends where its face lands has the slide and the spin on it still before it, and neither changes which face
-//! lies on the table. A motion that ends where its other rim lands is not computed to its rest. A body of several circles is told from its lower end, so
-//! that theta itself says which face is down, and every border of its circles is a side.
+//! A motion that ends where a face lands does not compute the slide and the spin on this face, which do not change
+//! which face lies on the table. A motion that ends where the other rim lands is not computed until the body is at
+//! rest, so that the result is `None`. The state of a body of several circles is counted from its lower end, so that
+//! theta itself says which face is down, and every inclination at which two circles touch is a side.
 //!
 //! Error: none, unless the estimated error of the motion is so large that another motion is as likely.
 
@@ -21,7 +22,7 @@ use crate::motions::walk::two_runs::Followed;
 use crate::motions::{Ending, Kind, Motion, Path};
 use crate::numbers::codes::coded;
 
-/// A balanced body has a smaller angular acceleration than this, in g/R, from rounding.
+/// A body counts as balanced if its angular acceleration, in g/R, is below this, which may be rounding.
 const BALANCED: f64 = 1e-14;
 
 coded! {
@@ -41,7 +42,7 @@ coded! {
     }
 }
 
-/// The last numbers of a motion.
+/// The state at the end of a motion, and how the motion ended.
 struct LastState {
     ending: Ending,
     state: State,
@@ -93,7 +94,7 @@ impl LastState {
         if body.has_row() { lies || body.lands_at(theta) } else { theta >= body.theta_end() }
     }
 
-    /// The angular acceleration w2' on the circle that carries.
+    /// The angular acceleration w2' of the body on its circle of contact.
     fn tilts(&self, body: &Body) -> f64 {
         Contact::Rolling.derivative(&body.standing_on(self.rim), &self.state).w2
     }
@@ -125,7 +126,7 @@ impl Motion {
     }
 }
 
-/// What a body rests on that has rolled on its first rim without a change of phase.
+/// The part on which a body rests after it has rolled on its first rim without a change of phase.
 #[cfg(feature = "many")]
 pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> RestsOn {
     LastState { ending, state, slip: Slip::default(), rim: 0, kind: Some(Kind::Rolling) }.rests_on(body)
@@ -133,7 +134,7 @@ pub(crate) fn rolled_rests_on(body: &Body, state: State, ending: Ending) -> Rest
 
 #[cfg(feature = "many")]
 impl Followed {
-    /// What the body rests on at the end of this motion, whose path is stored apart.
+    /// The part on which the body rests at the end of this motion, whose path is stored separately.
     pub(crate) fn rests_on(&self, body: &Body) -> RestsOn {
         LastState::of(&self.motion, Some(&self.path)).map_or(RestsOn::None, |last| last.rests_on(body))
     }

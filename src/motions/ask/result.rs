@@ -14,13 +14,13 @@ use crate::numbers::codes::coded;
 use nalgebra::Point2;
 
 coded! {
-    /// The way in which a motion ended. Its number is the status of a result.
+    /// The way in which a motion ended. Its number is the `status` of a result.
     pub enum Ending {
         /// The motion reached the last requested time.
         Done = 0,
-        /// The face landed on the table (theta = 0 or pi) in a motion without a restitution, on a table on which a face that
-        /// moves cannot roll, or under laws of the user. The body may still spin on its face, with the last w3; that spin is
-        /// not computed.
+        /// The face landed on the table (theta = 0 or pi) in a motion without a restitution or with user-defined
+        /// laws, or while it moved on a table that only allows rolling. The body may still spin on its face, with the
+        /// last w3; that spin is not computed.
         Face = 1,
         /// The other rim landed: the body lies on its side (theta = pi/2, ell > 0).
         Side = 2,
@@ -28,14 +28,14 @@ coded! {
         LiftOff = 3,
         /// Rolling needed more friction than mu N.
         Slip = 4,
-        /// The body, state or contact is invalid, or the step is too long. Only a row of many motions has this status,
-        /// with NaN in place of numbers; a single motion returns an error.
+        /// The body, state or contact is invalid, or the step is too long. Only one of many motions in a call has
+        /// this status, with NaN in its results; a single motion returns an error.
         Invalid = 5,
-        /// No contact force, or more than one, obeys the law of friction.
+        /// No contact force, or more than one, obeys the law of friction (the paradox of Painleve).
         Painleve = 6,
         /// The body is at rest, and dry friction holds it.
         Stops = 7,
-        /// The computation stopped at this time, at the limit [`Motion::limit`].
+        /// The computation stopped at this time, for the reason [`Motion::limit`].
         Bounded = 8,
         /// A landing on both rims, or of a face, has no outcome, or more than one, under the law of friction.
         Landing = 9,
@@ -43,16 +43,18 @@ coded! {
 }
 
 coded! {
-    /// The limit at which the computation of a motion stopped.
+    /// The reason for which the computation of a motion stopped early.
     pub enum Limit {
-        /// The number of evaluations is the largest allowed ([`Ask::max_evaluations`](crate::motions::Ask::max_evaluations)).
+        /// The number of evaluations has reached the largest allowed
+        /// ([`Ask::max_evaluations`](crate::motions::Ask::max_evaluations)).
         Evaluations = 1,
-        /// 600,000 steps have hardly advanced the time, or as many as the allowed evaluations if these are more.
+        /// The time has hardly advanced in 600,000 steps, or in as many steps as evaluations are allowed if these are
+        /// more.
         Crawling = 2,
-        /// Slipping, rolling and the like, and the motions that dry losses hold and let go, have changed too often: more
-        /// than 20 times in each unit of time, at least 5,000 and at most 10,000 times.
+        /// Too many changes: between phases such as slipping and rolling, or of rotations that dry friction stops and
+        /// lets go. The limit is 20 changes per unit of time, but at least 5,000 and at most 10,000.
         Changes = 3,
-        /// These changes follow each other without an advance of time.
+        /// Changes between phases follow each other without an advance of time.
         Chatter = 4,
         /// There are more than 30,000 impacts, or impacts follow each other without end.
         Impacts = 5,
@@ -92,12 +94,12 @@ impl From<Exhausted> for Limit {
     }
 }
 
-/// The event at which a motion leaves the range of the model.
+/// An event at which the model ceases to describe the motion, such as a landing or a slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Event<S = State> {
-    /// The kind of the event.
+    /// The kind of the event, such as `Side` or `LiftOff`.
     pub ending: Ending,
     /// The time of the event.
     pub time: f64,
@@ -135,39 +137,42 @@ pub struct Motion<S: Moving = State> {
     pub poses: Option<Vec<S::Pose>>,
     /// The contact force at each time, if forces were requested.
     pub forces: Option<Vec<S::Force>>,
-    /// The first event that the model does not cover, if one happened before the last time.
+    /// The event that ended the motion, or with `beyond` the first event past which it continues; None if there is
+    /// none up to the last time.
     pub event: Option<Event<S>>,
     /// The method that computed the motion: `Exact`, `Step` or `Tolerance`.
     pub method: Method,
-    /// Estimated error: the largest over all numbers of all states, and over the time and the
-    /// state of the event.
+    /// Estimated error: the largest over all components of all states, and over the time and the state of the event.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub error: f64,
-    /// Estimated error of the poses: the largest over all of their numbers; NaN without poses.
+    /// Estimated error of the poses: the largest over all of their components; NaN without poses.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub pose_error: f64,
-    /// Estimated error of the contact forces per weight: the largest over all of their numbers; NaN
-    /// without forces.
+    /// Estimated error of the contact forces, in weights: the largest over all of their components; NaN without
+    /// forces.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub force_error: f64,
     /// Predicted share of the amplitude of the nutation that a fixed step takes away; 0 with the other methods.
     pub step_loss: f64,
-    /// A fixed step that takes away less than a thousandth of this amplitude; infinite with the other methods.
+    /// A fixed step that takes away less than a thousandth of the amplitude of the nutation; infinite with the other
+    /// methods.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub advice: f64,
-    /// Whether the loss of amplitude, the nutation or the precession makes the fixed step questionable.
+    /// Whether the fixed step is too long for a reliable result: for the amplitude of the nutation, its frequency, or
+    /// the precession.
     pub coarse: bool,
     /// Number of evaluations of the equations of motion.
     pub evaluations: u64,
-    /// The limit at which the computation stopped, if it did: its motion ends there with [`Ending::Bounded`]. A motion
-    /// that is interrupted only while its error is estimated has its own ending and this limit, and an infinite error.
+    /// The reason for which the computation stopped early, if it did; the motion then ends with [`Ending::Bounded`].
+    /// If it was interrupted only while the error was estimated, the motion has its true ending, the limit
+    /// `Interrupted`, and an infinite error.
     #[cfg_attr(feature = "serde", serde(default))]
     pub limit: Option<Limit>,
     /// Slip, phases and lost energy of a motion with a law of friction, with a restitution or with losses.
     pub path: Option<Box<Path<S>>>,
-    /// Whether the table is smooth, so that the centre moves only up and down.
+    /// Whether the table is smooth, so that the centre of mass moves only vertically.
     pub(crate) smooth: bool,
-    /// The number of the only circle that carries a body of several circles, in a motion without a path.
+    /// The number of the circle on which a body of several circles moves, in a motion without a path.
     #[cfg_attr(feature = "serde", serde(default))]
     pub(crate) circle: Option<u8>,
 }
@@ -206,7 +211,8 @@ impl<S: Moving> Motion<S> {
         }
     }
 
-    /// Ends the motion at the limit `Interrupted`, after the outputs that are written; its last state is `then`.
+    /// Ends the motion at the limit `Interrupted`, after the outputs that are written; without outputs it ends at
+    /// `t0` in the state `start`.
     pub(crate) fn interrupted(mut self, times: &[f64], t0: f64, start: S) -> Self {
         self.times = times[..self.states.len()].to_vec();
         let (time, state) = (self.times.last().copied().unwrap_or(t0), self.states.last().copied());
@@ -232,7 +238,7 @@ impl<S: Moving> Motion<S> {
         self.limit == Some(Limit::Interrupted)
     }
 
-    /// Makes the estimated errors infinite, since the run that shows them is missing.
+    /// Makes the estimated errors infinite, since the second run that would show them is missing.
     pub(crate) fn make_error_infinite(&mut self) {
         self.error = f64::INFINITY;
         for (error, some) in
@@ -242,7 +248,7 @@ impl<S: Moving> Motion<S> {
         }
     }
 
-    /// A motion that is seen from one end of the body, as told from its lower end.
+    /// Converts a motion whose states are counted from either end of the body to states counted from the lower end.
     pub(crate) fn told(mut self, view: &View) -> Self {
         self.circle = view.circles.map(|[here, _]| here);
         let rim = self.circle.unwrap_or_default();
@@ -258,12 +264,12 @@ impl<S: Moving> Motion<S> {
         self
     }
 
-    /// Whether the body is told from its lower end, whichever of its several circles carries.
+    /// Whether the states of a body of several circles are counted from its lower end, whichever circle carries it.
     pub(crate) fn is_told(&self) -> bool {
         self.circle.is_some() || self.path.as_ref().is_some_and(|path| path.view.circles.is_some())
     }
 
-    /// The motion; None if it was interrupted before it advanced from its initial time.
+    /// Returns the motion, or None if it was interrupted before it advanced from the initial time `t0`.
     pub(crate) fn advanced(self, t0: f64) -> Option<Self> {
         let stays = self.is_interrupted() && self.event.is_some_and(|event| event.time == t0);
         (!stays).then_some(self)
@@ -276,7 +282,7 @@ impl<S: Moving> Motion<S> {
 }
 
 impl Motion {
-    /// The motion on a level table from another place and in another direction.
+    /// Moves a motion on a level table to the place and the direction of this start.
     pub(crate) fn placed(mut self, start: &Start) -> Self {
         let ((sin, cos), [x, y]) = (start.heading.sin_cos(), start.place);
         if start.heading != 0.0 || start.place != [0.0; 2] {
@@ -291,11 +297,11 @@ impl Motion {
 }
 
 coded! {
-    /// The kind of a phase.
+    /// The kind of a phase of a motion.
     pub enum Kind {
-        /// The contact point is at rest.
+        /// The body rolls: its contact point is at rest.
         Rolling = 0,
-        /// The contact point slips.
+        /// The body slips: its contact point has a velocity over the table.
         Slipping = 1,
         /// The body is in the air.
         Flying = 2,
@@ -331,7 +337,7 @@ pub struct Phase<S = State> {
     pub rim: u8,
 }
 
-/// The rim that lands in an impact. In files it is true if this is not the first rim.
+/// Which rim lands in an impact: the first one or another. In files it is true if this is not the first rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -340,7 +346,8 @@ pub struct Phase<S = State> {
 )]
 #[non_exhaustive]
 pub enum Lands {
-    /// The rim to which the initial state refers; of several circles the lowest one. A stone has no other.
+    /// The rim to which the initial state refers; for a body of several circles, the lowest circle; for a stone, its
+    /// surface.
     First,
     /// Another rim or circle.
     Other,
@@ -358,7 +365,7 @@ impl From<Lands> for bool {
     }
 }
 
-/// The behaviour of a body after an impact. In files it is true if the body stays on the table.
+/// Whether a body leaves the table after an impact or stays on it. In files it is true if the body stays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(
     feature = "serde",
@@ -393,16 +400,17 @@ impl From<AfterImpact> for bool {
 pub struct Strike<S = State> {
     /// The time of the impact.
     pub time: f64,
-    /// Whether the first rim lands or another one.
+    /// Whether the first rim lands, or another one.
     #[cfg_attr(feature = "serde", serde(rename = "other"))]
     pub lands: Lands,
     /// The rim that lands, as in [`Path::rims`].
     pub rim: u8,
-    /// The motion of the contact point in the impact.
+    /// The motion of the contact point in the impact, such as sticking or slipping.
     pub hit: Hit,
     /// The state before and after the impact; both refer to the rim that lands.
     pub states: [S; 2],
-    /// The velocity of the lowest point of that rim before and after: along e_h, along e2, and upwards.
+    /// The velocity of the lowest point of the rim that lands, before and after the impact: along e_h, along e2, and
+    /// upwards, in sqrt(g R).
     pub velocities: [[f64; 3]; 2],
     /// The impulses along e_h, along e2, and upwards, in M sqrt(g R), summed over both rims if both receive an
     /// impulse.
@@ -410,14 +418,15 @@ pub struct Strike<S = State> {
     /// The impulse of the couple of a patch of contact about the vertical, in M R sqrt(g R); 0 for a point.
     #[cfg_attr(feature = "serde", serde(default))]
     pub couple: f64,
-    /// The energy lost, in M g R; if the body stays, also the friction of the bounces that are summed.
+    /// The energy lost in the impact, in M g R; if the body stays, also the work of friction in the last bounces,
+    /// which are summed.
     pub lost: f64,
     /// Whether the body leaves the table or stays on it after the impact.
     #[cfg_attr(feature = "serde", serde(rename = "stays"))]
     pub after: AfterImpact,
 }
 
-/// The other rim of a body that lies on both. In files it is the array of the slip and of the force.
+/// Slip and force of the other rim of a body that lies on both. In files it is the array of their five components.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -433,20 +442,20 @@ pub struct OtherRim {
 }
 
 impl OtherRim {
-    /// No other rim.
+    /// The value for a body that does not lie on two rims: NaN.
     pub(crate) const NONE: Self = Self::of(
         Slip::new(f64::NAN, f64::NAN),
         Force { normal: f64::NAN, along: f64::NAN, across: f64::NAN },
     );
 
-    /// A rim with this slip and this force.
+    /// The other rim with this slip and this force.
     pub(crate) const fn of(slip: Slip, force: Force) -> Self {
         Self { slip, force }
     }
 }
 
 impl From<[f64; 5]> for OtherRim {
-    /// The slip along e_h and e2, and the normal, the along and the across component of the force.
+    /// Converts the array of the slip along e_h and e2, and of the components of the force: normal, along and across.
     fn from([u, v, normal, along, across]: [f64; 5]) -> Self {
         Self::of(Slip::new(u, v), Force { normal, along, across })
     }
@@ -468,17 +477,17 @@ pub struct Path<S = State> {
     pub slip: Vec<Slip>,
     /// The heat of friction up to each time, in M g R, without the friction of impacts.
     pub dissipated: Vec<f64>,
-    /// The energy lost to the losses up to each time, in M g R; empty without losses.
+    /// The energy that the loss laws have taken up to each time, in M g R; empty without losses.
     pub work_lost: Vec<f64>,
-    /// Whether the contact point is at rest or slips at each time.
+    /// The kind of phase at each time, such as rolling or slipping.
     pub kinds: Vec<Kind>,
     /// The phases, from the initial one on.
     pub phases: Vec<Phase<S>>,
     /// The total heat of friction up to the last time or the end, in M g R.
     pub heat: f64,
-    /// The total energy lost to the losses, in M g R.
+    /// The total energy that the loss laws have taken, in M g R.
     pub lost: f64,
-    /// The total time of slipping.
+    /// The total time of slipping, in sqrt(R/g).
     pub slipping: f64,
     /// The height of the lowest point of the rim and its vertical velocity at each time; empty if the motion ends where
     /// the body leaves the table.
@@ -489,21 +498,22 @@ pub struct Path<S = State> {
     /// body comes to lie on its side.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file::rows"))]
     pub other_rim: Vec<OtherRim>,
-    /// The rim to which state, slip, pose and force at each time refer: 0 is the rim to which the initial state refers, and
-    /// 1 the other one. Empty if the motion ends where the body leaves the table: the rim is then always 0. For a body of
-    /// several circles, the number of the circle on which it stands, from the lower end up; its states always refer to its
-    /// lower end.
+    /// The rim to which state, slip, pose and force at each time refer: 0 is the rim to which the initial state
+    /// refers, and 1 the other rim. Empty in a motion without a restitution, which stays on rim 0. For a body of
+    /// several circles, the number of the circle on which it stands, from the lower end up; its states always refer
+    /// to its lower end.
     pub rims: Vec<u8>,
     /// The slip at the event that ended the motion.
     pub last_slip: Slip,
-    /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for slow
-    /// motions); infinite if this holds up to the end.
+    /// For a stone, the time up to which the estimated error is at most 1 % of the largest speed (at most 0.01 for
+    /// slow motions); infinite if this is so up to the end.
     #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
     pub known_until: f64,
-    /// Whether the rows have the lost energy, and whether the motion continues in the air and on both rims.
+    /// Whether the outputs include the lost energy; `goes_on` is whether the motion continues in the air and on both
+    /// rims.
     pub(crate) loses: bool,
     pub(crate) goes_on: bool,
-    /// How the body is now seen.
+    /// The end of the body and the circle from which the current state is counted.
     pub(crate) view: View,
     /// Whether the computation stopped where the body began to roll.
     pub(crate) rolls_on: bool,
@@ -516,7 +526,7 @@ pub struct Path<S = State> {
 }
 
 impl<S> Path<S> {
-    /// The rim from which the body is told, for a body that lies on two.
+    /// The rim to which the outputs of a body refer; `lies` if the body lies on two rims.
     pub(crate) fn rim(&self, lies: bool) -> u8 {
         match self.view.circles {
             Some([here, next]) => {
@@ -530,13 +540,14 @@ impl<S> Path<S> {
         }
     }
 
-    /// Whether the numbers of the walk are those as seen from the upper end of a body that is told from its lower end.
+    /// Whether the current state is counted from the upper end of a body whose outputs are counted from the lower
+    /// end.
     pub(crate) fn is_told_over(&self, lies: bool) -> bool {
         self.view.over && !lies && self.view.circles.is_some()
     }
 
-    /// A path with space for `count` rows; `loses` if they have the lost energy, and `goes_on` if they have what bodies
-    /// in the air and on both rims need.
+    /// An empty path with space for `count` outputs; `loses` if they include the lost energy, and `goes_on` if they
+    /// include heights and a second rim.
     pub(crate) fn empty(count: usize, loses: bool, goes_on: bool) -> Result<Self, Error> {
         let (losing, going) = (if loses { count } else { 0 }, if goes_on { count } else { 0 });
         Ok(Self {

@@ -1,5 +1,5 @@
-//! The outputs of a walk, row by row: each row is written in one place, into memory that was reserved before the first
-//! step.
+//! The outputs of a motion, one row per time. Rows are written only here, into memory that was reserved before the
+//! first step.
 
 use crate::error::{Error, room};
 use crate::laws::body::View;
@@ -8,11 +8,11 @@ use crate::motions::walk::two_runs::Followed;
 use crate::motions::{AboveTable, Ask, Kind, Motion, Moving, OtherRim, Path};
 use crate::numbers::larger_or_nan;
 
-/// The outputs at one time.
+/// The outputs of a motion at one time.
 pub(crate) struct OutputRow<S: Moving> {
     pub state: S,
     pub slip: Slip,
-    /// The heat of friction, and the energy lost to the losses, since the start.
+    /// The heat of friction, and the energy that the loss laws have taken, since the start.
     pub spent: [f64; 2],
     pub kind: Kind,
     /// The pose, if poses were requested.
@@ -26,7 +26,7 @@ pub(crate) struct OutputRow<S: Moving> {
 }
 
 impl<S: Moving> OutputRow<S> {
-    /// A row of a body on the table, without pose and force.
+    /// The outputs of a body on the table, without pose and force.
     pub fn on_table(state: S, slip: [f64; 2], spent: [f64; 2], kind: Kind) -> Self {
         Self {
             state,
@@ -40,7 +40,7 @@ impl<S: Moving> OutputRow<S> {
         }
     }
 
-    /// A row that is seen from the upper end of the body, as told from its lower end.
+    /// Converts outputs that are counted from the upper end of the body to the lower end.
     fn told(self, view: &View) -> Self {
         let force = self.force.map(|(force, doubt)| (S::force_told(&force), doubt));
         let (pose, state) =

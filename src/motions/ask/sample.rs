@@ -1,4 +1,4 @@
-//! The outputs of a motion, one time after the other.
+//! The outputs of a motion as samples, one for each time.
 //!
 //! ```text
 //! v = (u_h + h w2) e_h + (u_2 - L w1 + A w3) e2 + (g w2 + lift) z      u the slip, lift the rise of the lowest point
@@ -13,7 +13,7 @@ use crate::motions::{AboveTable, Kind, Motion, Moving, OtherRim};
 use core::f64::consts::PI;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A motion at one of its times.
+/// The outputs of a motion at one of its times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -34,25 +34,25 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point, with a law of friction.
+    /// The slip of the contact point; None without a law of friction, losses and a restitution.
     pub slip: Option<Slip>,
-    /// The kind of the phase, with a law of friction, losses or a restitution.
+    /// The kind of phase, such as rolling or slipping; None without a law of friction, losses and a restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point above the table and its vertical velocity; both are 0 on the table.
     pub aloft: AboveTable,
-    /// Slip and force of the other rim of a body that lies on both.
+    /// Slip and force of the other rim of a body that lies on both; else None.
     pub other_rim: Option<OtherRim>,
     /// The rim to which state, slip, pose and force refer: 0 is that of the initial state, and 1 the other one. For a body
     /// of several circles, the number of the circle on which it stands; its state always refers to its lower end.
     pub rim: u8,
     smooth: bool,
-    /// Whether the body is told from its lower end, whichever circle carries.
+    /// Whether the state is counted from the lower end of the body, whichever circle carries it.
     #[cfg_attr(feature = "serde", serde(default))]
     told: bool,
 }
 
 impl<S: Moving> Motion<S> {
-    /// The motion at each of its times.
+    /// Returns the outputs at each time of the motion.
     ///
     /// ```
     /// use spincyl::{Body, motion::{Ask, roll_with}, steady};
@@ -71,7 +71,7 @@ impl<S: Moving> Motion<S> {
         (0..self.states.len()).map(|i| self.sample(i))
     }
 
-    /// The motion at the time of this index.
+    /// The outputs at the time with the index `i`.
     pub(crate) fn sample(&self, i: usize) -> Sample<S> {
         let path = self.path.as_deref();
         Sample {
@@ -100,7 +100,7 @@ impl Motion {
 }
 
 impl Sample {
-    /// Whether the state is that of the body turned upside down.
+    /// Whether the state is counted from the other end of the body than the initial state.
     fn is_over(&self) -> bool {
         self.rim == 1 && !self.told
     }
@@ -136,15 +136,16 @@ impl Sample {
         own.map(|own| own + self.force_on_other_rim().unwrap_or_default())
     }
 
-    /// The part of that force on the other rim; None unless the body lies on both rims.
+    /// The force of the table on the other rim, along the axes of the laboratory, in weights; None unless the body
+    /// lies on both rims.
     pub fn force_on_other_rim(&self) -> Option<Vector3<f64>> {
         let other = self.force.and(self.other_rim)?;
         self.pose.map(|pose| other.force.in_laboratory(pose.phi.rest))
     }
 
-    /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested. It is
-    /// the velocity over the table: on a smooth slope the fall of the centre, and on a table that turns its motion
-    /// under the body, come on top of it.
+    /// The velocity of the centre of mass along the axes of the laboratory, in sqrt(g R), if poses were requested. On
+    /// a smooth slope it does not include the velocity of the centre downhill, nor on a turntable the velocity of the
+    /// table under the contact point.
     pub fn velocity(&self, body: &Body) -> Option<Vector3<f64>> {
         let body = &body.standing_on(self.rim);
         let [along, across] = if self.smooth {

@@ -1,11 +1,13 @@
-//! The walk of a body of revolution: its equations, the data of the current phase, and its first numbers.
+//! The computation of a motion of a body of revolution: its equations, the data of the current phase, and its first
+//! state vector.
 //!
 //! ```text
 //! body, laws of the user, slip      what does not change but for what friction and losses hold
 //! lossy, lying                      the current phase, if it is one of these
 //! ```
-//! [`phases`](super::phases) begins and ends the phases. A rougher run is perturbed by a share of the state (`perturbs_by`), so
-//! that its difference from the finer run shows how errors grow.
+//! [`phases`](super::phases) begins and ends the phases. A motion is computed twice; the run with the larger
+//! tolerance is perturbed by a share of the state (`perturbs_by`), so that the difference of the two runs shows how
+//! errors grow.
 
 use super::lie::flow::LyingPhase;
 use super::own::Own;
@@ -29,64 +31,69 @@ use crate::motions::{Ask, Start};
 use core::cell::Cell;
 use core::f64::consts::PI;
 
-/// The walk of a body of revolution.
+/// The computation, phase by phase, of a motion of a body of revolution.
 pub(crate) type BodyWalk<'a, const N: usize, G = ()> = Walk<'a, BodyPhases<G>, N>;
 
-/// The data of a body's walk: its equations, and the current phase.
+/// The equations of a body's motion, and the data of the current phase.
 pub(crate) struct BodyPhases<G: Own = ()> {
     pub body: Body,
-    /// The laws of the user.
+    /// The user-defined laws.
     pub own: G,
     pub slide: Slide<G>,
-    /// The state where the current phase begins or has ended, and the initial state.
+    /// The state at which the current phase begins or has ended; `start` is the initial state of the motion.
     pub state: State,
     pub start: Start,
     /// Whether a phase without a slip is integrated; otherwise the first integrals solve it, as long as no energy is
     /// lost.
     pub(super) integrates: bool,
-    /// Whether the last phase of rolling by the first integrals was brief, and whether the current one, without losses, is
-    /// integrated.
+    /// Whether the last phase of rolling by the first integrals was brief. `by_steps` is whether the current phase of
+    /// rolling without losses is integrated instead.
     pub(crate) rolls_briefly: bool,
     pub(crate) by_steps: bool,
-    /// Whether the body is a uniform ball, whose phases are known; and their errors.
+    /// Whether the body is a uniform ball, whose phases have closed forms; `roundings` has their errors.
     pub(super) uniform: bool,
     pub(super) roundings: Roundings,
-    /// Whether the caller computes the phases of rolling that the first integrals solve, among those of other walks.
+    /// Whether the caller computes the phases of rolling that the first integrals solve, together with those of other
+    /// motions.
     #[cfg(feature = "many")]
     pub(crate) rolls_among: bool,
-    /// The tangent of the slope: the horizontal pull on the centre per weight.
+    /// The tangent of the slope: the component of gravity along the table over the component normal to it.
     pub(super) tilt: f64,
-    /// The rate at which the table turns.
+    /// The angular velocity of the turntable, in sqrt(g/R); 0 if the table does not turn.
     pub(super) turning: f64,
     /// The current phase, if it loses energy without a slip.
     pub(super) lossy: Option<LossyPhase<G>>,
-    /// The numbers after the last landings of a rocking at a border that is no right angle.
+    /// The state vectors after the last landings of a body that rocks about an inclination, other than pi/2, at which
+    /// two rims touch.
     pub(super) rocked: Vec<Vec<f64>>,
     /// The current phase, if the body lies on both rims.
     pub(crate) lying: Option<Box<LyingPhase<G>>>,
     /// The current phase, if the body is on its face.
     pub(crate) standing: Option<Box<StandingFlow>>,
-    /// The friction of the face on which it has stood last, and the number lam on which it depends.
+    /// The friction of the face on which the body has stood last, after the number lam = mu z/a on which it depends
+    /// (z: height of the centre, a: radius of the face).
     pub(super) face: Cell<Option<(f64, FaceFriction)>>,
-    /// Whether only theta changes, so that rounding must not make the body turn.
+    /// Whether the body moves in a vertical plane and only theta changes, so that rounding must not make it turn.
     pub(super) planar: bool,
-    /// The steps at the ends of the last slip and of the last phase that loses energy without one, in their variables.
+    /// The last integration step of the last slip, and of the last phase with losses without a slip, in their
+    /// variables of integration.
     pub(super) lately: [f64; 2],
-    /// Estimates of the end of a slipping whirr; None if the losses do not let a whirr last for infinitely many turns.
+    /// Estimates of the end of a whirr with slip; None if the losses do not let a whirr last for infinitely many
+    /// turns.
     pub(super) tail: Option<LastTurns>,
-    /// The slips in its nods; None if a loss stops the contact along the rim.
+    /// The slips in the nods of a whirr; None if a loss stops the contact point along the rim.
     pub(super) nods: Option<Box<Nods>>,
 }
 
-/// A phase that loses energy without a slip.
+/// A phase in which a body loses energy without a slip.
 #[derive(Clone, Copy)]
 pub(super) struct LossyPhase<G = ()> {
     pub(super) flow: LossyFlow<G>,
 }
 
 impl<'a, const N: usize> BodyWalk<'a, N> {
-    /// A walk from its initial state, with steps of the tolerance `tol`, which is the requested tolerance or a larger
-    /// one.
+    /// The computation of a motion at its initial state, with steps of the tolerance `tol`, which is the requested
+    /// tolerance or a larger one.
     pub fn of_body(body: &Body, ask: &Ask, tol: f64, times: &'a [f64], start: &Start) -> Result<Self, Error> {
         let fine = check_walk(body, start, ask)?;
         let (ask, start) = without_friction(body, ask, start);
@@ -95,7 +102,8 @@ impl<'a, const N: usize> BodyWalk<'a, N> {
 }
 
 impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
-    /// A walk under these laws, with steps of the tolerance `tol`, where `fine` is the requested one.
+    /// The computation of a motion under user-defined laws, with steps of the tolerance `tol`; `fine` is the
+    /// requested tolerance.
     pub fn of_laws(
         body: &Body,
         ask: &Ask,
@@ -130,7 +138,7 @@ impl<'a, G: Own, const N: usize> BodyWalk<'a, N, G> {
 }
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The flow of the current phase, if the body loses energy without a slip.
+    /// The equations of the current phase if the body loses energy without a slip.
     pub fn lossy(&self) -> Option<&LossyFlow<G>> {
         self.of.lossy.as_ref().map(|phase| &phase.flow)
     }
@@ -139,8 +147,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.ask.table.contact()
     }
 
-    /// All numbers of a flow of which a lane has not computed the energies. What is missing since `from` has become heat,
-    /// or is lost to the losses.
+    /// Completes a state vector that SIMD code has computed without energies: the mechanical energy that is missing
+    /// since `from` has become heat of friction, or is taken by the losses.
     pub fn followed(&self, from: &[f64; N], mut y: [f64; N]) -> [f64; N] {
         match self.lossy() {
             Some(flow) if loses(N) => {
@@ -157,12 +165,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         y
     }
 
-    /// The losses, the couple of the user beside them, and the pull of a slope and of a drive; None if there is none of these.
+    /// The couples on a body that does not slip: losses, a user-defined couple, and the forces of a slope and of a
+    /// drive; None if there are none.
     pub(super) fn couples(&self) -> Option<Couples<f64, G>> {
         self.couples_of(&self.ask.losses)
     }
 
-    /// The same with other losses.
+    /// The couples on a body that does not slip, as [`couples`](Self::couples), with these losses instead of those of
+    /// the options.
     pub(super) fn couples_of(&self, losses: &Losses) -> Option<Couples<f64, G>> {
         self.of.slide.asks_drive(&self.at);
         let lost = Couples::with_own(losses, self.of.own);
@@ -174,7 +184,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(all.pulled(self.of.slide.pull(&self.at)).over(om, om != 0.0))
     }
 
-    /// Moves the walk to the numbers at which a flow has halted.
+    /// Sets the current state to the state vector at which an integration has halted.
     pub(super) fn arrives(&mut self, at: [f64; N]) {
         self.at = at;
         if leans_over(&mut self.at) {
@@ -184,7 +194,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 }
 
-/// The first numbers of a motion from this start.
+/// The state vector of this start.
 pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
     let (State { theta, w1, w2, w3 }, [along, across]) = (start.state, start.slip.pair());
     let ((s, c), mut at) = (theta.sin_cos(), [0.0; N]);
@@ -197,12 +207,12 @@ pub(crate) fn numbers_at<const N: usize>(start: &Start) -> [f64; N] {
 }
 
 impl<G: Own> BodyPhases<G> {
-    /// Whether a loss or a couple of the user takes energy.
+    /// Whether a loss law or a user-defined couple takes energy.
     pub(super) fn loses(&self, ask: &Ask) -> bool {
         !ask.losses.is_none() || self.own.has_couple()
     }
 
-    /// The data of a walk under these laws, with steps of the tolerance `tol`.
+    /// The data of a motion under the user-defined laws `own`, with steps of the tolerance `tol`.
     pub(crate) fn of(body: &Body, ask: &Ask, tol: f64, start: &Start, own: G) -> Self {
         let &Start { state, slip, .. } = start;
         let friction = ask.table.friction();
@@ -242,7 +252,7 @@ impl<G: Own> BodyPhases<G> {
         }
     }
 
-    /// Changes to the view from another circle of the body.
+    /// Changes the circle of contact, from which the state is counted, to that of `body`.
     pub(super) fn stands_on(&mut self, body: Body, ask: &Ask) {
         if body != self.body {
             if body.has_row() {

@@ -2,18 +2,20 @@
 
 use crate::numbers::Real;
 
-/// A face has landed where sin(theta) is at most `FLAT`, or `WHIRR_END_SINE` if it lands after
-/// infinitely many turns.
+/// A face counts as landed where sin(theta) is at most `FLAT`, or `WHIRR_END_SINE` if it lands after infinitely many
+/// turns.
 pub(crate) const FLAT: f64 = 1e-12;
 const WHIRR_END_SINE: f64 = 1e-22;
-/// A face that approaches the table exponentially, with w2 ~ s, is computed down to this sine of theta. The time from
-/// there to `FLAT` follows from that law.
+/// A face that approaches the table exponentially (w2 proportional to sin theta) is computed down to this sine of
+/// theta. The time from there to `FLAT` follows from the exponential law.
 const SLOW_LANDING_SINE: f64 = 1e-10;
 
-/// An inclination at which laws of one rim are evaluated for a face that lies: w1/sin theta is finite there.
+/// The inclination at which laws of one rim are evaluated for a body on its face: not 0, so that w1/sin(theta) is
+/// finite.
 pub(crate) const ALMOST_FLAT: f64 = 1e-100;
 
-/// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of the rotation w1 in the energy of an almost flat face; 1/2 in a whirr.
+/// The share I1 w1^2/(I1 w1^2 + w2^2 + s) of the rotation w1 in the energy of a body almost on its face, s =
+/// sin(theta); 1/2 in a whirr.
 #[inline(always)]
 pub(crate) fn turning_share<T: Real>(i1: T, s: T, w1: T, w2: T) -> T {
     let turning = i1 * w1 * w1;

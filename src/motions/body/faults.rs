@@ -1,4 +1,5 @@
-//! Wrong values of laws of the user along a flow, and laws that are so stiff that they keep its steps short.
+//! Wrong values of user-defined laws during an integration, and laws that are so stiff that they keep its steps
+//! short.
 
 use super::body_walk::BodyWalk;
 use super::own::Own;
@@ -8,13 +9,13 @@ use crate::motions::Limit;
 use crate::motions::dry::creep::ASIDE;
 use crate::motions::walk::numbers::{Halt, W1, W2, W3};
 
-/// A step is near its limit of stability if its length times the slope of the rates is more than this.
+/// An integration step is near its limit of stability if its length times the slope of the rates is more than this.
 const STABILITY_LIMIT: f64 = 0.3;
-/// A law is stiff if it pulls w at this many times the rate at which w changes.
+/// A user-defined law is stiff if it acts on w at more than this many times the rate at which w changes.
 const STIFF_RATIO: f64 = 100.0;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Returns the error of a wrong value of a law where a flow begins.
+    /// Returns the error if a user-defined law has a wrong value where a phase begins.
     pub(super) fn begins_lawfully<const M: usize>(
         &self,
         flow: &impl Flow<M, Halt = Halt>,
@@ -24,9 +25,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.own.takes_fault().filter(|_| ends).map_or(Ok(()), Err)
     }
 
-    /// Returns the error of a wrong value of a law that ends a flow; beyond the last step that was taken a wrong value does
-    /// not count. A law that has kept the steps short is the limit of the motion; `end` has the numbers of the flow at its
-    /// end.
+    /// Returns the error if a wrong value of a user-defined law has ended an integration; wrong values beyond the
+    /// last step that was taken do not count. If a stiff law has kept the steps short, the motion ends with
+    /// `Limit::Stiff`; `end` returns the state vector at the end.
     pub(super) fn heeds_laws<const M: usize>(
         &mut self,
         flow: &impl Flow<M>,
@@ -49,8 +50,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
     }
 }
 
-/// Whether steps of the length `h` from the numbers `y` are short only because a law is stiff: its couple pulls w
-/// towards a slow motion much faster than w changes, and than rotation and nutation allow.
+/// Whether steps of the length `h` from the state vector `y` are short only because a user-defined law is stiff: its
+/// couple drives w towards a slow motion much faster than w changes, and than rotation and nutation do.
 fn is_shortened_by_law<const M: usize, const N: usize>(flow: &impl Flow<M>, y: &[f64; N], h: f64) -> bool {
     let (fast, rate) = (flow.fastest(y), flow.rates(y));
     let mut slope = 0f64;

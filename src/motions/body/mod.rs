@@ -1,4 +1,4 @@
-//! The path of a body under friction, through phases of slipping and of rolling.
+//! Motions of a body with friction, losses or impacts, through phases such as slipping and rolling.
 //!
 //! ```text
 //! slip    until u = 0: then it rolls if |F_roll| <= mu_s N, else it slips in another direction
@@ -62,12 +62,12 @@ use crate::motions::walk::two_runs::{Followed, judged};
 pub(crate) use body_walk::BodyWalk;
 use core::f64::consts::PI;
 
-/// The share of the estimated error of the states that counts as an error of a ball's axis.
+/// The error of the direction of a ball's axis, as a share of the estimated error of the states.
 const AXIS_ERROR_SHARE: f64 = 0.25;
 
 /// The motion of a body that slips or loses energy, for [`roll_with`](crate::motions::motion::roll_with). A web page
 /// that needs no other motion calls this function directly, so that its program contains no other code. A motion that
-/// is too much work, or whose equations lose their digits on the way, ends there with
+/// needs too many evaluations, or whose equations lose all digits on the way, ends there with
 /// [`Ending::Bounded`](crate::motions::Ending::Bounded) and the [`Limit`](crate::motions::Limit) that it has reached;
 /// so does a motion that `go_on` interrupts.
 ///
@@ -84,7 +84,8 @@ pub fn follow(
     followed(body, start, times, (ask, true), go_on).map(Into::into)
 }
 
-/// The motion of [`follow`]. Its error is NaN unless it `is_judged`, by a second run.
+/// The motion of [`follow`], before its path becomes a part of it. Its error is NaN unless `is_judged`: then a second
+/// run shows it.
 pub(crate) fn followed(
     body: &Body,
     start: &Start,
@@ -100,7 +101,7 @@ pub(crate) fn followed(
     })
 }
 
-/// A walk and its estimated error.
+/// Computes a motion and, if `is_judged`, its estimated error.
 fn judged_walk(
     (body, start): (&Body, &Start),
     times: &[f64],
@@ -128,8 +129,9 @@ fn judged_walk(
     Ok(found)
 }
 
-/// One run of a body's walk, with the tolerance `tol` of its steps. Its numbers include a pose and the lost energy only
-/// if `ask` needs them. With `integrates` a phase without a slip is integrated although no energy is lost.
+/// Computes a body's motion once, with the tolerance `tol` of its steps. The state vector includes a pose and the
+/// lost energy only if `ask` needs them. With `integrates` a phase without a slip is integrated although no energy is
+/// lost.
 pub(super) fn walked(
     (body, start): (&Body, &Start),
     ask: &Ask,
@@ -147,7 +149,8 @@ pub(super) fn walked(
     }
 }
 
-/// A walk from its initial state, on the heap, since the walk runs on threads with a small stack.
+/// Prepares the computation of a motion from its initial state, on the heap, since it runs on threads with a small
+/// stack.
 #[inline(never)]
 fn walk<'a, const N: usize>(
     (body, start): (&Body, &Start),
@@ -161,8 +164,8 @@ fn walk<'a, const N: usize>(
     Ok(walk)
 }
 
-/// The question and the start of a motion on a smooth table with impacts: the centre is at rest until an impact, and the
-/// body slips without friction.
+/// For a motion on a smooth table with impacts: options and start with friction of coefficient 0, and a slip with
+/// which the centre has no horizontal velocity. Other motions keep their own.
 pub(super) fn without_friction(body: &Body, ask: &Ask, start: &Start) -> (Ask, Start) {
     let (mut ask, mut start) = (*ask, *start);
     if ask.table == Table::Smooth && (ask.restitution.is_some() || on_face(body, &start.state)) {
@@ -224,12 +227,12 @@ pub(crate) fn check_walk(body: &Body, start: &Start, ask: &Ask) -> Result<f64, E
     }
 }
 
-/// Whether a body with a face stands on it.
+/// Whether a body starts on its face: its rim has a radius, and theta is 0, or pi where no other rim lands before.
 pub(crate) fn on_face(body: &Body, y: &State) -> bool {
     (y.theta == 0.0 || y.theta == PI && body.theta_end() == PI) && body.rim() > 0.0
 }
 
-/// Returns an error for a slip without a law of friction.
+/// Returns an error if the initial slip is not zero, for a contact without a law of friction.
 pub(super) fn refuse_slip(Slip { u_h, u_2 }: Slip) -> Result<(), Error> {
     let value = if u_h == 0.0 { u_2 } else { u_h };
     if value == 0.0 {

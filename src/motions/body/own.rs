@@ -1,4 +1,5 @@
-//! What laws of the user add to a body's walk: its flows ask them for the coefficient of friction and for a couple.
+//! User-defined laws in the equations of a body's motion, which call them for the coefficient of friction and for a
+//! couple.
 //!
 //! ```text
 //! ()       no such laws, which costs no code
@@ -16,27 +17,28 @@ use crate::motions::dry::creep::ASIDE;
 use crate::motions::walk::numbers::PHI;
 use crate::numbers::Dual;
 
-/// The laws of the user in a body's walk.
+/// User-defined laws of a body's motion.
 pub(crate) trait Own:
     SpeedLaw + FollowsSpeed<f64> + FollowsSpeed<Dual<f64>> + OwnCouple<f64> + OwnCouple<Dual<f64>>
 {
-    /// Whether there are such laws.
+    /// Whether there are user-defined laws.
     const IS: bool = false;
 
-    /// Whether there is a couple of the user.
+    /// Whether there is a user-defined couple.
     fn has_couple(&self) -> bool {
         OwnCouple::<f64>::is_there(self)
     }
-    /// That couple in a state under a normal force. A body with two rims is seen from the lower one.
+    /// The user-defined couple, along e1, e2, e3, in a state under a normal force. The state of a body with two rims
+    /// is counted from the lower one.
     fn couple_at(&self, _: &State, _normal: f64) -> [f64; 3] {
         [0.0; 3]
     }
-    /// Whether a law of the user drives the body.
+    /// Whether there is a user-defined drive.
     fn drives(&self) -> bool {
         false
     }
-    /// Asks the drive for its force and couple at these numbers, with w, the slip, the velocity of the centre along e_h and
-    /// e2, and the height there.
+    /// Calls the user-defined drive at this state vector, with w, the slip, the velocity of the centre along e_h and
+    /// e2, and the height. `driven` then returns its force and couple.
     fn asks_drive<const N: usize>(
         &self,
         _: &[f64; N],
@@ -46,11 +48,12 @@ pub(crate) trait Own:
         _height: f64,
     ) {
     }
-    /// The force along x and y, and the couple along e1, e2, e3, that the drive had where it was asked last.
+    /// The force along x and y, and the couple along e1, e2, e3, that the user-defined drive returned at its last
+    /// call.
     fn driven(&self) -> ([f64; 2], [f64; 3]) {
         ([0.0; 2], [0.0; 3])
     }
-    /// That force along e_h and e2.
+    /// The force of the user-defined drive at its last call, along e_h and e2.
     #[inline(always)]
     fn pushes<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         if !(Self::IS && self.drives()) {
@@ -59,22 +62,23 @@ pub(crate) trait Own:
         let ([x, along], (sin, cos)) = (self.driven().0, y[PHI].sin_cos());
         [x * cos + along * sin, along * cos - x * sin]
     }
-    /// Notes whether the body is seen from its upper end from now on, while a law is told of it from its lower end.
+    /// Records whether the state is counted from the upper end of the body from this moment on; user-defined laws get
+    /// it counted from the lower end.
     fn sees(&self, _over: bool) {}
-    /// Whether a law has failed, and is not called again.
+    /// Whether a user-defined law has failed, after which it is not called any more.
     fn has_failed(&self) -> bool {
         false
     }
-    /// Takes the error of a wrong value of a law, unless a law has failed.
+    /// Returns the error for a wrong value of a user-defined law, once; None if there is none or a law has failed.
     fn takes_fault(&self) -> Option<Error> {
         None
     }
-    /// Whether a law has failed, or had a wrong value.
+    /// Whether a user-defined law has failed, or returned a wrong value.
     fn is_faulty(&self) -> bool {
         false
     }
-    /// Looks for a wrong value at the numbers of a step that is taken, from the speeds of the slips, and the sine and
-    /// cosine of theta and w with the normal force if the couple may supply energy there. Returns whether there is one.
+    /// Whether a user-defined law returns a wrong value at the end of a step: the coefficient at these slip speeds,
+    /// or the couple, if it may supply energy, for this sine and cosine of theta, w and normal force.
     fn finds_fault(&self, _speeds: &[f64], _: Option<([f64; 5], f64)>) -> bool {
         false
     }
@@ -84,7 +88,7 @@ pub(crate) trait Own:
         let air = Couples::in_air(losses);
         if self.has_couple() { air.or(Some(Couples::of(&Losses::NONE, |x| x))) } else { air }
     }
-    /// The law of both rims in the state with these numbers.
+    /// The law of a body on both rims, with the user-defined coefficients and couple at these velocities.
     fn lying(&self, law: &Lying<f64>, _: Flat<f64>) -> Lying<f64> {
         *law
     }
@@ -92,8 +96,8 @@ pub(crate) trait Own:
 
 impl Own for () {}
 
-/// Margins at a place, with slopes that are differences over a share of the time `calm`, since a user-defined law has no
-/// derivative.
+/// The margins (functions whose zeros end a phase) at a place, with slopes from differences over a share of the time
+/// `calm`, since a user-defined law has no derivative.
 pub(crate) fn differences<const N: usize, const M: usize>(
     place: &FlowPlace<N>,
     calm: f64,

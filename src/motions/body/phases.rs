@@ -1,4 +1,4 @@
-//! The phases of a body of revolution: their beginnings, their flows and their ends.
+//! The phases of motion of a body of revolution: their beginnings, their equations and their ends.
 use super::body_walk::{BodyPhases, BodyWalk, LossyPhase};
 use super::own::Own;
 use super::slide::Slide;
@@ -25,16 +25,16 @@ use crate::motions::walk::{Next, Pause, Phases, STILL, SlowSeries, WalkStep};
 use crate::motions::{Ask, Ending, Kind, Limit, Phase};
 use core::f64::consts::PI;
 
-/// Sine of theta below which a falling face counts as landed if slipping and sticking alternate without an advance of
+/// A falling face counts as landed below this sine of theta if slipping and sticking alternate without an advance of
 /// time.
 const ALL_BUT_FLAT: f64 = 1e-6;
-/// The first step of a phase, as a share of the last step of the phase of its kind before.
+/// The first integration step of a phase, over the last step of the previous phase of its kind.
 const LATELY: f64 = 0.5;
-/// A patch that drills more slowly than this, which is rounding, does not drill.
+/// A patch of contact that drills more slowly than this, as by rounding, counts as not drilling.
 const HARDLY_DRILLS: f64 = 1e-13;
-/// Size of cos theta below which a rougher run perturbs this number and not theta.
+/// If abs(cos(theta)) is below this, the run with the larger tolerance perturbs cos(theta) instead of theta.
 const LEVEL: f64 = 1e-3;
-/// The first step of a body on its face.
+/// The first integration step of a body on its face.
 const STANDING: f64 = 0.05;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
@@ -51,12 +51,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// w' of a body that rolls, and the power of its losses.
+    /// w' = dw/dt of a body that rolls in the state `y`, and the power of its losses.
     pub(super) fn rolling_of(&self, y: &State) -> ([f64; 3], f64) {
         self.rolling_at(&self.at, y)
     }
 
-    /// w' of a body that rolls, and the power of its losses, at the place and the heading of the numbers `at`.
+    /// w' = dw/dt of a body that rolls in the state `y`, and the power of its losses, at the place and the heading
+    /// phi of the state vector `at`.
     pub(super) fn rolling_at(&self, at: &[f64; N], y: &State) -> ([f64; 3], f64) {
         let mut losses = self.couples().unwrap_or(Couples::of(&Losses::NONE, |x| x).beside(self.of.own));
         if self.of.turning == 0.0 && (self.of.tilt != 0.0 || self.of.own.drives()) {
@@ -68,14 +69,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (w, power)
     }
 
-    /// Whether a drive of the user does work, or a table that turns does work which [`Slide::energy`] does not know, since others than the table turn the
-    /// body about the vertical.
+    /// Whether a user-defined drive does work, or a turntable does work that [`Slide::energy`] does not include,
+    /// since a slope or the air also acts on the angular momentum about the vertical.
     pub(super) fn is_driven(&self) -> bool {
         self.of.own.drives()
             || self.of.turning != 0.0 && (self.of.tilt != 0.0 || Couples::in_air(&self.ask.losses).is_some())
     }
 
-    /// w_z over the table.
+    /// The drilling rate: w_z relative to the table.
     pub(super) fn drills_here(&self) -> f64 {
         let y = &self.of.state;
         self.of.slide.drills(y.theta.sin_cos(), y.w1, y.w3)
@@ -87,8 +88,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.ask.table.rubs() && (slip != [0.0; 2] || !slide.law.dry || slide.creeps(&self.at))
     }
 
-    /// Makes motions vanish exactly that have stopped, or that dry friction has held at zero but for the errors of the
-    /// steps.
+    /// Sets rotations to exactly zero that have stopped, or that dry friction has held at zero up to the errors of
+    /// the steps.
     pub(super) fn stops_exactly(&mut self, stops: Holds) {
         if stops == Holds::default() {
             return;
@@ -115,8 +116,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = state(&self.at);
     }
 
-    /// The behaviour of a contact point at rest that friction does not hold under a rolling resistance, if that resistance
-    /// acts only while the body rolls: it slips without it. Where friction then holds it, no behaviour is consistent.
+    /// The behaviour of a contact point at rest that friction cannot hold under a rolling resistance that acts only
+    /// while the body rolls: it slips without the resistance. If friction can hold the point without the resistance,
+    /// the result is `Undefined`.
     fn slips_unresisted(&self) -> Standstill {
         let (of, losses) = (&self.of, self.ask.losses_in_slip());
         let friction = match self.friction() {
@@ -234,7 +236,7 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         lies.then_some(Ending::Side)
     }
 
-    /// A phase without a slip checks its own margins when it begins.
+    /// The phase without a slip that begins. It checks its conditions itself when it begins.
     fn begins_without_slip(_: &mut BodyWalk<'_, N, G>) -> Next {
         Next::Rolls { at_limit: false }
     }
@@ -435,10 +437,10 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
         walk.rolls_on(at_limit, go_on)
     }
 
-    /// The first step is a share of the last one of the phase of its kind before, since a body that slips in each nod
-    /// does so with much the same steps.
-    /// The first step of a rougher run is longer. Two runs with the same steps would have the same errors, and their
-    /// difference would not show the growth of these errors from an unstable initial state.
+    /// The first step is a share of the last step of the previous phase of its kind, since a body that slips in each
+    /// nod does so with much the same steps. In the run with the larger tolerance the first step is longer. Two runs
+    /// with the same steps would have the same errors, and their difference would not show the growth of these errors
+    /// from an unstable initial state.
     fn first(walk: &BodyWalk<'_, N, G>, y: &[f64; N]) -> f64 {
         let first = match (&walk.of.lying, walk.lossy()) {
             (Some(phase), _) => phase.flow.first(y),
@@ -490,7 +492,8 @@ impl<G: Own, const N: usize> Phases<N> for BodyPhases<G> {
             && walk.made.path.phases.last().is_some_and(|phase| phase.state.theta == walk.of.body.theta_end())
     }
 
-    /// The error of a margin that depends on a force is proportional to the largest speed.
+    /// The factor by which the error of the function whose zero causes this halt exceeds that of the state; for a
+    /// function that depends on a force, the largest speed.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64> {
         match halt {
             Halt::Side | Halt::Rests | Halt::Rises | Halt::Changes | Halt::Turned => Some(1.0),

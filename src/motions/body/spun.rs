@@ -1,4 +1,4 @@
-//! A uniform ball, l = 0 and I1 = I3 = I, whose phases are known: none of them is integrated.
+//! A uniform ball (l = 0, I1 = I3 = I), all of whose phases have closed forms or series: none is integrated.
 //!
 //! ```text
 //! rolls, flies    w stays in space, and the axis n turns about it
@@ -8,12 +8,12 @@
 //! n' = w x n      n = sum n_k t^k,   (k + 1) n_{k+1} = w0 x n_k + a x n_{k-1}        in parts of a radian
 //! ```
 //! The normal force on the table is the weight, rolling needs no friction, and a slip keeps its direction (Coriolis,
-//! Theorie mathematique des effets du jeu de billard (1835)). Here w_h is the whole horizontal part of w. All vectors are
-//! along e_h, e2 and z of the phase's beginning, where n = (-s, 0, c). With poses the walk computes a uniform ball as any
-//! other body.
+//! Theorie mathematique des effets du jeu de billard (1835)). In these formulas w_h is the whole horizontal part of
+//! w. All vectors are along the e_h, e2 and z of the phase's beginning, where n = (-s, 0, c). If poses are requested,
+//! the motion of a uniform ball is integrated like that of any other body.
 //!
-//! Error: a few roundings of each phase, of which every later angle, speed and time has its share; of w1, w2 and the slip
-//! over sin(theta).
+//! Error: a few roundings in each phase, which enter every later angle, speed and time; for w1, w2 and the slip
+//! divided by sin(theta).
 
 use super::fly::Aloft;
 use crate::laws::body::Body;
@@ -22,17 +22,19 @@ use crate::laws::contact::slip::Friction;
 use crate::laws::state::{drilling_of, rolling_of};
 use crate::motions::Ask;
 
-/// Roundings of the numbers of one phase.
+/// Error of the state by one phase of a uniform ball, in units of rounding.
 pub(super) const ROUNDINGS_PER_PHASE: f64 = 8.0;
-/// Two terms of the series in succession that are smaller than this end a part of it; in a part w h and a h^2 are at most
-/// 1, so that there are thirty terms at most.
+/// The power series of the axis is cut off after two successive terms whose sum is smaller than this. A part of time
+/// h has w h and a h^2 of at most 1, so that there are thirty terms at most.
 const NEGLIGIBLE_TERM: f64 = 1e-18;
 
-/// The largest number of parts of a slip, as many as the steps of an integrator would need all its evaluations for.
+/// The largest number of parts of the power series of a slip, or `PARTS_PER_TIME` per unit of time if these are more;
+/// as many steps of an integrator would need all its evaluations.
 const MOST_PARTS: f64 = 4e5;
 const PARTS_PER_TIME: f64 = 2e3;
 
-/// Whether every phase of this motion is known.
+/// Whether every phase of this motion has a closed form or series: a uniform ball on a level table, without poses,
+/// losses and a patch of contact.
 pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
     let dry = match ask.table {
         Table::Rolling { .. } | Table::Smooth => true,
@@ -42,14 +44,14 @@ pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
     body.is_uniform_ball() && ask.is_level() && dry && !ask.pose && ask.losses.is_none()
 }
 
-/// The errors of a motion whose phases are known: roundings of the speeds so far, the error of the axis, and that of the
-/// time.
+/// The errors of a motion of a uniform ball in closed form: roundings of the speeds so far (`count`), the error of
+/// the axis (`turned`), and that of the time (`late`).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Roundings {
     pub count: f64,
     pub turned: f64,
     pub late: f64,
-    /// The sum of the step errors that the roundings include.
+    /// The sum of the integration step errors that `count` includes.
     pub inherited: f64,
 }
 
@@ -61,14 +63,15 @@ fn size([a, b, c]: [f64; 3]) -> f64 {
     (a * a + b * b + c * c).sqrt()
 }
 
-/// A phase from its start.
+/// A phase of a uniform ball in closed form, from its start.
 pub(super) struct Spun {
     from: Aloft,
-    /// The axis at the time `since` of the phase.
+    /// The direction of the ball's axis at the time `since` of the phase.
     axis: [f64; 3],
     since: f64,
     w: [f64; 3],
-    /// The change of w in a unit of time, and the share of its slip that the ball loses in it.
+    /// The constant angular acceleration of the ball; `slows` is the share of its initial slip that the ball loses in
+    /// a unit of time.
     push: [f64; 3],
     pub slows: f64,
     pub fastest: f64,
@@ -82,7 +85,7 @@ impl Spun {
         Self { from: *from, axis: [-s, 0.0, c], since: 0.0, w, push, slows, fastest }
     }
 
-    /// A slip under friction of this strength; without friction it does not slow down.
+    /// A slip under friction with the coefficient `mu`; without friction it does not slow down.
     pub fn rubbing(from: &Aloft, inertia: f64, mu: f64) -> Self {
         let speed = from.slip[0].hypot(from.slip[1]);
         if mu == 0.0 || speed == 0.0 {
@@ -92,7 +95,8 @@ impl Spun {
         Self::new(from, [-across, along, 0.0], mu * (1.0 + 1.0 / inertia) / speed)
     }
 
-    /// A ball whose rolling and drilling slow down by these rates. Its slip, if it creeps, vanishes with its drilling.
+    /// A ball whose rolling and drilling slow down at these rates. If it creeps, its slip vanishes together with its
+    /// drilling.
     pub fn slowing(from: &Aloft, [rolls, drills]: [f64; 2]) -> Self {
         let free = Self::new(from, [0.0; 3], 0.0);
         let ([x, y, z], speed) = (free.w, free.rolling());
@@ -101,12 +105,12 @@ impl Spun {
         Self::new(from, [x, y, -(drills * z.signum())], slows)
     }
 
-    /// The speed of the rolling at the start.
+    /// The speed of rolling at the start: the horizontal part of w.
     pub fn rolling(&self) -> f64 {
         self.w[0].hypot(self.w[1])
     }
 
-    /// The velocity of the drilling at the start.
+    /// The drilling rate at the start: w_z.
     pub fn drills(&self) -> f64 {
         self.w[2]
     }
@@ -115,18 +119,20 @@ impl Spun {
         core::array::from_fn(|i| self.w[i] + self.push[i] * t)
     }
 
-    /// The angle by which the ball turns at most in a time, and the number of parts of a series over this time.
+    /// A bound of the angle by which the ball turns in the time `t`, and the number of parts of the power series over
+    /// this time.
     fn angle(&self, t: f64) -> [f64; 2] {
         let angle = size(self.w).max(size(self.speeds(t))) * t;
         [angle, angle.max(size(self.push).sqrt() * t).ceil()]
     }
 
-    /// Whether the series over this time have too many parts.
+    /// Whether the power series over this time would have too many parts.
     pub fn needs_too_many_parts(&self, t: f64) -> bool {
         self.push != [0.0; 3] && self.angle(t)[1] > MOST_PARTS.max(PARTS_PER_TIME * t)
     }
 
-    /// The axis after a time, and the angle by which the ball has turned at most. The times of a slip ascend.
+    /// The direction of the axis after the time `t`, and a bound of the angle by which the ball has turned. In a slip
+    /// each call has a later time.
     fn turned(&mut self, t: f64) -> ([f64; 3], f64) {
         let rate = size(self.w);
         if self.push == [0.0; 3] {
@@ -160,7 +166,7 @@ impl Spun {
         (self.axis, angle)
     }
 
-    /// The ball after a time on the table, and the angle by which it has turned.
+    /// The ball after the time `t` on the table, and a bound of the angle by which it has turned.
     pub fn at(&mut self, t: f64) -> (Aloft, f64) {
         if t == 0.0 {
             return (self.from, 0.0);

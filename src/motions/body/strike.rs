@@ -23,27 +23,28 @@ use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, SIN, TIME, U2, W1, W
 use crate::motions::{Ending, Kind, Limit, Moving, Strike};
 use core::f64::consts::PI;
 
-/// Both rims rattle until |cos theta| and the normal velocities of both are below this.
+/// Two rims that land in turn bounce until abs(cos(theta)) and the normal velocities of both are below this.
 pub(super) const RATTLED: f64 = 1e-7;
-/// Error of the rest of a rattle, in units of the square of its velocities.
+/// Error by the rest of a sequence of impacts of two rims, in units of the square of its velocities.
 const SUMMED: f64 = 1e2;
-/// Time of the rest of a rattle, in units of its velocities.
+/// Duration of the rest of a sequence of impacts of two rims, in units of its velocities.
 pub(super) const LASTS: f64 = 10.0;
-/// A rocking with a larger w2 is computed hop by hop.
+/// A body that rocks with a larger w2 is computed hop by hop.
 pub(super) const ROCKED: f64 = 1e-5;
-/// A smaller w2 after a landing is a rounding error.
+/// A w2 after a landing below this counts as a rounding error.
 pub(super) const ROCKED_OUT: f64 = 1e-15;
-/// Both rims land together if |cos theta| is below this.
+/// Both rims land together if abs(cos(theta)) is below this.
 const BOTH_AT_ONCE: f64 = 1e-14;
-/// Impacts of both rims are over when no rim comes down faster than this share of the first velocity.
+/// Impacts of both rims end when no rim comes down faster than this share of the first velocity.
 pub(super) const RATTLE_OVER: f64 = 1e-9;
 /// Largest number of impacts of both rims in turn.
 pub(super) const MOST_IN_TURN: u32 = 10_000;
 
-/// The coefficient of friction of a table on which a body rolls, in an impact of both rims.
+/// The coefficient of friction in an impact of both rims on a table on which a body only rolls.
 pub(super) const PERFECTLY_ROUGH: f64 = 1e100;
 
-/// The momentum that the centre of mass has gained, which is the impulse of both rims together, seen from this one.
+/// The momentum that the centre of mass has gained from `old` to `new`: the impulse of both rims together, along e_h,
+/// e2 and z.
 pub(super) fn gained(rim: &Rim<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
     let velocity = |at: &Aloft| {
         let ([w1, w2, w3], [along, across], angle) = (at.w, at.slip, at.angle);
@@ -55,8 +56,8 @@ pub(super) fn gained(rim: &Rim<f64>, [old, new]: [&Aloft; 2]) -> [f64; 3] {
 }
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The phase after the impact that stops a slip which presses the rim into the table. None where the rim could
-    /// leave the table as well.
+    /// The phase after the impact that stops a slip whose friction presses the rim into the table (Painleve). None
+    /// where the rim could leave the table as well.
     pub(super) fn jams(&mut self, e: f64) -> Option<Next> {
         self.hops.takeoff = Takeoff::default();
         let from = self.aloft();
@@ -75,7 +76,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(self.leaves_impact(&after))
     }
 
-    /// The phase after an impact.
+    /// The phase after an impact of one rim: contact or flight.
     pub(super) fn leaves_impact(&mut self, after: &Aloft) -> Next {
         if self.is_on_face() {
             let lost = self.keeps_upright();
@@ -182,15 +183,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         law.patch().map(|radius| patched(&law.shape, angle, radius, self.of.slide.drills(angle, w[0], w[2])))
     }
 
-    /// Whether the motion ends where a second circle or a face lands: what a table that turns, a patch, a drive, or another law
-    /// of restitution does there has no law.
+    /// Whether the motion ends where a second circle or a face lands, since its impact has no model here: on a
+    /// turntable, with a patch, with a drive, or under a law of restitution other than Stronge's.
     pub(super) fn has_one_contact(&self) -> bool {
         let other =
             self.ask.impact_law != ImpactLaw::Stronge && self.ask.restitution.is_some_and(|e| e > 0.0);
         self.of.turning != 0.0 || self.of.slide.law.patch().is_some() || self.of.own.drives() || other
     }
 
-    /// The impact at these numbers; None for a rolling contact without a solution.
+    /// The impact of the body `from` on the table; None for a contact that only rolls if there is no solution.
     pub(super) fn impact(&self, from: &Aloft, e: f64) -> Option<Struck> {
         self.impact_under(self.ask.impact_law, from, e)
     }
@@ -209,8 +210,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         PointImpact { law: impact_law, ..point }.on(&self.ask.table, e, &self.of.own)
     }
 
-    /// A bound of the change by the losses in a unit of time, under a normal force. The couple of the air below a face
-    /// does not depend on that force.
+    /// A bound of the change of w by the losses and user-defined couples in a unit of time, under a normal force. The
+    /// couple of the air below a face does not depend on that force.
     fn couple_bound(&self, at: &Aloft, force: f64) -> f64 {
         let (body, sum) = (&self.of.body, self.ask.losses.coefficients.iter().sum::<f64>());
         if self.of.own.has_couple() {
@@ -232,7 +233,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         losses.at(&seen).free.into_iter().fold(pressed * fastest, |most: f64, m| most.max(m.abs()))
     }
 
-    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    /// The total time of all bounces after an impact; None unless it is so short that the bounces are summed.
     fn bounces(&self, from: &Aloft, struck: &Struck, force: f64, e: f64) -> Option<f64> {
         let shape = &self.of.slide.law.shape;
         let (light, w) = (lightness(shape, from.angle), turned(shape, from.angle, from.w, struck));
@@ -248,7 +249,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         })
     }
 
-    /// The numbers after an impact, which is also recorded.
+    /// The body after an impact, which is also recorded in the results.
     pub(super) fn struck(&mut self, from: &Aloft, struck: &Struck, (other, stays): (bool, bool)) -> Aloft {
         let w = turned(&self.of.slide.law.shape, from.angle, from.w, struck);
         let after = Aloft { w, slip: struck.slip, lift: struck.lift, ..*from };
@@ -258,7 +259,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         after
     }
 
-    /// Adds an impact to the results, from the numbers before and after it as seen from the rim that lands.
+    /// Adds an impact to the results, from the body before and after it, counted from the rim that lands.
     pub(super) fn records(
         &mut self,
         both: [&Aloft; 2],
@@ -293,13 +294,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         });
     }
 
-    /// The vertical velocities of both rims, this one first.
+    /// The vertical velocities of both rims; first that of the rim from which the state is counted.
     fn lifts_of_both(&self) -> [f64; 2] {
         let at = self.aloft();
         [at.lift, at.on_other_rim(&self.of.body.rims()).lift]
     }
 
-    /// Computes the impacts of both rims at once while both come down, and of one rim in turn, until no rim comes down.
+    /// Computes the impacts of two rims, at once while both come down and else in turn, until no rim comes down.
+    /// Returns the next phase.
     #[inline(never)]
     pub(super) fn rattles(&mut self, e: f64) -> Next {
         (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
@@ -344,7 +346,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::Flying)
     }
 
-    /// Moves the walk to the numbers after both rims have struck at once, as seen from the rim that came down more slowly.
+    /// Sets the current state to that after both rims have struck at once, counted from the rim that came down more
+    /// slowly.
     fn bounces_on_both(&mut self, e: f64) -> Result<(), Ending> {
         if self.at[W2] > 0.0 {
             self.turns_over();
@@ -374,7 +377,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(())
     }
 
-    /// The phase on both rims after a rattle, whose last impacts are summed.
+    /// The phase of a body on both rims after a sequence of their impacts, the last of which are summed.
     fn ends_rattle(&mut self) -> Next {
         let from = self.aloft();
         let left = self.tilt(from.angle).abs().max(from.w[1].abs()).max(from.lift.abs());
@@ -413,7 +416,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.settles_on_side()
     }
 
-    /// The next phase after a landing on both rims without a bounce.
+    /// The phase after a landing on both rims without a bounce.
     pub(super) fn lands_on_both(&mut self) -> Next {
         let friction = match self.ask.table {
             Table::Rubs(friction) => friction,
@@ -478,7 +481,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.touches_down()
     }
 
-    /// Moves the walk to the numbers after a landing on both rims.
+    /// Sets the current state to that after a landing on both rims.
     pub(super) fn lands_as(&mut self, landed: &Landed) {
         if landed.outcome == Outcome::Changes {
             self.turns_over();

@@ -1,40 +1,42 @@
-//! The end of a whirr that slips: a face that comes down by infinitely many turns, of which only the first are
+//! Extrapolates the end of a whirr with slip: a face lands after infinitely many turns, of which only the first are
 //! computed.
 //!
 //! ```text
 //! p = w1 s ~ tau^3    p^(1/3) falls in a straight line to the end, tau = 0
 //! t_end = t_2 + (t_2 - t_1)/((p_1/p_2)^(1/3) - 1)
 //! ```
-//! Under rolling resistance or drilling an almost flat face has theta ~ tau^2 and w1 ~ tau, so that every
-//! turn and every slip is a smaller copy of the one before. So it is under any law that does not stop the contact along
-//! the rim, where a coin slips in each nod: its friction takes more and more of what is left. The vertical momentum p
-//! hardly nods with the body, which is why its values and not those of theta give the end.
+//! Under rolling resistance or drilling an almost flat face has theta ~ tau^2 and w1 ~ tau, so that every turn and
+//! every slip is a smaller copy of the one before. The same holds under any law that does not stop the contact point
+//! along the rim, if the coin slips in each nod: friction then takes a growing share of the remaining energy. The
+//! angular momentum p hardly oscillates with the nods, so that the end is computed from p and not from theta.
 //!
-//! The beginnings of two slips from rest that are a whole number of nods apart give an estimate that is exact as soon as
-//! the turns are copies. Within a slip that does not end, two values far apart give one estimate.
+//! Two slips from rest that begin a whole number of nods apart give an estimate that is exact as soon as the turns
+//! are copies of each other. Within a slip that does not end, two values of p far apart give one estimate.
 //!
-//! Error: of slips from rest, twice the spread of the last estimates, divided by the share of the rest of the motion
-//! over which they spread; else twice the sum of all further changes of the estimate, extrapolated from the last three.
+//! Error, for slips from rest: twice the spread of the last estimates, divided by the share of the remaining motion
+//! that they cover; else twice the sum of all further changes of the estimate, extrapolated from the last three.
 
 use crate::numbers::larger_or_nan;
 
-/// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates begin here; at
-/// larger inclinations they would be wrong.
+/// Sine of theta below which the turns of a whirr are nearly smaller copies of each other. Estimates of its end begin
+/// here; at larger inclinations they would be wrong.
 const SELF_SIMILAR_SINE: f64 = 1e-4;
-/// The two values of p^(1/3) in an estimate differ at least by this factor. Closer ones would give a
-/// less accurate end.
+/// The two values of p^(1/3), with p = w1 sin(theta), in an estimate of the end of a whirr differ at least by this
+/// factor. Closer values would give a less accurate end.
 const LEAST_ROOT_RATIO: f64 = 1.25;
-/// The end is accepted, and the last turns are left out, if its error is below this, or below this multiple of the sum of
-/// all step errors: along so many slips these grow by more, and the end moves with them.
+/// The estimated end of a whirr is accepted, and its last turns are left out, if its error is below this, or below
+/// `OF_STEP_ERRORS` times the sum of all step errors: along so many slips these grow by more, and the end moves with
+/// them.
 const END_KNOWN: f64 = 1e-9;
 const OF_STEP_ERRORS: f64 = 3.0;
-/// Sine of theta below which any estimate of the end is accepted, and slips are no longer computed.
+/// Sine of theta below which any estimate of the end of a whirr is accepted, and no more slips are computed.
 const ANY_END_SINE: f64 = 1e-13;
-/// Assumed number of further changes of the estimate where these do not become smaller.
+/// Assumed number of further changes of the estimated end of a whirr if the changes do not become smaller.
 const FURTHER_CHANGES: f64 = 64.0;
-/// A motion that would be given up has an end if its error is below this share of the time that is left.
+/// If the computation of a whirr would stop early, its estimated end is accepted if the error is below this share of
+/// the remaining time.
 const BETTER_THAN_NONE: f64 = 0.1;
-/// A nod has at most so many slips from rest, and so many estimates in a row must agree.
+/// Largest number of slips from rest in a nod of a whirr. `AGREE` estimates of the end in a row must agree.
 const SLIPS: usize = 4;
 const AGREE: usize = 9;
 const STARTS: usize = SLIPS + AGREE;
@@ -43,7 +45,7 @@ const STARTS: usize = SLIPS + AGREE;
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SlipStart {
     pub time: f64,
-    /// p^(1/3), which is proportional to the time that is left.
+    /// The cube root of p = w1 sin(theta), which is proportional to the remaining time.
     pub root: f64,
     pub w3: f64,
     pub heat: f64,
@@ -55,18 +57,19 @@ pub(super) struct SlipStart {
 pub(super) struct NodsEnd {
     pub time: f64,
     pub doubt: f64,
-    /// The share of the energy that is left which becomes heat.
+    /// The share of the remaining energy that becomes heat.
     pub heats: f64,
 }
 
 impl NodsEnd {
-    /// Whether this end is better than none, at the time `now`.
+    /// Whether this estimate of the end is better than none, at the time `now`: its error is a small share of the
+    /// remaining time.
     pub fn is_better_than_none(&self, now: f64) -> bool {
         self.doubt < BETTER_THAN_NONE * (self.time - now)
     }
 }
 
-/// The last slips from rest, the latest one first.
+/// The last slips from rest in a whirr, the latest first.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Nods {
     starts: [SlipStart; STARTS],
@@ -74,7 +77,7 @@ pub(super) struct Nods {
 }
 
 impl Nods {
-    /// Adds the beginning of a slip at this sine of theta.
+    /// Adds the beginning of a slip from rest at the sine `s` of theta.
     pub fn adds(&mut self, s: f64, start: SlipStart) {
         if s > SELF_SIMILAR_SINE || start.root == 0.0 {
             self.count = 0;
@@ -85,7 +88,8 @@ impl Nods {
         self.count = (self.count + 1).min(STARTS);
     }
 
-    /// The end, by the number of slips in a nod with which the estimates agree best; None as long as none agree.
+    /// The estimated end of the whirr, for the number of slips per nod with which the estimates agree best; None
+    /// until some agree.
     pub fn end(&self) -> Option<NodsEnd> {
         if self.count < STARTS {
             return None;
@@ -115,7 +119,8 @@ impl Nods {
     }
 }
 
-/// Whether an end before the next output, at the time `until`, is known well enough after these step errors.
+/// Whether the end of a whirr is known accurately enough, given the sum `erred` of the step errors, and is before the
+/// next output at the time `until`.
 pub(super) fn is_known([end, doubt]: [f64; 2], until: f64, erred: f64) -> bool {
     doubt < END_KNOWN.max(OF_STEP_ERRORS * erred) && end + doubt < until
 }
@@ -123,14 +128,14 @@ pub(super) fn is_known([end, doubt]: [f64; 2], until: f64, erred: f64) -> bool {
 /// The estimates of the end of a whirr that comes down by infinitely many turns.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LastTurns {
-    /// Time and p^(1/3) of the last value.
+    /// The time and the cube root of p = w1 sin(theta) at the last point.
     last: Option<[f64; 2]>,
-    /// The time of the end, its distance from the estimate before, and its error.
+    /// The estimated time of the end, its difference from the estimate before, and its error.
     end: Option<[f64; 3]>,
 }
 
 impl LastTurns {
-    /// Updates the estimates with a point: its time, sine of theta and w1.
+    /// Updates the estimates with a point of the motion: the time `t`, the sine `s` of theta, and w1.
     pub fn adds_point(&mut self, t: f64, s: f64, w1: f64) {
         let root = (w1 * s).abs().cbrt();
         if s > SELF_SIMILAR_SINE || root == 0.0 {
@@ -154,15 +159,15 @@ impl LastTurns {
         }
     }
 
-    /// The time of the end and its error, after two estimates.
+    /// The estimated time of the end and its error; None before the second estimate.
     pub fn end(&self) -> Option<[f64; 2]> {
         // The error cannot exceed the remaining time until the estimated end.
         let left = |end: f64| self.last.map_or(f64::INFINITY, |[t, _]| end - t);
         self.end.map(|[end, _, doubt]| [end, doubt.min(left(end))]).filter(|[_, doubt]| doubt.is_finite())
     }
 
-    /// The time of the end and its error, if the error is small and the end is before `until`, or if `s`
-    /// is below `ANY_END_SINE`.
+    /// The estimated time of the end and its error, if the error is small and the end is before `until`, or if the
+    /// sine `s` of theta is below `ANY_END_SINE`; else None.
     pub fn known(&self, s: f64, until: f64) -> Option<[f64; 2]> {
         self.end().filter(|end| s < ANY_END_SINE || is_known(*end, until, 0.0))
     }

@@ -1,10 +1,11 @@
-//! The walk of a uniform ball through phases that are known: rolling, slips, flights and the bounces between them.
+//! The motion of a uniform ball, whose phases have closed forms: rolling, slips, flights and the bounces between
+//! them.
 //!
 //! ```text
 //! lands     t = v + sqrt(v^2 + 2 z)          with the velocity -sqrt(v^2 + 2 z)
 //! error     e1 roundings of w in all phases,  e2 = sum e1 (1 + |w| t) of the axis,  e3 = sum e1 t of the time
 //! ```
-//! [`spun`](super::spun) has the equations. No rougher run has to show these errors, which do not grow otherwise.
+//! [`spun`](super::spun) has the equations. These errors need no second run, since they do not grow in other ways.
 
 use super::body_walk::BodyWalk;
 use super::fly::Aloft;
@@ -28,7 +29,7 @@ use crate::motions::{Ending, Kind, Limit};
 use crate::numbers::larger_or_nan;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The ball after a time of a phase, with its error among the claims.
+    /// The ball after the time `t` of a phase, whose error is included in the estimated error.
     fn spun(&mut self, spun: &mut Spun, t: f64) -> (Aloft, f64) {
         let (mut at, angle) = spun.at(t);
         if self.of.planar {
@@ -42,7 +43,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (at, angle)
     }
 
-    /// Ends a phase of the length `t` in which the ball has turned by `angle`, and whose end is as late as `late`.
+    /// Adds the errors of a phase that lasts for the time `t`, in which the ball turns by `angle`. The error of the
+    /// time grows in proportion to `t` + `late`.
     fn rounds(&mut self, t: f64, angle: f64, late: f64) {
         let of = &mut self.of.roundings;
         of.count += ROUNDINGS_PER_PHASE;
@@ -53,7 +55,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.claims(late);
     }
 
-    /// The impact of a ball whose contact point does not slip: friction has nothing to stop.
+    /// The impact of a ball whose contact point does not slip, so that friction has no effect.
     pub(super) fn rebounds(&self, lift: f64, e: f64) -> Struck {
         let hit = match self.ask.table {
             Table::Rolling { .. } => Hit::Sticks,
@@ -65,7 +67,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Struck { impulse, couple: 0.0, slip: [0.0; 2], lift: 0.0 - e * lift, hit, lost }
     }
 
-    /// Flies to its landing, or to the last time.
+    /// Computes a flight of the ball to its landing, or to the last time.
     pub(super) fn flies_uniformly(&mut self) {
         let (from, now) = (self.aloft(), self.at[TIME]);
         let (mut spun, up) = (Spun::new(&from, [0.0; 3], 0.0), from.lift);
@@ -101,7 +103,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         y
     }
 
-    /// Rolls to the last time: nothing ends it.
+    /// Computes the rolling of the ball up to the last time, since no event ends it.
     pub(super) fn rolls_uniformly(&mut self) {
         let (now, spent, body) = (self.at[TIME], [self.at[HEAT], lost(&self.at)], self.of.body);
         let mut spun = Spun::new(&Aloft { slip: [0.0; 2], ..self.aloft() }, [0.0; 3], 0.0);
@@ -115,9 +117,10 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Follows a phase of friction, which ends after the time `end`, when a motion of the speed `stops` has stopped; `spent`
-    /// is its heat and what the losses have taken at a time, and `resists` the flow of a ball that does not slip. Returns
-    /// the numbers at its end or at the last time, and whether that comes first; None if the phase is too much work.
+    /// Computes a phase in which friction slows the ball. It ends after the time `end`, when a velocity of the size
+    /// `stops` has become zero. `spent` returns the heat and the energy lost at a time, and `resists` has the
+    /// equations of a ball that does not slip. Returns the state vector at the end of the phase or at the last time,
+    /// and whether the last time comes first; None if the phase is too much work.
     fn rubs_uniformly(
         &mut self,
         mut spun: Spun,
@@ -147,7 +150,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some((self.numbers(&at, now + length, spent(length)), over))
     }
 
-    /// Slips until the slip vanishes, or to the last time.
+    /// Computes a slip of the ball until it vanishes, or to the last time.
     pub(super) fn slips_uniformly(&mut self) {
         let (mu, from) = (self.of.slide.law.strength, self.aloft());
         let spun = Spun::rubbing(&from, self.of.body.i3(), mu);
@@ -162,7 +165,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.slip_ends(y, if over { Halt::Time } else { Halt::Standstill });
     }
 
-    /// Drills and creeps on a patch of contact, until the drilling or the rolling ends, or to the last time.
+    /// Computes the drilling and creep of the ball on a patch of contact, until the drilling or the rolling ends, or
+    /// to the last time.
     pub(crate) fn creeps_uniformly(&mut self, creeping: Creeping) {
         let (inertia, law, still) = (self.of.body.i3(), &self.of.slide.law, is_still(&self.at));
         let k = if still { 0.0 } else { creeping.k };
@@ -196,8 +200,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.slip_ends(y, halt);
     }
 
-    /// Whether the phase of rolling that begins is known: only dry friction slows the ball, by couples that are constant in
-    /// the laboratory.
+    /// Whether the phase of rolling that begins has a closed form: only dry friction slows the ball, by couples that
+    /// are constant in the laboratory.
     pub(super) fn is_slowing_known(&self) -> bool {
         let mut losses = self.ask.losses.iter();
         let dry = !self.of.own.has_couple()
@@ -205,7 +209,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         !poses(N) && dry && self.of.body.is_uniform_ball() && self.contact() == Contact::Rolling
     }
 
-    /// Rolls under rolling resistance and drills, each until it stops, to rest or to the last time.
+    /// Computes the ball's rolling under rolling resistance, and its drilling, each until it stops, up to rest or to
+    /// the last time.
     pub(super) fn rolls_to_rest(&mut self, flow: &LossyFlow<G>) {
         let (losses, inertia) = (self.ask.losses, self.of.body.i3());
         let couples = [Law::RollingResistance, Law::Drilling].map(|law| losses.coefficient(law));
@@ -240,7 +245,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 }
 
 impl Followed {
-    /// Completes the estimated errors of a motion whose phases are all known, which no rougher run has to show.
+    /// Completes the estimated errors of a motion whose phases all have closed forms, so that no second run is
+    /// needed.
     pub(crate) fn complete_known_errors(&mut self, tol: f64) {
         let phases = self.path.phases.iter();
         let fastest = |y: &State| y.w1.abs().max(y.w2.abs()).max(y.w3.abs());

@@ -1,4 +1,4 @@
-//! The outputs of a walk: states, poses and forces from its numbers.
+//! Computes the outputs of a body's motion: states, poses and forces from its state vector.
 
 use super::own::Own;
 use super::roll::lossy::LossyFlow;
@@ -16,19 +16,20 @@ use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// The state from the numbers. A ball whose axis has passed the vertical leans to the other side.
+/// The state from a state vector. A ball whose axis has passed the vertical (sin(theta) < 0) leans to the other side.
 pub(crate) fn state<const N: usize>(y: &[f64; N]) -> State {
     let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
     State { theta: (side * y[SIN]).atan2(y[COS]), w1: side * y[W1], w2: side * y[W2], w3: y[W3] }
 }
 
-/// The pose from the numbers of a flow.
+/// The pose from a state vector.
 pub(crate) fn pose<const N: usize>(y: &[f64; N]) -> Pose {
     let turn = if y[SIN] < 0.0 { PI } else { 0.0 };
     posed([y[PHI] + turn, y[PSI] - turn, y[X], y[Y]], 0.0)
 }
 
-/// The pose with these angles, the contact point at this position, and the lowest point at this height.
+/// The pose with the angles phi and psi, the contact point at (x, y), and the lowest point of the body at this
+/// height.
 pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
     let angle = |angle: f64| {
         let turns = (angle / TAU).round();
@@ -37,15 +38,15 @@ pub(super) fn posed([phi, psi, x, y]: [f64; 4], height: f64) -> Pose {
     Pose { phi: angle(phi), psi: angle(psi), contact_point: Point2::new(x, y), height }
 }
 
-/// The errors of theta and of w from steps of this tolerance: relative to theta, and relative to the
-/// largest speed.
+/// The errors of theta and of w after steps of the tolerance `tol`: relative to theta, and relative to the largest
+/// speed.
 pub(crate) fn state_errors(y: &State, tol: f64) -> [f64; 2] {
     let fastest = y.w1.abs().max(y.w2.abs()).max(y.w3.abs()).max(1.0);
     [tol * y.theta.min(1.0), tol * fastest]
 }
 
 impl Followed {
-    /// Adds a point of a slip to the outputs.
+    /// Adds the state vector `y` of a slip to the outputs.
     pub(super) fn slid<L: Own, const N: usize>(&mut self, ask: &Ask, slide: &Slide<L>, y: &[f64; N]) {
         let now = state(y);
         let side = if y[SIN] < 0.0 { -1.0 } else { 1.0 };
@@ -71,7 +72,7 @@ impl Followed {
         });
     }
 
-    /// Adds a point of a phase that loses energy without a slip to the outputs.
+    /// Adds the state vector `y` of a phase that loses energy without a slip to the outputs.
     pub(super) fn lossy<G: Own, const N: usize>(
         &mut self,
         ask: &Ask,

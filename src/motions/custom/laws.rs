@@ -1,11 +1,11 @@
-//! Laws of the user in the flows of the library.
+//! Calls user-defined laws from the library's equations of motion.
 //!
 //! ```text
 //! mu     follows the speed of a slip
 //! m(N)   secants of the couple, until N no longer changes:   m = m0 + N mN there
 //! F, m   of a drive, which a flow asks once at each place, before it evaluates its equations
 //! ```
-//! A user-defined law has no derivative: slopes are differences.
+//! A user-defined law has no derivative; its slopes are computed from differences.
 
 use crate::error::Error;
 use crate::laws::body::Body;
@@ -26,38 +26,39 @@ use core::cell::Cell;
 use core::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Point2, Vector2, Vector3};
 
-/// Largest number of secants for the normal force.
+/// Largest number of secant steps in the search for a normal force that agrees with a user-defined couple.
 const SECANTS: usize = 40;
-/// The normal force at which a couple is first evaluated. It is not 1, that of a body at rest, since the couple depends on
-/// the normal force by two values.
+/// The normal force, in M g, at which a user-defined couple is first evaluated. It differs from 1, that of a body at
+/// rest, since two values give the dependence on the normal force.
 const FIRST_NORMAL: f64 = 0.75;
 
-/// The laws of a motion.
+/// The user-defined laws of a motion, with their last values and errors.
 #[derive(Clone, Copy)]
 pub(crate) struct OwnLaws<'a> {
-    /// The body, seen from its lower end, and whether the state refers to the upper end.
+    /// The body, counted from its lower end; `over` is whether the current state is counted from the upper end.
     pub body: &'a Body,
     pub over: &'a Cell<bool>,
     pub custom: Custom<'a>,
-    /// The last wrong value of a law since the last step that was taken.
+    /// The error of the last wrong value of a law since the last step that was taken.
     pub fault: &'a Cell<Option<Error>>,
-    /// The sine, the cosine and w at which the couple was last solved for, and the couple.
+    /// The sine and cosine of theta and w for which the couple was last computed, and this couple.
     pub last: &'a Cell<([f64; 5], Option<Couple<f64>>)>,
-    /// The time at the start, and the last value of the drive.
+    /// The time at the start; `driven` is the last value of the drive.
     pub since: f64,
     pub driven: &'a Cell<Option<Driven>>,
 }
 
-/// A drive at a moment.
+/// The force and couple of a user-defined drive at one moment.
 #[derive(Clone, Copy)]
 pub(crate) struct Driven {
     now: Moment,
     push: Push,
-    /// The couple along e1, e2, e3 as the flow sees them.
+    /// The couple along the e1, e2, e3 of the current state, which may be counted from the other end of the body.
     couple: [f64; 3],
 }
 
-/// The state at the sine and cosine of theta and w, and the sign of e1 and e2 in it: a ball may lean to the other side.
+/// The state from sine and cosine of theta and w, after the sign of its e1 and e2: -1 if a ball has passed the
+/// vertical and leans to the other side.
 fn upright_state([s, c, w1, w2, w3]: [f64; 5]) -> (f64, State) {
     let side = if s < 0.0 { -1.0 } else { 1.0 };
     (side, State { theta: (side * s).atan2(c), w1: side * w1, w2: side * w2, w3 })
@@ -69,7 +70,8 @@ impl<'a> OwnLaws<'a> {
         self.custom.friction.map(|law| OwnFriction { law, fault: self.fault })
     }
 
-    /// The state as told from the lower end of a body with several rims, and -1 if it is seen from the other one, else 1.
+    /// The state counted from the lower end of a body with several rims, and -1 if the given state is counted from
+    /// the other end, else 1.
     fn seen_from_lower_rim(&self, y: &State) -> (State, f64) {
         let two = self.body.ell() > 0.0 && self.body.theta_end() == FRAC_PI_2;
         let over = if self.body.has_row() { self.over.get() } else { two && y.theta > FRAC_PI_2 };
@@ -79,7 +81,7 @@ impl<'a> OwnLaws<'a> {
         (State { theta: PI - y.theta, w2: -y.w2, w3: -y.w3, ..*y }, -1.0)
     }
 
-    /// The drive at these numbers.
+    /// Calls the drive at this state, slip, velocity of the centre and height.
     fn driven_at<const N: usize>(
         &self,
         law: &dyn DriveLaw,
@@ -119,14 +121,14 @@ impl<'a> OwnLaws<'a> {
         Driven { now, push, couple: [side * m1, side * over * m2, over * m3] }
     }
 
-    /// The couple of a law at the sine and cosine of theta and w.
+    /// The couple of a user-defined law for this sine and cosine of theta, w and normal force.
     fn value(&self, law: &dyn CoupleLaw, y: [f64; 5], normal: f64) -> [f64; 3] {
         let (side, y) = upright_state(y);
         let [m1, m2, m3] = self.couple_or_nan(law, &y, normal);
         [side * m1, side * m2, m3]
     }
 
-    /// NaN for a law that has failed, and for a wrong value, which is noted.
+    /// The couple of a user-defined law; NaN if the law has failed, or if its value is wrong, which is recorded.
     fn couple_or_nan(&self, law: &dyn CoupleLaw, y: &State, normal: f64) -> [f64; 3] {
         if law.has_failed() {
             return [f64::NAN; 3];
@@ -139,7 +141,7 @@ impl<'a> OwnLaws<'a> {
         [m1, side * m2, side * m3]
     }
 
-    /// The couple about the normal force that `normal` gives for it.
+    /// Finds the couple of a law that agrees with the normal force that `normal` computes from it.
     fn couple_by_secants(
         &self,
         law: &'a dyn CoupleLaw,
@@ -190,7 +192,7 @@ impl FollowsSpeed<Dual<f64>> for OwnLaws<'_> {
     }
 }
 
-/// The sum of a couple of a law and one that does not depend on the normal force.
+/// The sum of a law's couple and a couple that does not depend on the normal force.
 fn beside<T: Real>(found: Option<Couple<T>>, [m1, m2, m3]: [T; 3]) -> Couple<T> {
     let zero = m1.splat(0.0);
     let Couple { free: [a, b, c], pressed } = found.unwrap_or(Couple { free: [zero; 3], pressed: [zero; 3] });
@@ -232,8 +234,8 @@ impl OwnCouple<Dual<f64>> for OwnLaws<'_> {
         OwnCouple::<f64>::is_there(self)
     }
 
-    /// The slope of the part that does not depend on the normal force is that of the couple where this force is constant. A
-    /// drive has no slope: margins of a body that is driven have differences.
+    /// The couple of the law and its slope, which for the part that does not depend on the normal force is taken at a
+    /// constant normal force. A drive has no slope.
     #[inline(never)]
     fn solved_couple(
         &self,

@@ -7,8 +7,8 @@ use crate::motions::measured::{Measured, MeasuredMotion};
 use crate::motions::{Ask, Start};
 
 impl Measured {
-    /// The motion of the body under user-defined laws, at these times in seconds, with results in SI. Start and options
-    /// are in natural units; a law that is written in SI is wrapped in [`InSi`](crate::custom::InSi).
+    /// Computes the motion of the body under user-defined laws, at these times in seconds, with results in SI. Start
+    /// and options are in natural units; a law that is written in SI is wrapped in [`InSi`](crate::custom::InSi).
     ///
     /// # Errors
     /// Those of [`custom::roll_with`](crate::custom::roll_with).

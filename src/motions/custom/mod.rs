@@ -1,13 +1,15 @@
-//! A body under user-defined laws of loss and friction, or a stone under one of friction ([`custom`](crate::custom)).
+//! Motions of a body under user-defined laws of loss and friction, or of a stone under a user-defined law of friction
+//! ([`custom`](crate::custom)).
 //!
 //! ```text
 //! mu(|u|)        in place of mu where the contact point slips; static friction holds it up to mu_s N, and a slip begins with mu(0)
 //! m(theta, w, N) beside the couple of the losses
 //! F, m(moment)   a force on the centre, and a couple, that drive the body
 //! ```
-//! The motion is that of [`body`](super::body): its walk asks the laws at each evaluation. A slip from rest has no series:
-//! steps follow it from its first moment, and they are implicit where its direction follows the motion much faster than the
-//! body turns. Error: as for any motion that is integrated, from a second run with a larger tolerance.
+//! The motion is computed as in [`body`](super::body), which calls the laws at each evaluation of its equations. A
+//! slip from rest has no power series: it is integrated from its first moment, with implicit steps where its
+//! direction follows the motion much faster than the body turns. Error: as for any motion that is integrated, from a
+//! second run with a larger tolerance.
 
 mod laws;
 mod measured;
@@ -30,23 +32,23 @@ use crate::motions::stone::known::Recorded;
 use core::cell::{Cell, RefCell};
 use laws::OwnLaws;
 
-/// The default tolerance of a step, since a user-defined law may be slow.
+/// The default tolerance of a step with user-defined laws, larger than otherwise, since a law may be slow.
 const CUSTOM_TOLERANCE: f64 = 1e-10;
-/// Count of numbers of such a motion: those of a slip, the pose and the energy lost.
+/// Number of components of the state vector of a motion with user-defined laws: those of a slip, the pose and the
+/// energy lost.
 const CUSTOM_NUMBERS: usize = 14;
 
 /// Computes the motion of a body with user-defined laws at `times`, up to the event that ends it.
 ///
-/// `ask` gives the contact, losses, restitution, poses and forces. In the air the couple is called with a normal force
-/// of 0; a body with two rims is seen from the lower one. Along the impact of one rim the coefficient of friction is
-/// that of the current speed; where both rims land at once it is that of the slip after the impact. A motion beyond
-/// events is an error, and so is friction of the user on a patch of contact. The default tolerance of a step is 1e-10.
-/// A body with `custom.drive` rolls, slips or flies, and the motion ends where a face or a second rim lands; what it has
-/// lost is less by the work of the drive. With `custom.friction` the contact has to be Coulomb's friction, of which only the
-/// static coefficient is used. A
-/// motion whose law is so stiff that it would need too many steps ends there with
-/// [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at every step, and a law that
-/// [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
+/// `ask` gives the contact, losses, restitution, poses and forces. In the air the couple is called with a normal
+/// force of 0; the state of a body with two rims is counted from the lower one. During the impact of one rim the
+/// coefficient of friction is that of the current speed; where both rims land at once it is that of the slip after
+/// the impact. A motion beyond events is an error, and so is user-defined friction on a patch of contact. The default
+/// tolerance of a step is 1e-10. A body with `custom.drive` rolls, slips or flies, and the motion ends where a face
+/// or a second rim lands; the work of the drive is subtracted from the lost energy. With `custom.friction` the
+/// contact has to be Coulomb's friction, of which only the static coefficient is used. A motion with a law so stiff
+/// that it needs too many steps ends early with [`Limit::Stiff`](crate::motion::Limit::Stiff). `go_on` is called at
+/// every step, and a law that [fails](crate::custom::CoupleLaw::has_failed) interrupts the motion, too.
 ///
 /// ```
 /// use spincyl::{Body, Slip, State, contact::Friction, custom::{self, Custom}, motion::{Ask, Start}};
@@ -63,11 +65,11 @@ const CUSTOM_NUMBERS: usize = 14;
 /// ```
 ///
 /// # Errors
-/// Those of [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`]; `OutOfRange` for a motion beyond
-/// events, on a table that turns, with friction of the user on a patch of contact, beside a tangential restitution, or
-/// on another contact than Coulomb's friction, and for a drive on a smooth table, on a patch of contact, on a face, or
-/// beside a loss that holds a body at rest; at any time `Couple` or `Coefficient` if a law is not finite or
-/// supplies energy.
+/// Those of [`motion::roll_with`](super::motion::roll_with) and of [`Custom::check`]; `OutOfRange` for a motion
+/// beyond events, on a table that turns, with user-defined friction on a patch of contact, together with a tangential
+/// restitution, or with a contact other than Coulomb's friction, and for a drive on a smooth table, on a patch of
+/// contact, on a face, or together with a loss that holds a body at rest; at any time `Couple` or `Coefficient` if a
+/// law is not finite or supplies energy.
 pub fn roll_with(
     body: &Body,
     start: impl Into<Start>,
@@ -83,8 +85,8 @@ pub fn roll_with(
 }
 
 /// Computes the motion of a stone with a user-defined law of friction at `times`, as [`stone::roll`] does under the
-/// laws of the library, with the options of [`roll_with`]. A couple is not possible, since it is a function of the
-/// inclination of an axis.
+/// laws of the library, with the options of [`roll_with`]. A user-defined couple is an error, since it is a function
+/// of the inclination of an axis, which a stone has not.
 ///
 /// ```
 /// use spincyl::{Ellipsoid, contact::Friction, custom::{self, Custom}, motion::Ask};
@@ -100,7 +102,7 @@ pub fn roll_with(
 ///
 /// # Errors
 /// Those of [`stone::roll`]; with a law of friction also those of [`roll_with`] for this law; `OutOfRange` for a
-/// couple.
+/// user-defined couple.
 ///
 /// [`stone::roll`]: crate::stone::roll
 pub fn roll_stone(
@@ -117,7 +119,7 @@ pub fn roll_stone(
     Ok(Motion::from(found).advanced(start.time))
 }
 
-/// The motion of [`roll_stone`] under a law that is checked; `recorded` as in [`followed`](stone::followed).
+/// The motion of [`roll_stone`], whose law has been checked; `recorded` is as in [`followed`](stone::followed).
 pub(crate) fn stone_followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
@@ -144,7 +146,7 @@ pub(crate) fn stone_followed(
     stone::followed(stone, start, times, (&ask, own), recorded, &mut go_on)
 }
 
-/// These options with the coefficient of sliding friction that the law of the user has at rest.
+/// These options with the coefficient of sliding friction that the user-defined law has at speed 0.
 fn on_own_table(ask: &Ask, custom: &Custom<'_>) -> Ask {
     let mut ask = *ask;
     if let (Some(law), Table::Rubs(Friction::Coulomb { mu, fixed, .. })) = (custom.friction, &mut ask.table) {
@@ -155,7 +157,8 @@ fn on_own_table(ask: &Ask, custom: &Custom<'_>) -> Ask {
     ask
 }
 
-/// The motion of [`roll_with`] under laws that are checked. Its error is NaN unless it `is_judged`, by a second run.
+/// The motion of [`roll_with`], whose laws have been checked. Its error is NaN unless `is_judged`: then a second run
+/// shows it.
 pub(crate) fn followed(
     body: &Body,
     start: &Start,
@@ -212,7 +215,8 @@ pub(crate) fn followed(
     })
 }
 
-/// Checks a motion under such laws. Returns the tolerance of its steps.
+/// Checks the body, the start and the options of a motion under user-defined laws. Returns the tolerance of its
+/// steps.
 fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f64, Error> {
     check_options(ask, custom)?;
     if custom.drive.is_some() {
@@ -222,12 +226,12 @@ fn check(body: &Body, start: &Start, ask: &Ask, custom: &Custom<'_>) -> Result<f
     Ok(if ask.method == Method::Exact { CUSTOM_TOLERANCE } else { tol })
 }
 
-/// The laws of loss that a drive does not exclude: those that hold no motion at rest.
+/// Whether a loss law can hold a body at rest, which excludes a drive.
 fn is_held_by(law: Law) -> bool {
     matches!(law, Law::DryContour | Law::Drilling | Law::RollingResistance)
 }
 
-/// Returns an error for a motion that cannot be driven.
+/// Returns an error for a start or options that a user-defined drive excludes.
 fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
     let refuse = |name: &'static str, value: f64, expected: &'static str| {
         Err(Error::OutOfRange { name, value, expected })
@@ -256,7 +260,7 @@ fn check_drive(body: &Body, start: &Start, ask: &Ask) -> Result<(), Error> {
     }
 }
 
-/// Returns an error for options that such laws exclude.
+/// Returns an error for options that user-defined laws exclude.
 pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error> {
     let refuse = |name: &'static str, value: f64| {
         Err(Error::OutOfRange { name, value, expected: "0 or false together with a user-defined law" })

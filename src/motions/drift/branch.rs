@@ -1,4 +1,5 @@
-//! The steady states with the centre at rest as a branch: the slope of the energy along it, and the power that is lost.
+//! The steady states whose centre is at rest, as a curve over theta (a branch): the derivative of the energy along
+//! it, and the power that is lost.
 //!
 //! ```text
 //! n = a c - ell s,   m = n + d A c,   d = I1/I3 - 1,   sigma = s/A,   s, c, a, rho, A, L, h, g as in `body::rim`
@@ -9,9 +10,9 @@
 //! dt = -(E'/P) dtheta
 //! ```
 //! The equations are Eq. 15 of Jackson et al., Am. J. Phys. 87, 85 (2019), and its form for a torus, with w3 = (L/A)
-//! w1. In this form the derivative of n/m has no difference of large terms, and psi' keeps its digits where the body is
-//! balanced, n = 0. The caller gives n and m, because the distance from the zero of n or m gives that number to the
-//! last digit.
+//! w1. In this form the derivative of n/m has no difference of large terms, and psi' keeps its digits where the body
+//! is balanced, n = 0. The caller computes n and m, since n and m are most accurate when computed from the distance
+//! to their zeros.
 //!
 //! Error: a few roundings of the terms written above; a test of `drift` compares E' with the energy.
 
@@ -19,7 +20,7 @@ use crate::laws::body::{Body, Shape};
 use crate::laws::loss::{Couples, Kinematics};
 use crate::numbers::{Real, Sum, long_sin_cos, sin_cos};
 
-/// A body on the branch with its losses; T holds one body, or eight in SIMD lanes.
+/// A body in steady states whose centre is at rest, with its losses; T holds one body, or eight in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Branch<T> {
     pub shape: Shape<T>,
@@ -27,7 +28,7 @@ pub(crate) struct Branch<T> {
     pub losses: Couples<T>,
 }
 
-/// A place on the branch: sine and cosine of theta, n and m.
+/// A place on the branch of steady states: sine and cosine of theta, n = a c - ell s, and m = n + d A c.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BranchAngle<T> {
     pub angle: (T, T),
@@ -38,18 +39,20 @@ pub(crate) struct BranchAngle<T> {
 /// The slope of the energy, the lost power and the rotation at a place on the branch.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BranchPoint<T> {
-    /// E', and the sum of the absolute values of its terms, to which its rounding error is proportional.
+    /// E' = dE/dtheta; the next field is the sum of the absolute values of its terms, to which its rounding error is
+    /// proportional.
     pub slope: T,
     pub size: T,
-    /// The power that is lost.
+    /// The power that the losses take.
     pub power: T,
-    /// Omega (`rate`), and w1 and w3 (`turning`).
+    /// The precession Omega; `turning` is w1 and w3.
     pub rate: T,
     pub turning: [T; 2],
 }
 
 impl<T: Real> Branch<T> {
-    /// The place with n and m computed from sine and cosine, which is accurate where neither n nor m is small.
+    /// The place on the branch with n and m computed from sine and cosine of theta, which is accurate where neither n
+    /// nor m is small.
     #[inline(always)]
     pub fn angle_in_doubles(&self, angle: (T, T)) -> BranchAngle<T> {
         let n = -self.shape.rim.lever(angle);
@@ -57,7 +60,8 @@ impl<T: Real> Branch<T> {
         BranchAngle { angle, n, m }
     }
 
-    /// E', the lost power and the rotation at a place; `ROUND` is true for rims with a fillet.
+    /// E' = dE/dtheta, the lost power and the rotation at a place on the branch; `ROUND` is true for rims with a
+    /// fillet.
     #[inline(always)]
     pub fn at<const ROUND: bool>(&self, BranchAngle { angle, n, m }: BranchAngle<T>) -> BranchPoint<T> {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.shape, angle);
@@ -98,8 +102,8 @@ impl<T: Real> Branch<T> {
     }
 }
 
-/// A branch with the zeros theta0 of n and thetaInf of m in twice the digits: n follows from the distance to theta0,
-/// and near thetaInf m follows from the distance to thetaInf.
+/// A branch of steady states that has the zeros theta0 of n and thetaInf of m with twice the digits of a double: n
+/// follows from the distance to theta0, and near thetaInf m follows from the distance to thetaInf.
 ///
 /// ```text
 /// n = hypot(a, ell) sin(theta0 - theta)
@@ -140,7 +144,7 @@ impl Exact {
         self.angle_below_balance(theta, (self.balance - theta).hi)
     }
 
-    /// The place at an inclination whose distance `below` theta0 is known more precisely.
+    /// The place on the branch at an inclination whose distance `below` theta0 is known more precisely.
     pub fn angle_below_balance(&self, theta: Sum<f64>, below: f64) -> BranchAngle<f64> {
         let rim = self.branch.shape.rim;
         let (s, c) = sum_sin_cos(theta);
@@ -162,7 +166,7 @@ impl Exact {
         if self.body.is_sharp() { self.branch.at::<false>(place) } else { self.branch.at::<true>(place) }
     }
 
-    /// theta0 in twice the digits.
+    /// The inclination theta0 at which the body is balanced, as a sum of two doubles.
     pub fn balance(&self) -> Sum<f64> {
         self.balance
     }

@@ -1,4 +1,5 @@
-//! The circular steady states as a surface, and the motion over it of a rolling body that loses energy.
+//! The steady states of rolling whose centre moves on a circle, as a surface, and the drift over it of a body that
+//! loses energy.
 //!
 //! ```text
 //! w1 = Omega s,   S = (I3 s + A h) w3 Omega - (I1 c + h L) s Omega^2 - g = J w2' at w2 = 0,   S = 0: no tilting
@@ -25,26 +26,27 @@ use crate::laws::contact::reduced::Reduced;
 use crate::laws::loss::{Couples, Kinematics};
 use crate::numbers::{Real, sin_cos};
 
-/// A body that rolls and loses energy; T holds one body, or eight in SIMD lanes.
+/// A body that rolls and loses energy while it drifts; T holds one body, or eight in SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Circular<T> {
     of: Reduced<T>,
     losses: Couples<T>,
-    /// The initial signs of psi' and w_z, 1 or -1: the directions in which the contact runs and drills.
+    /// The initial signs of psi' and w_z, 1 or -1: the directions in which the contact point moves along the rim and
+    /// drills.
     pub signs: [T; 2],
 }
 
 /// The inclination (counted from 0 or from pi), Omega, w3 and the time.
 pub(crate) type Numbers<T> = [T; 4];
 
-/// The rates and the margins of a drift in a state.
+/// The rates of a drift in a state, and the quantities whose zeros end the drift.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CirclePoint<T> {
-    /// The derivatives of the numbers with respect to x.
+    /// The derivatives of inclination, Omega, w3 and time with respect to the path length x.
     pub rates: Numbers<T>,
-    /// J kappa.
+    /// J kappa: the stiffness of the nutation, whose zero ends the drift.
     pub stiffness: T,
-    /// psi' and w_z, times their initial signs.
+    /// The rates psi' and w_z, times their initial signs.
     pub going: [T; 2],
     pub w1: T,
     /// |V|, the speed of the centre.
@@ -66,9 +68,9 @@ impl<T: Real> Circular<T> {
         Circular { signs, ..Circular::new(&of.shape.map(number), of.round, losses) }
     }
 
-    /// The numbers after a step. For a ball one step of Newton's method back to the surface removes the
-    /// rounding error, since near the pole all terms of S are small. Near a face S is a small difference of
-    /// large terms, and the equations of motion keep S = 0 more precisely than this step would.
+    /// The state after a step. For a ball one step of Newton's method back to the surface S = 0 of steady states
+    /// removes the rounding error, since near the pole all terms of S are small. Near a face S is a small difference
+    /// of large terms, and the equations of motion keep S = 0 more precisely than this step would.
     #[inline(always)]
     pub fn kept(&self, y: &Numbers<T>, far: T) -> Numbers<T> {
         let (near, a) = (self.settled(y, far), self.of.shape.rim.a);
@@ -77,8 +79,8 @@ impl<T: Real> Circular<T> {
         [y[0], pick(1), pick(2), y[3]]
     }
 
-    /// The numbers after a step of Newton's method towards the surface: Omega and w3 change, each in proportion to its
-    /// effect on S.
+    /// The state after a step of Newton's method towards the surface S = 0 of steady states: Omega and w3 change,
+    /// each in proportion to its effect on S.
     #[inline(always)]
     pub fn settled(&self, [theta, rate, w3, t]: &Numbers<T>, far: T) -> Numbers<T> {
         let (s, c) = sin_cos(*theta);
@@ -97,14 +99,15 @@ impl<T: Real> Circular<T> {
         [*theta, rate - part * along * rate, w3 - part * across * turning, *t]
     }
 
-    /// V, the velocity of the centre along e2.
+    /// The velocity V of the centre of mass along e2.
     #[inline(always)]
     pub fn speed(&self, angle: (T, T), w1: T, w3: T) -> T {
         let rim = self.of.shape.rim;
         rim.radius(angle) * w3 - rim.depth(angle) * w1
     }
 
-    /// The rates along x and the margins of a state; `far` is -1 where the inclination is counted from pi, else 1.
+    /// The rates with respect to the path length x, and the quantities whose zeros end the drift; `far` is -1 where
+    /// the inclination is counted from pi, else 1.
     #[inline(always)]
     pub fn at(&self, [theta, rate, w3, _]: &Numbers<T>, far: T) -> CirclePoint<T> {
         let (s, c) = sin_cos(*theta);
@@ -172,7 +175,7 @@ impl Circular<f64> {
     }
 }
 
-/// theta |dt/dtheta|, the time per e-fold of the inclination.
+/// The time per e-fold of the inclination: theta |dt/dtheta|.
 #[inline(always)]
 pub(crate) fn time_per_e_fold<T: Real, const N: usize>(y: &[T; N], rate: &[T; N]) -> T {
     (y[0] * rate[3] / rate[0]).abs()

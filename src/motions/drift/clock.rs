@@ -1,4 +1,5 @@
-//! The time along a path with a known slowness |dt/dtheta|, by quadrature, and the place at a given time.
+//! The time along a path of inclinations, by quadrature of the slowness |dt/dtheta|, and the inclination at a given
+//! time.
 //!
 //! ```text
 //! t(theta) = int |dt/dtheta| dtheta                                         series of [`Antiderivative`] in x
@@ -14,7 +15,7 @@ use super::ends::Goal;
 use crate::methods::antiderivative::{Antiderivative, Sampled};
 use crate::numbers::Sum;
 
-/// A part of the path with its own variable x.
+/// A part (leg) of the path, with its own variable of integration x.
 #[derive(Debug, Clone, Copy)]
 enum ClockLeg {
     Begin { behind: f64 },
@@ -29,7 +30,7 @@ pub(crate) struct WayPoint {
     pub left: Option<f64>,
 }
 
-/// The path from its start to its goal.
+/// A path of inclinations from its start to its goal.
 #[derive(Debug, Clone, Copy)]
 struct ClockPath {
     start: f64,
@@ -38,7 +39,7 @@ struct ClockPath {
     way: f64,
 }
 
-/// The time along a leg, from x = 0 on, and the time at which the leg begins.
+/// A leg of the path with the time along it, from x = 0 on, and the time at which it begins.
 #[derive(Debug, Clone)]
 struct TimedLeg {
     leg: ClockLeg,
@@ -46,18 +47,18 @@ struct TimedLeg {
     begins: f64,
 }
 
-/// The time along a path.
+/// The time along a path of inclinations, leg by leg.
 #[derive(Debug, Clone)]
 pub(crate) struct DriftClock {
     path: ClockPath,
     legs: Vec<TimedLeg>,
-    /// The tail behind the last leg, if the goal is never reached: the time and the distance from the goal at
-    /// the start of the tail, the slowness times that distance, and the power.
+    /// The tail after the last leg, if the goal is never reached: the time and the distance from the goal at the
+    /// start of the tail, the slowness times this distance, and the power of the distance.
     tail: Option<[f64; 4]>,
 }
 
 impl ClockPath {
-    /// The point at x, and |dtheta/dx|.
+    /// The point of the path at x on a leg, and |dtheta/dx|.
     fn point_on_leg(&self, leg: ClockLeg, x: f64) -> (WayPoint, f64) {
         match leg {
             ClockLeg::Begin { behind } => {
@@ -99,13 +100,13 @@ impl ClockPath {
 const SLOWNESS_ROUNDINGS: f64 = 8.0;
 
 impl TimedLeg {
-    /// The time from the beginning of the leg to x.
+    /// The time from the beginning of the leg to its variable x.
     fn time_in_leg(&self, x: f64) -> f64 {
         let [time] = self.time.at(x);
         if let ClockLeg::End { .. } = self.leg { self.time.total[0] - time } else { time }
     }
 
-    /// The x at a time from the beginning of the leg.
+    /// The variable x of the leg at a time since its beginning.
     fn place(&self, since: f64) -> f64 {
         self.time.inverse(if let ClockLeg::End { .. } = self.leg {
             self.time.total[0] - since
@@ -120,9 +121,9 @@ impl TimedLeg {
 }
 
 impl DriftClock {
-    /// The clock of a path: `slowness` is |dt/dtheta| at a point and the size of its terms, `behind` the distance from
-    /// the start back to the nearest singularity, and `several` says whether several laws take energy. None if the time
-    /// cannot be resolved.
+    /// Computes the time along a path: `slowness` is |dt/dtheta| at a point and the size of its terms, `behind` the
+    /// distance from the start back to the nearest singularity, and `several` says whether several laws take energy.
+    /// None if the time cannot be resolved.
     pub fn new(
         start: f64,
         goal: Goal,
@@ -177,12 +178,12 @@ impl DriftClock {
         Some(clock)
     }
 
-    /// The time to the end of the last leg.
+    /// The time from the start of the path to the end of its last leg.
     fn stops(&self) -> f64 {
         self.legs.last().map_or(0.0, TimedLeg::stops)
     }
 
-    /// The time to the goal; infinite if the goal is never reached.
+    /// The time from the start of the path to its goal; infinite if the goal is never reached.
     pub fn time_to_goal(&self) -> f64 {
         if self.tail.is_some() { f64::INFINITY } else { self.stops() }
     }
@@ -240,7 +241,8 @@ impl DriftClock {
     }
 }
 
-/// Length in x below which a leg is not halved when its quadrature fails: its time does not overflow.
+/// Length in x below which a leg is not halved if its quadrature fails, since the failure is then not an overflow of
+/// the time.
 const SHORTEST_HALVED_LEG: f64 = 1.0;
 
 /// The time at which the distance `left` remains in the tail, where the slowness goes as left^(-1 - power).

@@ -1,7 +1,7 @@
-//! The course of a drift that rolls: its steps, and the time at an inclination and the state at a time.
+//! The course of a drift of a rolling body: its steps, the time at an inclination, and the state at a time.
 //!
-//! A state within a step follows from a shorter step from the same start; a state of the tail follows from
-//! the powers of `tail`.
+//! A state within a step is computed by a shorter step from the same start; a state after the last step by the powers
+//! of `tail`.
 //!
 //! Error: that of `rolling`.
 
@@ -22,7 +22,7 @@ use std::cell::RefCell;
 pub(crate) struct DriftCourse {
     of: Rolling<'static>,
     steps: Vec<DriftStep>,
-    /// The kind of the end, its inclination and its time.
+    /// The kind of the drift's end, its inclination and its time.
     end: (End, f64, f64),
     last: Numbers<f64>,
     tail: Option<Tail>,
@@ -48,7 +48,7 @@ impl DriftCourse {
         self.end
     }
 
-    /// The equations with the inclination counted as in this step.
+    /// The equations of the drift, with the inclination counted from 0 or from pi as in this step.
     fn of(&self, step: &DriftStep) -> Rolling<'static> {
         self.of.with_inclination_from(step.far)
     }
@@ -107,13 +107,14 @@ impl DriftCourse {
         Some(self.with_mirror_image(State { theta, w1, w2: 0.0, w3: y[2] }, y[1], speed))
     }
 
-    /// The state with Omega and |V|, for the body itself where its mirror image drifts.
+    /// The state of the drift with its precession Omega and speed |V|, mirrored back if the mirror image was
+    /// computed.
     fn with_mirror_image(&self, y: State, rate: f64, speed: f64) -> DriftState {
         let state = State { w1: self.turns * y.w1, w3: self.turns * y.w3, ..y };
         DriftState { state, precession: self.turns * rate, friction_coefficient: speed * rate.abs() }
     }
 
-    /// The state at a time in the tail.
+    /// The state at a time after the last step, in the tail.
     fn state_in_tail(&self, tail: &Tail, t: f64) -> DriftState {
         let [last, rate, w3, from] = self.last;
         let left = tail.at(t - from);

@@ -5,8 +5,9 @@
 //! p                  of a law at each end: `POWERS` in its file in `laws::loss`
 //! e = 1 where a ball stands at its pole, else 0
 //! ```
-//! The energy falls during a drift, so that the inclination moves in one direction until the branch ends or the energy
-//! is least. If several laws act, the smallest p decides. The powers are the leading ones of the terms of `branch`.
+//! The energy falls during a drift, so that the inclination changes in one direction until the branch of steady
+//! states ends or the energy has a minimum. If several laws act, the smallest p decides. The powers p and e are those
+//! of the leading terms in `branch`.
 //!
 //! Error: the inclination of an end has the error of the root from which it comes.
 
@@ -19,7 +20,7 @@ use crate::states::steady;
 use core::f64::consts::PI;
 
 coded! {
-    /// The end of a drift. The number is its code in arrays.
+    /// The way in which a drift ends. The number is its code in arrays.
     pub enum End {
         /// The face lands: theta = 0 or pi.
         Face = 0,
@@ -33,9 +34,11 @@ coded! {
         StabilityLost = 4,
         /// A ball stands upright on its pole.
         Upright = 5,
-        /// In rolling only: the contact point stops, psi' = 0, and dry friction or rolling resistance holds the contact.
+        /// Only in a drift of rolling: the contact point stops, psi' = 0, and dry friction or rolling resistance
+        /// holds it.
         ContactStops = 6,
-        /// In rolling only: the drilling stops, w_z = 0, and drilling friction holds the body and takes no more energy.
+        /// Only in a drift of rolling: the drilling stops, w_z = 0, and drilling friction holds the body and takes no
+        /// more energy.
         DrillingStops = 7,
     }
 }
@@ -56,7 +59,7 @@ impl End {
     }
 }
 
-/// The end that a drift approaches.
+/// The end that a drift approaches, with its inclination.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Goal {
     pub end: End,

@@ -4,16 +4,16 @@
 //! rest      theta' = -P/E'(theta),   t = -int E'/P dtheta            the centre held at rest: one line of states
 //! rolling   theta' = -F/(J kappa),   F = S_w1 a1 + S_w3 a3           no slip, no nutation: a surface of states
 //! ```
-//! *Rest* is the drift of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does below a
-//! ridge of the energy, and the body moves to lower energies; above a ridge theta grows. *Rolling* is the drift of a
-//! body that never slips. Its losses push the body off the line of states whose centre is at rest, and nothing brings
-//! it back; a ridge has no effect. The drift ends where rolling becomes unstable, kappa = 0. Both are of first order in
-//! the losses.
+//! *Rest* is the drift of Jackson et al., Am. J. Phys. 87, 85 (2019): the centre is held at rest, as slip does below
+//! a ridge of the energy, and the body moves to lower energies; above a ridge theta grows. *Rolling* is the drift of
+//! a body that never slips. Its losses move the body away from the steady states whose centre is at rest, and nothing
+//! brings it back; a ridge has no effect. The drift ends where rolling becomes unstable, kappa = 0. Both are of first
+//! order in the losses.
 //!
 //! Error: 1e-12 of a time at rest and 1e-10 rolling. Up to 0.99 of the time to the end the same bounds hold for the
-//! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a high
-//! power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and `test_late_drifts`
-//! check these bounds.
+//! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these quantities vary as a
+//! high power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and
+//! `test_late_drifts` check these bounds.
 
 pub(crate) mod branch;
 pub(crate) mod circular;
@@ -45,7 +45,7 @@ enum DriftVariant {
     Rolling(Box<DriftCourse>),
 }
 
-/// A time that exceeds the time of the end by at most this fraction of it counts as the end.
+/// A time that exceeds the time of the drift's end by at most this fraction counts as the end.
 const SLACK: f64 = 1e-9;
 
 impl Drift {
@@ -67,7 +67,7 @@ impl Drift {
     ///
     /// # Errors
     /// Those of [`steady::state`](crate::states::steady::state) and of [`Losses::check_for`]; `OutOfRange` without
-    /// losses, for ell above 1e6 and for moments outside 1e-12 to 1e12; `Lost` where the time overflows.
+    /// losses, for ell above 1e6 and for moments outside 1e-12 to 1e12; `Lost` if the time to the end overflows.
     pub fn at_rest(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         check_drift(body, losses)?;
         Ok(Self { kind: DriftVariant::Rest(Box::new(Rest::new(body, theta, losses)?)) })
@@ -96,7 +96,7 @@ impl Drift {
         self.end().2
     }
 
-    /// The end that the drift reaches, or approaches without ever reaching it.
+    /// The kind of end that the drift reaches, or approaches without ever reaching it.
     pub fn ended(&self) -> End {
         self.end().0
     }
@@ -123,17 +123,17 @@ impl Drift {
         }
     }
 
-    /// The inclination, in radians, at a time in sqrt(R/g); NaN before time 0 and after the end.
+    /// The inclination of the drift, in radians, at a time in sqrt(R/g); NaN before time 0 and after the end.
     pub fn theta(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.state.theta)
     }
 
-    /// The precession Omega = phi', in sqrt(g/R), at a time in sqrt(R/g).
+    /// The precession Omega = phi', in sqrt(g/R), at a time in sqrt(R/g); NaN before time 0 and after the end.
     pub fn precession(&self, t: f64) -> f64 {
         self.at(t).map_or(f64::NAN, |there| there.precession)
     }
 
-    /// The steady state at a time in sqrt(R/g).
+    /// The steady state at a time in sqrt(R/g); None before time 0 and after the end.
     pub fn state(&self, t: f64) -> Option<State> {
         self.at(t).map(|there| there.state)
     }
@@ -143,7 +143,8 @@ impl Drift {
         self.at(t).map_or(f64::NAN, |there| there.friction_coefficient)
     }
 
-    /// The state at a time, with its precession and the coefficient of friction that is needed.
+    /// The state of the drift at a time, with its precession and the coefficient of friction that it needs; None
+    /// before time 0 and after the end.
     pub(crate) fn at(&self, t: f64) -> Option<DriftState> {
         match &self.kind {
             DriftVariant::Rest(rest) => rest.at(t),
@@ -152,7 +153,7 @@ impl Drift {
     }
 }
 
-/// The state of a drift at a time, with its precession and the coefficient of friction that is needed.
+/// The state of a drift at a time, with its precession and the coefficient of friction that it needs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftState {
     pub state: State,
@@ -160,7 +161,7 @@ pub(crate) struct DriftState {
     pub friction_coefficient: f64,
 }
 
-/// Returns an error for losses or a body without a drift.
+/// Returns an error if there are no losses, or for a body out of the range for drifts.
 pub(crate) fn check_drift(body: &Body, losses: &Losses) -> Result<(), Error> {
     losses.check_for(body)?;
     if losses.is_none() {

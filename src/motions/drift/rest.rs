@@ -23,18 +23,17 @@ use crate::states::stability;
 use crate::states::steady;
 use core::f64::consts::PI;
 
-/// A drift with the centre at rest.
+/// A drift along the steady states whose centre is at rest.
 #[derive(Debug, Clone)]
 pub(crate) struct Rest {
     path: BranchPath,
-    /// The largest coefficient of the losses. The clock runs in the time multiplied by it, so that no time
-    /// overflows.
+    /// The largest coefficient of the losses. Times are computed as multiples of its inverse, so that none overflows.
     largest_coefficient: f64,
     clock: DriftClock,
     stable_until: f64,
 }
 
-/// The branch up to the end of a drift.
+/// The branch of steady states up to the end of a drift.
 #[derive(Debug, Clone, Copy)]
 struct BranchPath {
     of: Exact,
@@ -74,7 +73,7 @@ impl Rest {
         Ok(rest)
     }
 
-    /// The drift without `stable_until`, which needs a search for the limits of stability.
+    /// The drift without the time `stable_until`, which needs a search for the limits of stability.
     pub fn unwatched(body: &Body, theta: f64, losses: &Losses) -> Result<Self, Error> {
         steady::state(body, theta)?;
         let largest_coefficient =

@@ -1,4 +1,4 @@
-//! The slow drift of a body that rolls without slipping and without nutation, as a flow.
+//! Integrates the slow drift of a body that rolls without slipping and without nutation.
 //!
 //! ```text
 //! (theta, Omega, w3, t) along the path x of `circular`
@@ -24,43 +24,44 @@ use crate::states::stability;
 use core::f64::consts::PI;
 use std::cell::RefCell;
 
-/// Allowed error of a step, relative to the numbers.
+/// Allowed error of a step of the drift, relative to inclination, Omega, w3 and time.
 const TOLERANCE: f64 = 1e-13;
 
-/// The tail begins where the time per e-fold of the inclination falls below the fraction `TAIL_TIME_SHARE` of the time
-/// so far, and at the latest at the inclination `LAST_INCLINATION`. In air alone, where the face never lands, it begins
-/// at the fraction `FACE_LANDED` of the first inclination. The condition on the time counts only below the
-/// inclination `LOW`.
+/// The integration of a drift ends, and its tail begins, where the time per e-fold of the inclination falls below
+/// this fraction of the time so far (tested only below the inclination `LOW`), and at the latest at the inclination
+/// `LAST_INCLINATION`. If only the air takes energy, the face never lands, and the tail begins at the fraction
+/// `FACE_LANDED` of the first inclination.
 const TAIL_TIME_SHARE: f64 = 1e-16;
 const LAST_INCLINATION: f64 = 1e-140;
 const FACE_LANDED: f64 = 1e-11;
 const LOW: f64 = 1e-3;
 
-/// Inclination below which the tail replaces a step that is too short, since it is precise enough there.
+/// Inclination, in radians, below which the tail of a drift replaces a step that is too short: the tail is precise
+/// enough there.
 const NEARLY_FLAT: f64 = 1e-6;
 
-/// Inclination, in radians, above which it is counted from the other end of [0, pi]; above pi/2, so that the
-/// counting does not change back and forth.
+/// An inclination above this, in radians, is counted from the other end of [0, pi]. The limit is above pi/2, so that
+/// the counting does not change back and forth.
 pub(crate) const COUNTED_FROM_PI_ABOVE: f64 = 1.8;
 
 /// Greatest number of steps of one drift; a drift that needs more fails.
 pub(crate) const MOST_DRIFT_STEPS: u64 = 5000;
 
-/// Lengths in x of the first step and of the longest step.
+/// Lengths of the first and of the longest step of a drift, in the path length x.
 pub(crate) const STEPS: [f64; 2] = [0.02, 1.5];
 
-/// The count of numbers that [`Rolling::numbers`] gives to lanes.
+/// The number of parameters that [`Rolling::numbers`] returns for the SIMD code.
 pub(crate) const DRIFT_NUMBERS: usize = 7;
-/// Number of margins that a drift must keep positive.
+/// Number of margins: quantities whose zeros end a drift.
 pub(crate) const DRIFT_MARGINS: usize = 4;
 
-/// The ends of a drift, in the order of the margins.
+/// The end of a drift at the zero of each margin, in the order of the margins.
 const DRIFT_ENDS: [End; DRIFT_MARGINS] =
     [End::StabilityLost, End::Side, End::ContactStops, End::DrillingStops];
 
-/// The error of a step over its allowed error. For theta, Omega and w3 the allowed error is relative to the smaller of
-/// the number and its distance from the start, so that the time of a short drift is just as precise. For the time it is
-/// relative to the time.
+/// The error of a step over its allowed error. The allowed error of theta, Omega and w3 is relative to the value or
+/// to its change since the start, whichever is smaller, so that the time of a short drift is just as precise. That of
+/// the time is relative to the time.
 #[inline(always)]
 pub(crate) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], made: &rk8::Step<T, N>) -> T {
     let number = here(
@@ -82,7 +83,7 @@ pub(crate) fn error<T: Real, const N: usize>(start: &Numbers<T>, y: &[T; N], mad
     )
 }
 
-/// A number that is positive until the tail of a drift begins.
+/// A quantity that is positive until the tail of a drift begins, where its integration ends.
 #[inline(always)]
 pub(crate) fn until_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], last: T) -> T {
     let number = here(
@@ -93,29 +94,30 @@ pub(crate) fn until_tail<T: Real, const N: usize>(y: &[T; N], rate: &[T; N], las
     early.min(y[0] - last)
 }
 
-/// The shortest step at an inclination: a shorter one would be limited by rounding alone. Below `NEARLY_FLAT`
+/// The shortest step of a drift at an inclination: a shorter one could only be due to rounding. Below `NEARLY_FLAT`
 /// the limit is larger, since the tail is precise enough there.
 #[inline(always)]
 pub(crate) fn shortest<T: Real>(theta: T) -> T {
     theta.select_lt(theta.splat(NEARLY_FLAT), theta.splat(1e-4), theta.splat(1e-14))
 }
 
-/// The reasons for which the flow of a drift halts.
+/// The reasons for which the integration of a drift halts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum DriftHalt {
-    /// A margin fails.
+    /// A margin (a quantity whose zero ends the drift) has reached zero.
     Fails(End),
-    /// The tail begins.
+    /// The tail of the drift begins.
     Flat,
     /// The inclination must be counted from the other end of [0, pi].
     Turned,
     /// The allowed number of steps is taken.
     Pause,
-    /// The time is infinite.
+    /// The time has become infinite.
     Over,
 }
 
-/// A step of a drift: its first numbers, its length in x, its last numbers, and the end from which theta is counted.
+/// A step of a drift: the state at its beginning, its length in the path length x, the state at its end, and whether
+/// theta is counted from 0 or pi.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftStep {
     pub from: FlowPlace<4>,
@@ -124,23 +126,23 @@ pub(crate) struct DriftStep {
     pub far: f64,
 }
 
-/// A body that drifts.
+/// The equations of a rolling body that drifts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rolling<'a> {
     pub of: Circular<f64>,
     margins: Margins<f64>,
-    /// The equations and margins for numbers with a slope.
+    /// The equations and margins for dual numbers (a value and its slope).
     sloped: (Circular<Dual<f64>>, Margins<Dual<f64>>),
     start: Numbers<f64>,
     /// -1 where the inclination is counted from pi, else 1.
     pub far: f64,
     ball: bool,
-    /// The list in which the steps are stored, if any.
+    /// The list in which the steps of the drift are stored, if any.
     steps: Option<&'a RefCell<Vec<DriftStep>>>,
 }
 
 impl Rolling<'_> {
-    /// The drift of a body, and its first numbers.
+    /// The equations of the drift of a body, and the first inclination, Omega, w3 and time.
     pub fn begin(body: &Body, y: &State, losses: &Losses) -> Result<(Self, Numbers<f64>), Error> {
         let kappa = stability::rolling(body, y);
         let refused = |name, value, expected| Err(Error::OutOfRange { name, value, expected });
@@ -185,7 +187,7 @@ impl Rolling<'_> {
         Self { far, ..self }
     }
 
-    /// Computes the drift from these numbers for at most `most` steps.
+    /// Integrates the drift from the state `y` on for at most `most` steps.
     pub fn follow(
         &mut self,
         mut y: Numbers<f64>,
@@ -227,20 +229,21 @@ impl Rolling<'_> {
         counted(theta, self.far)
     }
 
-    /// The numbers that a lane needs in addition to the body and its losses.
+    /// The parameters that the SIMD code needs in addition to the body and its losses.
     pub fn numbers(&self) -> [f64; DRIFT_NUMBERS] {
         let ([runs, drills], [theta, rate, w3, _]) = (self.of.signs, self.start);
         [runs, drills, theta, rate, w3, self.far, self.margins.side]
     }
 }
 
-/// An inclination that is counted from pi where `far` is -1, or that inclination from its count.
+/// Converts an inclination to the counting from pi if `far` is -1, or back.
 #[inline(always)]
 pub(crate) fn counted<T: Real>(theta: T, far: T) -> T {
     theta.splat(0.0).select_lt(far, theta, theta.splat(PI) - theta)
 }
 
-/// Returns these numbers with the inclination counted from the other end if it is above `COUNTED_FROM_PI_ABOVE`.
+/// Returns this state with the inclination counted from the other end of [0, pi] if it is above
+/// `COUNTED_FROM_PI_ABOVE`.
 fn from_other_end([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>, f64) {
     if theta < COUNTED_FROM_PI_ABOVE {
         ([theta, rate, w3, t], far)
@@ -249,7 +252,7 @@ fn from_other_end([theta, rate, w3, t]: Numbers<f64>, far: f64) -> (Numbers<f64>
     }
 }
 
-/// The first four numbers of a flow.
+/// Returns the first four components of a state vector.
 #[inline(always)]
 fn first_four<T: Copy, const N: usize>(y: &[T; N]) -> Numbers<T> {
     [y[0], y[1], y[2], y[3]]
@@ -295,7 +298,7 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
         STEPS[0]
     }
 
-    /// A drift has no turns or nutation to be resolved by its steps.
+    /// The time step that rotation and nutation allow: infinite, since a drift does not resolve them.
     fn calm<const N: usize>(&self, _: &[f64; N]) -> f64 {
         f64::INFINITY
     }
@@ -359,18 +362,20 @@ impl Flow<DRIFT_MARGINS> for Rolling<'_> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Margins<T> {
     side: T,
-    /// 1 if a dry law ends the drift where the contact stops running, and where the drilling stops, else 0.
+    /// 1 if a dry law ends the drift where the contact point stops moving along the rim, and where the drilling
+    /// stops, else 0.
     dry: [T; 2],
     /// 1 if only the drag of the air acts, so that the face never lands, else 0.
     only_air: T,
-    /// 1 if no loss depends on the inclination of a body that lies nearly flat, else 0.
+    /// 1 if no loss depends on the inclination of a body that is almost on its face, else 0.
     no_loss_by_lean: T,
-    /// The inclination below which the tail begins.
+    /// The inclination below which the tail of the drift begins.
     pub last: T,
 }
 
 impl<T: Real> Margins<T> {
-    /// The margins under losses with these coefficients, up to an inclination, from the inclination `start`.
+    /// The margins under losses with these coefficients, up to the inclination `theta_end`, from the inclination
+    /// `start`.
     #[inline(always)]
     pub fn of(coefficients: &[T; COUNT], theta_end: T, start: T) -> Self {
         let [zero, one] = [0.0, 1.0].map(|x| start.splat(x));
@@ -399,8 +404,8 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// A number that is positive until drilling friction would stop the precession within a time below rounding. This
-    /// is the end of the drift of a coin that comes upright and rolls straight on.
+    /// A quantity that is positive until drilling friction would stop the precession within a time below rounding.
+    /// Its zero ends the drift of a coin that has come upright and rolls straight.
     #[inline(always)]
     pub fn until_turning_stops<const N: usize>(&self, y: &[T; N], rate: &[T; N]) -> T {
         let [zero, one] = [0.0, 1.0].map(|x| y[0].splat(x));

@@ -1,13 +1,14 @@
-//! The rest of a drift after its last step, where all numbers are powers of the inclination or of one of them.
+//! The rest (tail) of a drift after its last step, where all quantities are powers of the inclination, or the spin
+//! decays by itself.
 //!
 //! ```text
 //! powers   unit = theta |dt/dtheta|,   dt/dtheta ~ theta^(q - 1),   theta ~ (1 - q t/unit)^(1/q),   w1 ~ theta^p1,   w3 ~ theta^p3
 //! fade     w1, w3 ~ exp(-z),   t = int |dt/dz| dz,   ln theta = -int |dln theta/dz| dz
 //! ```
-//! Near a face or a pole all numbers go as powers of theta, and under rolling resistance theta itself goes as
-//! a high power of the remaining time. A body that spins fast on a nearly flat face keeps w1/w3 = A L/(I1 +
-//! L^2) at any theta: theta vanishes before the spin does, above all if the body is nearly a ball. Where no
-//! loss depends on theta, the rates then are functions of w3 alone, from which the decay of the spin follows.
+//! Near a face or a pole all quantities vary as powers of theta, and under rolling resistance theta varies as a high
+//! power of the remaining time. A body that spins fast and is almost on its face keeps w1/w3 = A L/(I1 + L^2) at any
+//! theta: theta vanishes before the spin does, above all if the body is nearly a ball. Where no loss depends on
+//! theta, the rates then are functions of w3 alone, from which the decay of the spin follows.
 //!
 //! Error: 1e-12 of the time of a tail that takes some time. A test of `test_late_drifts` compares this time with the spin,
 //! which falls evenly, and with the three-dimensional model.
@@ -17,28 +18,29 @@ use crate::methods::antiderivative::{Antiderivative, Sampled};
 use crate::methods::search;
 use crate::numbers::{Dual, Real, Sum};
 
-/// Exponent of the remaining time up to which, in air alone, the face never lands.
+/// If only the air takes energy, a face whose exponent of the remaining time is at most this never lands.
 const LARGEST_EXPONENT_IN_AIR: f64 = 0.02;
 
-/// Share of the time so far below which the time of the tail needs no precise exponent.
+/// The tail of a drift needs no precise exponent if it lasts for less than this share of the time so far.
 const NEGLIGIBLE_TAIL: f64 = 1e-13;
 
-/// Greatest z of a spin that fades: exp(-40) of it remains, a rounding error.
+/// Greatest z of a spin that decays as exp(-z): exp(-40) of it remains, a rounding error.
 const FADED_EXPONENT: f64 = 40.0;
 
 /// The rest of a drift after its last step, up to a face that lands or a ball that stands on its pole.
 #[derive(Debug, Clone)]
 pub(crate) enum Tail {
     Powers(Powers),
-    /// The time and the logarithm of theta as integrals over z, and the time that the tail takes.
+    /// A spin that decays as exp(-z): the time and the logarithm of theta as integrals over z, and the time that the
+    /// tail takes.
     Fade(Antiderivative<2>, f64),
 }
 
-/// Numbers that are powers of the inclination.
+/// A tail of a drift in which all quantities are powers of the inclination.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Powers {
-    /// theta |dt/dtheta|, and the exponent of the remaining time as a power of theta; with an exponent of 0 or less the
-    /// face never lands.
+    /// The time theta |dt/dtheta| per e-fold of theta; the next field is the exponent of the remaining time as a
+    /// power of theta. With an exponent of 0 or less the face never lands.
     unit: f64,
     power: f64,
     /// Whether the face lands in a finite time.
@@ -56,8 +58,8 @@ pub(crate) struct TailPlace {
 }
 
 impl Tail {
-    /// The tail from the numbers of a drift. `airy` is true if only air acts, `fades` if the spin decays
-    /// independently of theta. A tail that takes some time needs a precise exponent.
+    /// The tail of a drift from the state `y` on. `airy` is true if only the air takes energy, `fades` if the spin
+    /// decays independently of theta. A tail that lasts long needs a precise exponent.
     pub fn new(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64, airy: bool, fades: bool) -> Self {
         let tail = Powers::of(powers(of, *y, far), airy);
         if tail.time() < NEGLIGIBLE_TAIL * y[3] {
@@ -73,7 +75,7 @@ impl Tail {
         Self::Powers(Powers::of(powers(&exact, y.map(Sum::from), far.into()).map(|x| x.hi), airy))
     }
 
-    /// The spin that fades; None if its time cannot be resolved.
+    /// The tail with a spin that decays by itself; None if its time cannot be resolved.
     fn fading_spin(of: &Circular<Dual<f64>>, y: &Numbers<f64>, far: f64) -> Option<Self> {
         let dual = Dual::constant;
         let rates = |z: f64| {
@@ -90,7 +92,7 @@ impl Tail {
         Some(Self::Fade(integrals, time))
     }
 
-    /// The time that the tail takes; infinite if the face never lands.
+    /// The time that the tail of the drift takes; infinite if the face never lands.
     pub fn time(&self) -> f64 {
         match self {
             Self::Powers(of) => of.time(),
@@ -115,7 +117,7 @@ impl Tail {
         }
     }
 
-    /// The fractions of the inclination and of the rates that are left after a time.
+    /// The fractions of the inclination and of the rates that are left after a time in the tail.
     pub fn at(&self, t: f64) -> TailPlace {
         match self {
             Self::Powers(of) => of.at(t),

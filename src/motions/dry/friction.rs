@@ -1,10 +1,11 @@
-//! A law of friction of the user along a slip ([`custom`](crate::custom)), of bodies and of stones.
+//! A user-defined law of friction during a slip ([`custom`](crate::custom)), of bodies and of stones.
 //!
 //! ```text
 //! mu(|u|)   in place of mu,   mu(|u|)/|u|   in place of c
 //! ```
-//! A user-defined law has no derivative: slopes are differences. A slip from rest has no series: it keeps its direction for
-//! a moment, and its steps are implicit where its direction follows the motion much faster than the body turns.
+//! A user-defined law has no derivative; its slopes are computed from differences. A slip from rest has no power
+//! series: it keeps its direction for a moment, and its steps are implicit where its direction follows the motion
+//! much faster than the body turns.
 
 use super::creep::ASIDE;
 use crate::error::Error;
@@ -13,10 +14,10 @@ use crate::laws::custom::{FrictionLaw, SpeedLaw, fault_of_friction};
 use crate::numbers::Dual;
 use core::cell::Cell;
 
-/// The least growth of a slip that begins, so that it has a direction.
+/// The least growth rate of the speed of a slip that begins, so that it has a direction.
 pub(crate) const LEAST_GROWTH: f64 = 1e-30;
 
-/// A law of friction of the user, and the last wrong value of its motion since the last step that was taken.
+/// A user-defined law of friction, with the error of its last wrong value since the last step that was taken.
 #[derive(Clone, Copy)]
 pub(crate) struct OwnFriction<'a> {
     pub law: &'a dyn FrictionLaw,
@@ -24,7 +25,8 @@ pub(crate) struct OwnFriction<'a> {
 }
 
 impl OwnFriction<'_> {
-    /// The coefficient of friction at a speed; NaN for a law that has failed, and for a wrong value, which is noted.
+    /// The coefficient of friction at a speed; NaN if the law has failed, or if its value is wrong, which is
+    /// recorded.
     pub fn mu(&self, speed: f64) -> f64 {
         if self.law.has_failed() || !speed.is_finite() {
             return f64::NAN;
@@ -39,7 +41,7 @@ impl OwnFriction<'_> {
         }
     }
 
-    /// Whether the law has failed, or has a wrong value at the speed of a slip that is reached.
+    /// Whether the law has failed, or has a wrong value at the speed of a slip at the end of a step.
     pub fn is_wrong_at(&self, speed: f64) -> bool {
         if !self.law.has_failed() {
             self.fault.set(fault_of_friction(self.law.coefficient(speed), speed));
@@ -47,7 +49,7 @@ impl OwnFriction<'_> {
         self.law.has_failed() || self.fault.get().is_some()
     }
 
-    /// Takes the error of a wrong value, unless the law has failed.
+    /// Returns the error for a wrong value, once; None if there is none or the law has failed.
     pub fn takes_fault(&self) -> Option<Error> {
         self.fault.take().filter(|_| !self.law.has_failed())
     }
@@ -83,8 +85,8 @@ impl FollowsSpeed<Dual<f64>> for OwnFriction<'_> {
     }
 }
 
-/// The numbers at the time `lasts` after a slip, whose numbers begin at the index `slip`, has begun along `way`, by the rates
-/// in the middle of that time.
+/// The state vector at the time `lasts` after a slip has begun along `way`, by the rates in the middle of that time;
+/// `slip` is the index of the slip's first component.
 pub(crate) fn slipped<const N: usize>(
     from: &[f64; N],
     slip: usize,

@@ -1,4 +1,5 @@
-//! What dry losses resist, hold and let go: one machine for bodies that roll, slip or lie, and for stones.
+//! Decides which rotations dry losses resist, hold at rest and let go, for bodies that roll, slip or lie, and for
+//! stones.
 //!
 //! ```text
 //! moves      the loss acts against its sign                   margin: the speed in the direction of the sign
@@ -6,10 +7,10 @@
 //! is held    margin: limit^2 - couple^2                       beyond it begins against the couple
 //! together   several at rest at a time are held, or begin, as `together` finds
 //! ```
-//! [`Ways`] has the signs and the holds of a phase; they stand in its losses and nowhere else. A flow tells the couple
-//! that a hold needs, and its limit; what follows from these is decided here.
+//! [`Ways`] has the signs of the rotations in a phase, and which of them are held. The equations of a phase give the
+//! couple that holds a rotation, and its limit; this module decides what follows from these.
 //!
-//! Error: a motion that begins has the speed 0, and a hold ends at most the share `GRACE` beyond its limit.
+//! Error: a rotation that begins has the speed 0, and a hold ends at most the share `GRACE` beyond its limit.
 
 use crate::laws::contact::grip;
 use crate::laws::contact::together::{Resting, Together};
@@ -17,17 +18,17 @@ use crate::laws::loss::{Couples, GRACE, Holds, Kinematics, Law, NEAR, OwnCouple,
 use crate::motions::walk::numbers::Halt;
 use crate::numbers::{Real, sign_or_zero};
 
-/// In a slip, rolling that is slower than this, and that a step may change by `NEAR`, ends if rolling resistance would also
+/// During a slip, rolling slower than this, which a step may change by `NEAR`, ends if rolling resistance would also
 /// stop it in the opposite direction.
 pub(crate) const HARDLY_ROLLS: f64 = 4.0 * NEAR;
 
 impl Ways {
-    /// The signs of psi' and of w_z.
+    /// The signs of psi' and of w_z, with nothing held at rest.
     pub fn of(spin: f64, drilling: f64) -> Self {
         Self { contour: sign_or_zero(spin), drilling: sign_or_zero(drilling), ..Self::default() }
     }
 
-    /// These signs with the contact along the rim, or the drilling, held; or not held, with this sign.
+    /// These signs with one rotation, along the rim or drilling, held at rest; or not held, with this sign.
     fn with(mut self, part: Resting, held: bool, sign: f64) -> Self {
         let (of, holds) = match part {
             Resting::Contour => (&mut self.contour, &mut self.holds.contour),
@@ -37,31 +38,32 @@ impl Ways {
         self
     }
 
-    /// These signs with this motion held.
+    /// These signs with this rotation held at rest.
     pub fn holding(self, part: Resting) -> Self {
         self.with(part, true, 0.0)
     }
 
-    /// These signs with rolling and rocking held, so that the body only turns about the vertical.
+    /// These signs with rolling and rocking held at rest, so that the body only turns about the vertical.
     pub fn holding_rolling(self) -> Self {
         let holds = Holds { rolling: true, ..Holds::default() };
         Self { contour: 0.0, holds, ..self.rolling_freely() }
     }
 
-    /// These signs with a motion that begins against the couple that would hold it: lambda h/s along the contour, which
-    /// takes the power lambda psi', or nu about the vertical, which gives the power nu w_z.
+    /// These signs with a rotation that begins against the couple that would hold it at rest: lambda h/s along the
+    /// contour, which takes the power lambda psi', or nu about the vertical, which gives the power nu w_z.
     pub fn beginning(self, part: Resting, couple: f64) -> Self {
         let sign = if part == Resting::Contour { couple.signum() } else { -couple.signum() };
         self.with(part, false, sign)
     }
 
-    /// These signs where a motion is at rest, from the couple that holds it and the limit of friction.
+    /// These signs for a rotation at rest: held, or begun again, from the couple that it needs and the limit of
+    /// friction.
     pub fn stopping(self, part: Resting, needs: [f64; 2]) -> Self {
         if holds(needs) { self.holding(part) } else { self.beginning(part, needs[0]) }
     }
 
-    /// These signs with those of the motions at rest, of which one may have a known fate; and the direction in which
-    /// rolling and rocking begin.
+    /// These signs with those of the rotations at rest, which are held or begin; `known` is a rotation for which this
+    /// is already decided. Also returns the direction in which rolling and rocking begin.
     pub fn deciding(mut self, rests: Together, known: Option<(Resting, bool)>) -> (Self, [f64; 2]) {
         let [_, rolling, contour, drilling] = rests.knowing(known).fates();
         if rests.has(Resting::Contour) {
@@ -81,12 +83,12 @@ impl Ways {
 }
 
 impl Holds {
-    /// Whether this motion is held; a slip is not.
+    /// Whether this rotation is held at rest; false for a slip.
     pub fn has(self, part: Resting) -> bool {
         [false, self.rolling, self.contour, self.drilling][part as usize]
     }
 
-    /// The motion that friction ceases to hold at this halt; None if the halt stops a motion.
+    /// The rotation that friction ceases to hold at this halt; None if the halt stops a rotation.
     pub fn ceasing(self, halt: Halt) -> Option<Resting> {
         let part = match halt {
             Halt::Contour if self.rolling => Resting::Rolling,
@@ -98,25 +100,28 @@ impl Holds {
     }
 }
 
-/// The way to rest, in the variable of a flow with this pace dt/dsigma, of rolling and rocking that are slower than `slow`;
-/// None if they are faster, or do not slow down. `growth` is the rate of their speed in time.
+/// The distance to rest, in the variable sigma with the pace dt/dsigma, of rolling and rocking together; None if
+/// their speed is above `slow`, or does not fall. `growth` is the time derivative of the speed.
 pub(crate) fn left_to_rest([speed, growth]: [f64; 2], slow: f64, pace: f64) -> Option<f64> {
     (speed <= slow && speed > 0.0 && growth < 0.0).then(|| -speed / (growth * pace))
 }
 
-/// Whether dry friction can exert the couple that holds a motion, from this couple and the limit of friction.
+/// Whether dry friction can exert the couple that holds a rotation at rest, from this couple and the limit of
+/// friction.
 pub(crate) fn holds([push, limit]: [f64; 2]) -> bool {
     push.abs() <= limit * (1.0 + GRACE)
 }
 
-/// The margin of a motion that dry friction holds, from the couple that this needs and its limit.
+/// A quantity that is positive while dry friction can hold a rotation at rest, from the couple that this needs and
+/// its limit.
 pub(crate) fn hold<T: Real>([push, limit]: [T; 2]) -> T {
     grip(push.splat(1.0 + GRACE), limit, push * push)
 }
 
-/// The margins of the motions that dry losses resist: along the rim or, if it is held, of the rolling; and drilling (or
-/// rocking if the body only rocks). `held` has the couple that holds the drilling, and the limit of friction, and `kept`
-/// those of a motion along the rim or of rolling that is held. Rounding of the speeds grows with phi', the `precession`.
+/// The margins (quantities whose zeros end a phase) of the rotations that dry losses resist: along the rim or, if
+/// that is held, of rolling; and of drilling (or of rocking if the body only rocks). `held` has the couple that holds
+/// the drilling at rest, and the limit of friction, and `kept` those for the rotation along the rim or for rolling.
+/// Rounding of the speeds grows with phi', the `precession`.
 #[inline(never)]
 pub(crate) fn margins_of_ways<T: Real, G: OwnCouple<T>>(
     losses: &Couples<T, G>,
@@ -139,8 +144,8 @@ pub(crate) fn margins_of_ways<T: Real, G: OwnCouple<T>>(
     [contour, other]
 }
 
-/// The margin of one motion: whether it is held, with the couple that this needs and its limit; whether a dry loss resists
-/// it, and its sign; and its speed.
+/// The margin (whose zero ends a phase) of one rotation: from whether it is held at rest, the couple that this needs
+/// and its limit; whether a dry loss resists it, and its sign; and its speed.
 #[inline(always)]
 pub(crate) fn margin_of_way<T: Real>(
     (held, needs): (bool, [T; 2]),

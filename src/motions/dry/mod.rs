@@ -1,4 +1,4 @@
-//! What dry friction and the losses hold, for bodies and for stones.
+//! Which rotations and contacts dry friction and dry losses hold at rest, for bodies and for stones.
 
 pub(crate) mod creep;
 pub(crate) mod friction;

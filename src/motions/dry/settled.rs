@@ -15,31 +15,32 @@
 use crate::laws::loss::{Couples, Law};
 use core::f64::consts::FRAC_PI_4;
 
-/// Number of times that psi'' is corrected from the balance of the previous sweep.
+/// Number of sweeps: times that psi'' is corrected from the balance before.
 const SWEEPS: u32 = 3;
-/// The contact of a falling face settles only where sin(theta) is below `CLOSE`, and s psi' below `SLOWER`
+/// The contact of a falling face settles only where sin(theta) is below this, and sin(theta) psi' below `SLOWER`
 /// times the speed of fall.
 pub(crate) const CLOSE: f64 = 0.01;
 pub(crate) const SLOWER: f64 = 0.01;
-/// Least ratio of the rates of stop and fall for a settled contact near the table, and sine of theta above
-/// which a larger ratio is required. With a smaller ratio the balance would be less accurate.
+/// A contact near the table settles only if its contact point stops at least this many times faster than the face
+/// falls; above another sine of theta the ratio has to be larger. With a smaller ratio the balance would be less
+/// accurate.
 const FASTER: f64 = 4e3;
 const NEARBY: f64 = 1e-4;
 
-/// Safety factor in the upper bound of a stop's delay.
+/// Safety factor in the upper bound of the delay with which a contact point stops.
 const LATER: f64 = 1.5;
 
-/// Cost of a step with a settled contact, in ordinary steps.
+/// Cost of an integration step with a settled contact, in ordinary steps.
 pub(crate) const EFFORT: u64 = 30;
 
-/// Least ratio of the rates for a contact whose balance has an error below the share `SMALL` of the
-/// tolerance. This error is s psi', which is a part of w1, divided by the square of the ratio.
+/// Least ratio of the rates of stop and fall for a contact whose balance has an error below the share `SMALL` of the
+/// tolerance. This error is sin(theta) psi', which is a part of w1, divided by the square of the ratio.
 const FAST: f64 = 40.0;
 const SMALL: f64 = 0.01;
 
-/// The largest distance of s psi' from its balance at which a contact settles, in units of the tolerance. None if the
-/// contact, which stops at the rate `rate`, does not stop fast enough in comparison with the fall of its face. `turns`
-/// is s psi' in units of the tolerance.
+/// The largest distance of sin(theta) psi' from its balance at which a contact settles, in units of the tolerance.
+/// None if the contact point, which stops at the rate `rate`, does not stop fast enough in comparison with the fall
+/// of the face. `turns` is sin(theta) psi' in units of the tolerance.
 pub(crate) fn settles_within(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -56,10 +57,9 @@ pub(crate) fn settles_within(
     (ratio > FAST && small).then_some(1.0)
 }
 
-/// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
-/// As the balance falls with the face, psi' lags behind it by the time 1/rate. If the couple grows with
-/// a power of psi', the rate vanishes at the stop, and the lag is the time in which this couple takes
-/// the last of psi'.
+/// Upper bound of the delay with which a settled contact stops after dry friction has balanced the couple on it. As
+/// the balance falls with the face, psi' lags behind it by the time 1/rate. If the couple grows with a power of psi',
+/// the rate vanishes at the stop, and the lag is the time in which this couple takes the last of psi'.
 pub(crate) fn lag(
     losses: &Couples<f64>,
     (s, fall): (f64, f64),
@@ -74,7 +74,8 @@ pub(crate) fn lag(
     LATER / (rate + 1.0 / takes)
 }
 
-/// The response of the body at some w and psi''; `push` is the couple that turns the contact.
+/// Contact force and accelerations of the body at some w and psi''; `push` is the couple that turns the contact point
+/// along the rim.
 pub(crate) struct Turned<A> {
     pub acted: A,
     pub push: f64,
@@ -89,7 +90,7 @@ pub(crate) struct Balance<A> {
     pub spin: f64,
 }
 
-/// The balance of a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is
+/// Solves the balance of couples on a settled contact, from w_z, w2 and the radius of the circle of contact; `way` is
 /// the sign of psi'.
 pub(crate) fn balance<A>(
     losses: &Couples<f64>,

@@ -19,8 +19,8 @@ use crate::states::stability::stiffness;
 /// How much a fixed step damps the nutation, and a step that is short enough.
 pub(crate) struct Guard {
     pub loss: f64,
-    /// The largest step, to three digits, that damps the nutation by less than a thousandth and
-    /// gives no warning.
+    /// The largest step, rounded down to three digits, that damps the nutation by less than a thousandth and gives no
+    /// warning.
     pub advice: f64,
     pub coarse: bool,
 }
@@ -31,7 +31,8 @@ impl Default for Guard {
     }
 }
 
-/// Estimates the damping by `step`. An error if the step is too long for the nutation or the precession.
+/// Estimates how much steps of length `step` damp the nutation. Returns an error if the step is too long for the
+/// nutation or the precession.
 pub(crate) fn guard(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -76,7 +77,7 @@ pub(crate) fn guard(
     Ok(Guard { loss: loss(step).min(1.0), advice, coarse })
 }
 
-/// Rounds down to three digits, so that the step in the message passes the check.
+/// Rounds down to three digits, so that the step that the error message recommends passes the check.
 fn rounded_down(x: f64) -> f64 {
     let unit = 10f64.powf(x.log10().floor() - 2.0);
     if unit.is_normal() { (x / unit).floor() * unit } else { x }

@@ -1,4 +1,4 @@
-//! Motions by RK4 with a fixed step: the check of the step, and the steps up to the end of the motion.
+//! Motions by RK4 (the classical Runge-Kutta method) with a fixed step: the check of the step, and the integration.
 
 mod guard;
 mod stepped;

@@ -15,8 +15,8 @@ use crate::numbers::larger_or_nan;
 /// that run is added to the estimated error.
 const COMPARISON_TOLERANCE: f64 = 1e-12;
 
-/// The motion by steps of length `step`, up to the end of the more accurate solution. `swing` is the exact solution, if
-/// there is one. A step that is too long to reach that end is an error.
+/// Computes a motion by RK4 steps of length `step`, up to the end of a more accurate solution: `swing`, the exact
+/// one, or if there is none a run with a small tolerance. Returns an error if the step is too long to reach that end.
 pub(crate) fn stepped(
     course: &Course<'_>,
     swing: Option<&Swing>,

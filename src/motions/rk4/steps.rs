@@ -3,9 +3,8 @@
 //! ```text
 //! t_i = t0 + i h;   an output between two of these times takes a shortened step from the earlier one
 //! ```
-//! The end is that of a more accurate solution of the same motion, and the steps continue up to it. Where the axis of a
-//! ball passes through the vertical (its pole), a step ends at the edge of the pole, and the next one begins at the
-//! opposite edge.
+//! The motion ends where a more accurate solution of the same motion ends. Where the axis of a ball passes through
+//! the vertical (its pole), a step ends at the edge of the pole, and the next one begins at the opposite edge.
 
 use crate::error::{Error, copied};
 use crate::laws::contact::reduced::Rates;
@@ -21,9 +20,9 @@ use crate::motions::{Ending, Event, Limit, Method, Motion};
 use core::f64::consts::PI;
 use nalgebra::Point2;
 
-/// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`, at the first
-/// `count` of the times, with at most `most` evaluations. `unguarded` means that no exact motion has checked the step, so that each step is checked
-/// against the precession at its beginning.
+/// Integrates theta, w1, w2 and w3, and with a pose also phi, psi, x and y, by steps of length `h`. Returns the
+/// states at the first `count` times, with at most `most` evaluations of the rates. `unguarded` means that no exact
+/// motion has checked the step, so that each step is checked against the precession at its beginning.
 pub(crate) fn run(
     course: &Course<'_>,
     limits: &Limits,
@@ -47,7 +46,7 @@ pub(crate) fn run(
     }
 }
 
-/// A point of a motion: time, numbers, their derivative, and whole turns of phi and psi.
+/// A point of a motion: the time, the state vector, its time derivative, and the whole turns of phi and psi.
 #[derive(Clone, Copy)]
 struct Stage<const N: usize> {
     t: f64,
@@ -57,14 +56,14 @@ struct Stage<const N: usize> {
 }
 
 impl<const N: usize> Stage<N> {
-    /// The angle between the axis and the vertical, minus `FLAT`: negative where a face has landed, or within
-    /// the pole of a ball.
+    /// The angle between the axis and the vertical, minus the small angle `FLAT`: negative where a face has landed,
+    /// or where the axis of a ball is vertical.
     fn height(&self) -> f64 {
         self.at.y[0].min(PI - self.at.y[0]) - FLAT
     }
 }
 
-/// One integration. `ROUND` means that the rim is rounded and the body rolls.
+/// An integration by fixed steps, with its outputs. `ROUND` means that the rim is rounded and the body rolls.
 struct Runner<'a, const N: usize, const ROUND: bool> {
     course: &'a Course<'a>,
     rates: Rates<f64>,
@@ -119,7 +118,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(Self { course, rates, contact, unguarded, here, evaluations: 0, motion })
     }
 
-    /// The point with these numbers. The whole turns of an angle beyond [-pi, pi] are moved to `turns`.
+    /// The point with the time `t` and the state vector `at`. The whole turns of an angle phi or psi beyond [-pi, pi]
+    /// are moved to `turns`.
     #[inline(always)]
     fn place(law: (&Rates<f64>, Contact), t: f64, mut at: Compensated<N>, mut turns: [f64; 2]) -> Stage<N> {
         for i in 4..N.min(6) {
@@ -133,7 +133,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Stage { t, at, derivative, turns }
     }
 
-    /// The change of the numbers over a step `h`; infinite if theta leaves (0, pi) at a stage of the step.
+    /// The change of the state vector over a step `h`; infinite if theta leaves (0, pi) at a stage of the step.
     #[inline(always)]
     fn change(law: (&Rates<f64>, Contact), from: &Stage<N>, h: f64) -> [f64; N] {
         let mut inside = true;
@@ -209,7 +209,7 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Ok(self.motion)
     }
 
-    /// One step, to the time `t`; None if theta leaves (0, pi) within the step.
+    /// Makes one RK4 step, to the time `t`; None if theta leaves (0, pi) within the step.
     #[inline(always)]
     fn step_to(&mut self, rates: &Rates<f64>, t: f64) -> Result<Option<Stage<N>>, Error> {
         let (here, law) = (&self.here, (rates, self.contact));
@@ -248,8 +248,8 @@ impl<'a, const N: usize, const ROUND: bool> Runner<'a, N, ROUND> {
         Some((edge, Self::place((&self.rates, self.contact), t, Compensated::new(y), edge.turns)))
     }
 
-    /// The point at time `t`, reached from the last point by one shortened step, or by several where one
-    /// would leave (0, pi).
+    /// The point at time `t`, reached from the last point by one shortened step, or by several where theta would
+    /// leave (0, pi) in one.
     fn stage_at(&self, t: f64) -> Stage<N> {
         let law = (&self.rates, self.contact);
         let mut place = self.here;

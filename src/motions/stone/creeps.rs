@@ -1,4 +1,4 @@
-//! The patch of contact of a stone: its equations, of which [`Creeps`] asks, and the drilling that friction holds.
+//! The patch of contact of a stone: its equations for [`Creeps`], and the drilling that friction holds at rest.
 //!
 //! Error: that of [`creep`](crate::motions::dry::creep).
 
@@ -10,11 +10,12 @@ use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;
 
-/// The number of numbers that react to each other: the quaternion, w, the time and u.
+/// Number of components of the state vector that depend on each other: the quaternion, w, the time and the slip u.
 const STONE_REACTING: usize = 10;
 impl StoneFlow<'_> {
-    /// The margins of a stone on a patch. The contact point is at rest only as long as the patch does not drill. `grips` is
-    /// the couple per normal force that can hold the drilling; its derivative is left out.
+    /// The margins (functions whose zeros end the phase) of a stone on a patch, whose contact point is at rest only
+    /// while the patch does not drill. `grips` is the couple per normal force that can hold the drilling; its
+    /// derivative is left out.
     #[inline(always)]
     pub(super) fn on_patch<T: Real>(
         &self,
@@ -34,17 +35,18 @@ impl StoneFlow<'_> {
         margins
     }
 
-    /// The patch of contact, as it rests; None for a point.
+    /// The patch of contact with its coefficients at rest; None for a point.
     fn patch(&self) -> Option<RestingPatch> {
         self.law.patch().map(|radius| RestingPatch { fixed: self.mu, slides: self.law.strength, radius })
     }
 
-    /// True if the contact point is at rest on a patch that is not held.
+    /// Whether the contact point is at rest on a patch whose drilling friction does not hold.
     fn may_drill(&self) -> bool {
         self.law.patch().is_some() && self.touch == Touch::Rolls && self.watch
     }
 
-    /// The couple per normal force that can hold the drilling together with the contact force; 0 if nothing is held.
+    /// The couple per normal force that can hold the drilling together with the contact force; 0 if the drilling is
+    /// not held.
     pub(super) fn grips<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let Some(patch) = self.patch().filter(|_| self.touch == Touch::Held) else { return 0.0 };
         let Seen { at, to, .. } = self.seen_at(y);
@@ -52,7 +54,8 @@ impl StoneFlow<'_> {
         patch.grips(dot(along, along).sqrt(), to.free)
     }
 
-    /// Returns the flow of the stone with its contact point at rest: held, if friction holds the drilling.
+    /// Returns the equations of the stone with its contact point at rest: `Held` if friction holds the drilling, else
+    /// rolling.
     pub(super) fn resting<const N: usize>(&self, y: &[f64; N]) -> Self {
         let held = Self { touch: Touch::Held, ..*self };
         let holds =
@@ -60,7 +63,8 @@ impl StoneFlow<'_> {
         if holds { held } else { Self { touch: Touch::Rolls, ..*self } }
     }
 
-    /// The slip, in the laboratory, of the creep of a rolling stone; None if the stone hardly drills.
+    /// The slow slip (creep), along x and y of the laboratory, of a drilling stone that rolls; None if the stone
+    /// hardly drills.
     pub(super) fn creeps<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let patch = self.patch()?;
         let Seen { lab, to, .. } = Self { touch: Touch::Rolls, ..*self }.seen_at(y);
@@ -92,7 +96,7 @@ impl Creeps<STONE_MARGINS, STONE_REACTING> for StoneFlow<'_> {
         dot(self.axes(y.quaternion())[2], y.omega())
     }
 
-    /// The unit of sigma tells how much a force changes the slip.
+    /// The change of the slip by a unit force, from the shape and inertia of the stone.
     fn eased<const N: usize>(&self, _: &[f64; N]) -> f64 {
         4.0 * self.law.soft / self.law.strength
     }

@@ -1,4 +1,4 @@
-//! The flow of a phase of a stone: its numbers, their rates, and the margins that end the phase.
+//! The equations of a phase of a stone: its state vector, the rates, and the margins, whose zeros end the phase.
 //!
 //! ```text
 //! y = (q, w, t; u_x, u_y, heat, x, y; lost)   N = 8 for a stone that rolls without a pose, 14 with losses, else 13
@@ -28,24 +28,26 @@ use nalgebra::Vector3;
 
 /// Number of margins of a stone.
 pub(super) const STONE_MARGINS: usize = 4;
-/// Count of numbers: of a stone that rolls without a pose, of any other stone, and of a stone with losses.
+/// Number of components of the state vector of a stone that rolls without a pose; the next constants are for any
+/// other stone, and with losses.
 pub(super) const WITHOUT_POSE: usize = 8;
 pub(super) const ALL: usize = 13;
 pub(super) const LOSING: usize = 14;
-/// The indices of the numbers of a stone's slip, its heat and the place of its contact point.
+/// Index of the slip along x in the state vector of a stone; the next constants are for the slip along y, the heat,
+/// and the place of the contact point.
 pub(super) const SLID_X: usize = 8;
 pub(super) const SLID_Y: usize = 9;
 pub(super) const STONE_HEAT: usize = 10;
 pub(super) const STONE_X: usize = 11;
 pub(super) const STONE_Y: usize = 12;
 
-/// The numbers of a stone's motion that belong together.
+/// Parts of the state vector of a stone's motion.
 pub(super) trait StoneNumbers<T> {
-    /// The orientation.
+    /// The orientation of the stone as a quaternion (w, x, y, z).
     fn quaternion(&self) -> [T; 4];
     /// The angular velocity along the axes of the stone.
     fn omega(&self) -> [T; 3];
-    /// The slip along x and y of the laboratory.
+    /// The slip of the contact point along x and y of the laboratory.
     fn slid(&self) -> [T; 2];
 }
 
@@ -64,18 +66,18 @@ impl<T: Copy, const N: usize> StoneNumbers<T> for [T; N] {
     }
 }
 
-/// A minimum of a margin is recorded if it is below this many tolerances of a step: the errors of a motion
-/// that counts as known may be that large.
+/// A minimum of a margin (a function whose zero ends a phase) is recorded if it is below this many tolerances of a
+/// step: the errors of a motion that counts as known may be that large.
 const NEAR_END: f64 = 1e7;
-/// Index of the margin of the normal force.
+/// Index of the margin of the normal force, whose zero is a lift-off.
 const LIFTS: usize = 1;
-/// Index of the margin of static friction; in a slip, that of a unique contact force.
+/// Index of the margin of static friction; in a slip, of the margin of a unique contact force.
 pub(super) const HOLD: usize = 2;
 
 /// Index of the margin of the drilling that dry friction resists or holds.
 const DRILLING: usize = 3;
 
-/// A dry slip ends with this speed instead of 0, so that it keeps its direction.
+/// A slip under dry friction ends with this speed instead of 0, so that it keeps its direction.
 const ALMOST_NONE: f64 = 1e-150;
 
 /// The motion of the contact point in a phase.
@@ -89,7 +91,7 @@ pub(super) enum Touch {
     Smooth,
 }
 
-/// The equations and the margins of a phase of a stone.
+/// The equations of a phase of a stone, and the margins, whose zeros end it.
 #[derive(Clone, Copy)]
 pub(super) struct StoneFlow<'a> {
     pub law: StoneLaw<f64>,
@@ -97,27 +99,27 @@ pub(super) struct StoneFlow<'a> {
     pub touch: Touch,
     /// The coefficient of static friction that holds a rolling contact point; it may be infinite.
     pub mu: f64,
-    /// The cosine of theta_end; -2 without an edge.
+    /// The cosine of theta_end, at which the edge lands; -2 without an edge.
     pub edge: f64,
     pub tol: f64,
-    /// The longest step of this run as a share of the longest allowed one. It is smaller in a rougher run,
-    /// since equal steps in both runs would have equal errors, which their difference does not show.
+    /// The longest step of this run as a share of the longest allowed one. It is smaller in the run with the larger
+    /// tolerance: equal steps in both runs would have equal errors, which their difference would not show.
     pub stride: f64,
-    /// Whether events other than a landing of the edge end the flow.
+    /// Whether events other than a landing of the edge end the phase.
     pub watch: bool,
-    /// Whether the stone goes on where it leaves the table.
+    /// Whether the motion continues in the air where the stone leaves the table.
     pub hops: bool,
     /// The direction, in the laboratory, in which rolling and rocking begin from rest.
     pub push: [f64; 2],
-    /// How fast rolling resistance changes w; 0 without rolling resistance.
+    /// The largest angular acceleration by rolling resistance; 0 without it.
     pub resisted: f64,
-    /// The records of reversals and ends, in the finer run.
+    /// The records of spin reversals and of ends of phases; only in the run with the smaller tolerance.
     pub recorded: Option<&'a RefCell<Recorded>>,
-    /// The law of friction of the user, if there is one.
+    /// The user-defined law of friction, if there is one.
     pub own: Option<OwnFriction<'a>>,
 }
 
-/// The axes of the laboratory, the contact point and the response of a stone.
+/// The axes of the laboratory, the contact point, and the contact force and accelerations of a stone.
 pub(super) struct Seen<T> {
     pub lab: [[T; 3]; 3],
     pub at: Touching<T>,
@@ -127,8 +129,8 @@ pub(super) struct Seen<T> {
 }
 
 impl<'a> StoneFlow<'a> {
-    /// The response of a stone with these numbers, for plain numbers or numbers with a slope; `slip` is None if it is
-    /// not among the numbers.
+    /// The contact point, contact force and accelerations of a stone, for plain or dual numbers; `slip` is None if
+    /// the state vector has none.
     #[inline(always)]
     pub(super) fn seen<T: Real, const N: usize>(
         &self,
@@ -163,7 +165,7 @@ impl<'a> StoneFlow<'a> {
         Seen { lab, at, to, pace }
     }
 
-    /// The axes of the laboratory, along those of the stone.
+    /// The axes of the laboratory, as vectors along the axes of the stone.
     #[inline(always)]
     pub(super) fn axes<T: Real>(&self, q: [T; 4]) -> [[T; 3]; 3] {
         laboratory(if self.law.patch().is_some() { unit_quaternion(q) } else { q })
@@ -200,7 +202,7 @@ impl<'a> StoneFlow<'a> {
         [edge, seen.to.free, hold, drilling]
     }
 
-    /// True if the contact point is at rest.
+    /// Whether the contact point is at rest.
     #[inline(always)]
     pub fn rests(&self) -> bool {
         matches!(self.touch, Touch::Rolls | Touch::Held)
@@ -211,13 +213,13 @@ impl<'a> StoneFlow<'a> {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
-    /// The quantities whose zeros end the phase, in the state with the numbers `y`.
+    /// The quantities whose zeros end the phase, at the state vector `y`.
     pub fn margins_at<const N: usize>(&self, y: &[f64; N]) -> [f64; STONE_MARGINS] {
         let (seen, w) = (self.seen_at(y), y.omega());
         self.on_patch(self.margins_of::<_, N>(&self.law, &seen, w), (&seen, w), self.grips(y))
     }
 
-    /// The sum of |d margin/dy_k| over the numbers of the state, for margin `i`.
+    /// The sum of |d margin/dy_k| over the components of the state, for margin `i`.
     pub fn leans<const N: usize>(&self, y: &[f64; N], i: usize) -> f64 {
         let by = |k: usize| {
             let step = 1e-6 * (1.0 + y[k].abs());
@@ -231,8 +233,8 @@ impl<'a> StoneFlow<'a> {
         (0..TIME).map(by).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
-    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
-    /// rate `growth`.
+    /// The state vector at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the rate
+    /// `growth`.
     pub fn nudged<const N: usize>(&self, y: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let (mut to, mut rates) = (*y, [0.0; N]);
         if slip_of(y) == [0.0; 2] && self.law.dry && self.rubs(y) <= self.over() {
@@ -247,7 +249,7 @@ impl<'a> StoneFlow<'a> {
         self.kept(to)
     }
 
-    /// The rates in time while a dry slip, which is just beginning, has the direction `way`.
+    /// The time derivative of the state vector while a slip under dry friction begins along `way`.
     pub fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         let (lab, q, w, u) = (laboratory(y.quaternion()), y.quaternion(), y.omega(), slip_of(y));
         let at = self.law.losing(self.law.meeting(&lab, w), &lab, w);
@@ -266,8 +268,8 @@ impl<'a> StoneFlow<'a> {
         rates
     }
 
-    /// The contact force along the axes of the laboratory. If a dry slip is just beginning, with u = 0, friction
-    /// acts against its direction `way`.
+    /// The contact force along the axes of the laboratory. If a slip just begins, with u = 0, dry friction acts
+    /// against its direction `way`.
     pub fn force<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Vector3<f64> {
         let Seen { lab, to, .. } = self.seen_towards(y, way);
         lab.map(|axis| dot(axis, to.force)).into()
@@ -288,34 +290,34 @@ impl<'a> StoneFlow<'a> {
     }
 }
 
-/// The unit quaternion along another, which at the stages of a step is not quite one. The difference, times w^2, would be
-/// an acceleration of the slip, which a small patch would answer with all its friction.
+/// Scales a quaternion to length 1, which it does not quite have at the stages of a step. The difference, times w^2,
+/// would be an acceleration of the slip, against which a small patch would exert all its friction.
 #[inline(always)]
 fn unit_quaternion<T: Real>(q: [T; 4]) -> [T; 4] {
     let per = q[0].splat(1.0) / q.iter().fold(q[0].splat(0.0), |sum, x| x.mac(*x, sum)).sqrt();
     q.map(|x| x * per)
 }
 
-/// The state with these numbers.
+/// The state (vertical and angular velocity) from a state vector.
 pub(super) fn state<const N: usize>(y: &[f64; N]) -> StoneState {
     let [a, b, c, d] = core::array::from_fn(|i| y[i]);
     StoneState { vertical: laboratory([a, b, c, d])[2], w: y.omega() }
 }
 
-/// The spin from these numbers and their rates.
+/// The spin about the vertical and its time derivative, from a state vector and its rates.
 pub(super) fn spot<const N: usize>(y: &[f64; N], rate: &[f64; N]) -> Spot {
     let [a, b, c, d, e, f, g] = core::array::from_fn(|i| Dual { value: y[i], slope: rate[i] / rate[TIME] });
     Spot { t: y[TIME], spin: dot(laboratory([a, b, c, d])[2], [e, f, g]) }
 }
 
-/// The slip among these numbers; zero if they have none.
+/// The slip in a state vector; zero if it has none.
 #[inline(always)]
 pub(super) fn slip_of<T: Real, const N: usize>(y: &[T; N]) -> [T; 2] {
     if N >= ALL { y.slid() } else { [y[TIME].splat(0.0); 2] }
 }
 
-/// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of
-/// an initial state with this vertical. So the state and the slip of an output can start another motion.
+/// The slip in the outputs: its components in the laboratory frame in which the stone has the orientation of an
+/// initial state with this vertical. Therefore the state and the slip of an output can start another motion.
 pub(super) fn output_slip<const N: usize>(y: &[f64; N]) -> [f64; 2] {
     let slip = slip_of(y);
     if slip == [0.0; 2] {
@@ -455,7 +457,7 @@ impl Flow<STONE_MARGINS> for StoneFlow<'_> {
         self.creeps_on(from, h, guess)
     }
 
-    /// The end of a slip that is almost zero, extrapolated linearly to u = 0.
+    /// The halt of a slip that is almost zero, extrapolated linearly to u = 0; None for a faster slip.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if let Some(own) = self.own.filter(|_| self.touch == Touch::Slips)
             && own.is_wrong_at(self.rubs(&place.y))

@@ -1,4 +1,5 @@
-//! A stone in the air: its rotation as a power series in the time, and the landing of its lowest point; no landing is missed.
+//! A stone in the air: its rotation as a power series in the time, and the landing of its lowest point, with bounds
+//! by which no landing is missed.
 //!
 //! ```text
 //! m = I w,   m' = m x w - (b + b2 |w|) w,   n' = n x w,   q' = q w/2,   lost' = (b + b2 |w|) w.w
@@ -11,7 +12,8 @@
 //! |w'|^2 <= w^4/3 for any moments; the couple of the air, b and b2, adds its part. The least of functions that bend by at
 //! most K does so, too. A point that touches at the start has a height that grows as t^k, by which its series is divided.
 //!
-//! Error: a few roundings of the numbers for each turn, as long as the tennis racket does not turn over.
+//! Error: a few roundings of the state for each turn, unless the rotation about the middle axis flips over (the
+//! tennis racket theorem).
 
 use super::flow::{SLID_X, STONE_X, STONE_Y, StoneNumbers};
 use super::turns::Spot;
@@ -24,49 +26,49 @@ use crate::motions::walk::numbers::{TIME, loses, lost};
 use crate::numbers::Dual;
 use crate::numbers::vector::{cross, dot, plus};
 
-/// Number of terms of the series.
+/// Number of terms of the power series of a flight.
 pub(super) const AIR_TERMS: usize = 30;
-/// The last terms of a piece are below this share of the numbers.
+/// A piece of a flight's power series ends where its last terms reach this share of the components.
 const CUT: f64 = 1e-17;
-/// The longest piece.
+/// The longest time for which one piece of a flight's power series is used, in sqrt(a/g).
 const LONGEST_PIECE: f64 = 10.0;
-/// The circle in which S has no zero, from a start on the table, and the share of it for which its series is used.
+/// Share of the circle without a zero of S, for a start on the table, in which the power series is used.
 const CIRCLE_SHARE: f64 = 1.0 / 3.0;
 
-/// A height above this negative number is that of a stone that touches.
+/// A negative height counts as that of a stone that touches the table if it is at most this far below 0.
 const TOUCHES: f64 = 1e-12;
 
 type MotionPowers<const K: usize> = [[f64; K]; AIR_TERMS];
 
-/// A piece of a flight, as powers of the time since its beginning.
+/// A piece of a flight, as power series of the time since the beginning of the piece.
 pub(super) struct AirPiece {
     terms: usize,
     quaternion: MotionPowers<4>,
     w: MotionPowers<3>,
     height: [f64; AIR_TERMS],
     lost: [f64; AIR_TERMS],
-    /// The time at which it begins, since the start of the flight, and its length.
+    /// The time at which the piece begins, since the start of the flight.
     pub from: f64,
     pub length: f64,
     /// A bound of the second derivative of the height.
     bend: f64,
 }
 
-/// A flight.
+/// A flight of a stone.
 pub(super) struct StoneFlight {
     law: StoneLaw<f64>,
-    /// The coefficients of the air.
+    /// The coefficients of the linear and the quadratic couple of the air.
     air: [f64; 2],
-    /// The smallest moment of inertia, and the largest distance of a point from the centre.
+    /// The smallest moment of inertia; the next field is the largest distance of a point from the centre of mass.
     least: f64,
     reach: f64,
-    /// Position and velocity of the centre at the start.
+    /// The position of the centre of mass at the start; the next field is its velocity.
     centre: [f64; 3],
     velocity: [f64; 3],
     tilt: f64,
 }
 
-/// A stone in the air: the numbers of its motion, and height and vertical velocity of its lowest point.
+/// A stone in the air: its state vector, and the height and vertical velocity of its lowest point.
 #[derive(Clone, Copy)]
 pub(super) struct StoneAloft<const N: usize> {
     pub y: [f64; N],
@@ -74,7 +76,7 @@ pub(super) struct StoneAloft<const N: usize> {
     pub lift: f64,
 }
 
-/// The coefficient of order `k` of the product of two series.
+/// The coefficient of order `k` of the product of two power series.
 fn product<A: Copy, B: Copy, U>(
     k: usize,
     a: &[A],
@@ -85,7 +87,7 @@ fn product<A: Copy, B: Copy, U>(
     (1..=k).fold(of(a[0], b[k]), |all, i| sum(all, of(a[i], b[k - i])))
 }
 
-/// The coefficient of order `k` of the root of a series, from the coefficients of that root before it.
+/// The coefficient of order `k` of the square root of a power series, from the lower coefficients of the root.
 fn root_of(k: usize, square: f64, root: &[f64; AIR_TERMS]) -> f64 {
     if k == 0 {
         return square.sqrt();
@@ -103,7 +105,7 @@ fn at_time<const K: usize>(of: &[[f64; K]], t: f64) -> [f64; K] {
 }
 
 impl StoneFlight {
-    /// The flight from these numbers.
+    /// The flight of a stone from this state vector on.
     pub fn new<const N: usize>(
         law: &StoneLaw<f64>,
         from: &StoneAloft<N>,
@@ -128,20 +130,20 @@ impl StoneFlight {
         }
     }
 
-    /// The error of the height at a time, due to rounding.
+    /// The rounding error of the height at a time.
     pub fn doubt_of_height(&self, t: f64, fastest: f64) -> f64 {
         let [.., up] = self.velocity;
         4.0 * f64::EPSILON * (self.centre[2].abs() + t * (1.0 + up.abs() + fastest * self.reach))
     }
 
-    /// The largest angular velocity from here on.
+    /// A bound of the angular velocity in the rest of the flight.
     pub fn fastest(&self, w: [f64; 3]) -> f64 {
         let m = self.law.inertia.times(w);
         (dot(w, m) / self.least).sqrt().min(dot(m, m).sqrt() / self.least)
     }
 
-    /// The piece from the numbers at the time `from` since the start; `leaves` is the power of time with which the lowest
-    /// point leaves the table.
+    /// The piece that begins in the state `at`, at the time `from` since the start; `leaves` is the power of time
+    /// with which the lowest point leaves the table.
     pub fn piece<const N: usize>(&self, from: f64, at: &StoneAloft<N>, leaves: Leaves) -> AirPiece {
         let w = at.y.omega();
         let fastest = self.fastest(w);
@@ -228,7 +230,8 @@ impl StoneFlight {
 }
 
 impl AirPiece {
-    /// The first landing up to a time since the beginning of the piece.
+    /// The time of the first landing up to the time `to`, both since the beginning of the piece; None without a
+    /// landing.
     pub fn lands(&self, leaves: Leaves, to: f64) -> Result<Option<f64>, Exhausted> {
         // A normal force that has just become negative is hardly larger than the errors of the numbers.
         let vanishes = leaves == Some(2) && self.height[2] <= 0.0 && self.height[2] > -HARDLY;
@@ -241,7 +244,7 @@ impl AirPiece {
         first_zero_of_powers(series, to, if order == 0 { self.bend } else { f64::INFINITY })
     }
 
-    /// The stone at a time since the beginning of the piece; `start` has its numbers at the start of the flight.
+    /// The stone at a time since the beginning of the piece; `start` is its state vector at the start of the flight.
     pub fn at<const N: usize>(&self, flight: &StoneFlight, start: &[f64; N], t: f64) -> StoneAloft<N> {
         let (mut y, since, terms) = (*start, self.from + t, self.terms);
         let q = at_time(&self.quaternion[..terms], t);
@@ -269,13 +272,14 @@ impl AirPiece {
         StoneAloft { y, height, lift }
     }
 
-    /// Whether the centre is so high all along the piece, up to a time since its beginning, that nothing lands.
+    /// Whether the centre of mass is so high up to a time since the beginning of the piece that no point can land.
     pub fn is_high(&self, flight: &StoneFlight, to: f64) -> bool {
         let [_, _, up] = flight.velocity;
         [self.from, self.from + to].iter().all(|t| flight.centre[2] + t * (up - 0.5 * t) > flight.reach)
     }
 
-    /// The spin at a time since the beginning of the piece, of a flight that began at the time `now`.
+    /// The spin about the vertical at a time since the beginning of the piece, for a flight that began at the time
+    /// `now`.
     pub fn spot(&self, now: f64, t: f64) -> Spot {
         let (q, w) = (at_time(&self.quaternion[..self.terms], t), at_time(&self.w[..self.terms], t));
         let n = laboratory(q)[2];

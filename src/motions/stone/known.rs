@@ -16,15 +16,16 @@ use crate::laws::stone::StoneState;
 use crate::motions::Moving;
 use crate::motions::walk::two_runs::Followed;
 
-/// Largest error of a state that is known, as a share of the largest speed.
+/// Largest error with which the state of a stone counts as known, as a share of the largest speed.
 const KNOWN: f64 = 0.01;
-/// An end or a minimum is certain if its room is at least this many estimated errors; more than one, because
-/// the error is only an estimate.
+/// The end of a phase, or a minimum of a margin, is certain if no change of the state by this many estimated errors
+/// can undo it; more than one, because the error is only an estimate.
 const SURELY: f64 = 4.0;
-/// Number of additional outputs. With fewer, the time up to which a motion is known is coarser.
+/// Number of additional outputs in the search for the time up to which a motion is known; fewer would give a coarser
+/// time.
 const MARKS: usize = 128;
 
-/// Reversals and ends that the finer run records along a motion.
+/// Reversals of the spin and ends of phases that the run with the smaller tolerance records.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Recorded {
     /// The reversals of the spin, if they are counted.
@@ -33,9 +34,9 @@ pub(crate) struct Recorded {
     pub grazes: Vec<[f64; 2]>,
 }
 
-/// The fine and the rough run of a motion, with the same outputs.
+/// The two runs of a motion, with the requested and with a larger tolerance, and the same outputs.
 type TwoRuns = [Followed<StoneState>; 2];
-/// Two runs; none if they are interrupted.
+/// The two runs of a motion; None if they are interrupted.
 pub(crate) type Runs = Result<Option<TwoRuns>, Error>;
 
 /// Computes the time up to which a motion with an estimated error is known. `again` computes the motion with

@@ -25,14 +25,14 @@ use crate::motions::walk::numbers::TIME;
 use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Real};
 
-/// w without the drilling.
+/// Returns w without its component along the vertical `n` (the drilling).
 #[inline(always)]
 fn rolling_of<T: Real>(n: [T; 3], w: [T; 3]) -> [T; 3] {
     plus(w, -dot(n, w), n)
 }
 
 impl<T: Real> StoneLaw<T> {
-    /// The largest derivative of w that rolling resistance and the weight cause.
+    /// The largest angular acceleration that rolling resistance and the weight cause.
     pub(super) fn resisted(&self) -> T {
         let [a, b, c, ..] = self.inertia.0;
         let (least, [x, y, z]) = (a.min(b).min(c), self.squares);
@@ -43,12 +43,12 @@ impl<T: Real> StoneLaw<T> {
 }
 
 impl StoneFlow<'_> {
-    /// True if rolling resistance limits the steps.
+    /// Whether rolling resistance limits the steps.
     pub(super) fn is_paced(&self) -> bool {
         self.resisted > 0.0 && self.touch != Touch::Slips && !self.holds().rolling
     }
 
-    /// dt/dsigma under rolling resistance.
+    /// The time step per step of the variable of integration, dt/dsigma, under rolling resistance.
     #[inline(always)]
     pub(super) fn pace<T: Real>(&self, at: &Touching<T>, w: [T; 3]) -> T {
         let one = w[0].splat(1.0);
@@ -60,21 +60,21 @@ impl StoneFlow<'_> {
         speed / (speed + one.splat(self.resisted))
     }
 
-    /// The joint speed of rolling and rocking.
+    /// The speed of rolling and rocking together: the size of the horizontal part of w.
     pub(super) fn rolls_at<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);
         let rolling = rolling_of(laboratory([a, b, c, d])[2], [e, f, g]);
         dot(rolling, rolling).sqrt()
     }
 
-    /// The derivative of that speed with respect to time.
+    /// The time derivative of the speed of rolling and rocking together.
     pub(super) fn rolling_growth<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (Seen { at, to, .. }, w) = (self.seen_at(y), y.omega());
         let rolling = rolling_of(at.n, w);
         dot(rolling, to.w) / dot(rolling, rolling).sqrt()
     }
 
-    /// The longest step that the square roots in the laws allow.
+    /// The longest step that the loss laws allow, since their square roots are not smooth where they vanish.
     #[inline(never)]
     pub(super) fn longest_of_roots<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let [a, b, c, d, e, f, g] =
@@ -84,8 +84,8 @@ impl StoneFlow<'_> {
         losses.map_or(f64::INFINITY, |losses| losses.longest(&seen(losses), self.is_paced()))
     }
 
-    /// The margins of the drilling, or of the couple that holds it; of the couple that holds rolling and rocking; and of a
-    /// unique normal force with rolling resistance.
+    /// The least of the margins by losses: of the drilling rate, or of the couple that holds the drilling; of the
+    /// couple that holds rolling and rocking; and of a unique normal force with rolling resistance.
     #[inline(always)]
     pub(super) fn drilling_margin<T: Real>(law: &StoneLaw<T>, seen: &Seen<T>, w: [T; 3]) -> T {
         let [drilling, rolling] = Self::held_margins(law, seen, w);
@@ -130,7 +130,8 @@ impl StoneFlow<'_> {
         }
     }
 
-    /// The motion that friction ceases to hold where the margin of the drilling fails; None if the drilling stops.
+    /// The rotation that friction ceases to hold where the margin of the losses is zero; None if the drilling stops
+    /// there.
     pub(super) fn known<const N: usize>(&self, y: &[f64; N]) -> Option<(Resting, bool)> {
         let Holds { drilling, rolling, .. } = self.holds();
         let margins = Self::held_margins(&self.law, &self.seen_at(y), y.omega());
@@ -141,9 +142,8 @@ impl StoneFlow<'_> {
         }
     }
 
-    /// The motions at rest of a stone besides the slip, which dry losses resist; None without any, or if nothing presses
-    /// the stone on the table. `slips` is the slip, or the direction of one that begins; None if the contact point is at
-    /// rest.
+    /// The rotations of a stone that are at rest and that dry losses resist; None without any, or if no normal force
+    /// acts. `slips` is the slip, or the direction of one that begins; None if the contact point is at rest.
     #[inline(never)]
     pub(super) fn together<const N: usize>(&self, y: &[f64; N], slips: Option<[f64; 2]>) -> Option<Together> {
         let losses = self.law.losses?;
@@ -193,8 +193,9 @@ impl StoneFlow<'_> {
         })
     }
 
-    /// Sets which motions dry friction holds, and the signs of the others. `toward` is the direction of a slip from rest,
-    /// and `known` a motion that friction has just ceased to hold. Returns the drilling that is left out.
+    /// Sets which rotations dry friction holds at rest, and the signs of the others. `toward` is the direction of a
+    /// slip from rest, and `known` a rotation that friction has just ceased to hold. Returns the small drilling rate
+    /// that is set to zero.
     pub(super) fn sets_ways<const N: usize>(
         &mut self,
         y: &mut [f64; N],
@@ -232,7 +233,7 @@ impl StoneFlow<'_> {
         if decided.holds.drilling { self.removes_drilling(y) } else { 0.0 }
     }
 
-    /// Frees the direction of a rolling that has begun in a slip.
+    /// Frees the direction of rolling after it has begun from rest in a slip.
     pub(super) fn rolls_freely(&mut self) {
         self.push = [0.0; 2];
         if let Some(ways) = self.law.losses.as_ref().and_then(|losses| losses.ways) {
@@ -247,7 +248,8 @@ impl StoneFlow<'_> {
         drilling.abs()
     }
 
-    /// The response at these numbers. If a dry slip is just beginning, friction acts against its direction `way`.
+    /// Contact force and accelerations at the state vector `y`. If a slip just begins, dry friction acts against its
+    /// direction `way`.
     pub(super) fn seen_towards<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Seen<f64> {
         let mut seen = self.seen_at(y);
         if self.touch == Touch::Slips && self.law.dry && slip_of(y) == [0.0; 2] {
@@ -256,7 +258,7 @@ impl StoneFlow<'_> {
         seen
     }
 
-    /// The numbers at the end of rolling and rocking, by linear extrapolation; None if they do not end here.
+    /// The state vector at the end of rolling and rocking, by linear extrapolation; None if they do not end here.
     #[inline(never)]
     pub(super) fn rolls_no_more<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let (y, speed) = (&place.y, self.rolls_at(&place.y));
@@ -278,7 +280,7 @@ impl StoneFlow<'_> {
         Some(self.rolling_along(&self.kept(rests), [0.0; 2]))
     }
 
-    /// Returns these numbers with another w_h, along x and y of the laboratory.
+    /// Returns the state vector with the horizontal part `by` of w, along x and y of the laboratory.
     pub(super) fn rolling_along<const N: usize>(&self, y: &[f64; N], by: [f64; 2]) -> [f64; N] {
         let (Seen { lab, .. }, mut to) = (self.seen_at(y), *y);
         let w = plus(across(&lab, by), self.drilling(y), lab[2]);

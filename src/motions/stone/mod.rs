@@ -24,11 +24,12 @@ pub(crate) use roll::followed;
 pub use roll::roll;
 pub use rolling::{RollingStone, rolling};
 
-/// Largest deviation of the length of a given vertical from 1. A larger one is an error, a smaller
-/// one is corrected.
+/// Largest deviation from 1 of the length of the vertical in an initial state. A larger deviation is an error, a
+/// smaller one is corrected.
 const UNIT: f64 = 1e-9;
 
-/// Checks an initial state and options. Returns the state with a vertical of length 1, and the tolerance.
+/// Checks the initial state and the options of a stone's motion. Returns the start with a vertical of length 1, and
+/// the tolerance.
 pub(crate) fn check_stone(
     start: &Start<StoneState>,
     times: &[f64],

@@ -1,4 +1,4 @@
-//! The numbers of a stone's motion and the distances between two of its states, poses and forces.
+//! Components of a stone's state, and the distances between two of its states, poses and forces.
 
 use crate::laws::stone::{StonePose, StoneState};
 use crate::motions::Moving;
@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 impl sealed::OwnState for StoneState {}
 
 impl Moving for StoneState {
-    /// Larger than for a body of revolution: a stone may pass over a sharp edge or linger near an unstable
-    /// state, so that its errors are less proportional to the tolerance.
+    /// Safety factor of the estimated error, larger than for a body of revolution: a stone may pass over a sharp edge
+    /// or linger near an unstable state, so that its errors are less proportional to the tolerance.
     const SAFETY: f64 = 100.0;
     type Numbers = [f64; 6];
     type Pose = StonePose;

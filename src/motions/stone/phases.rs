@@ -1,4 +1,4 @@
-//! The phases of a stone: their beginnings, their flows and their ends.
+//! The phases of motion of a stone: their beginnings, their equations and their ends.
 
 use super::flow::{
     HOLD, SLID_X, SLID_Y, STONE_X, STONE_Y, Seen, StoneFlow, StoneNumbers, Touch, WITHOUT_POSE, output_slip,
@@ -31,35 +31,35 @@ use crate::numbers::vector::{dot, plus};
 use crate::numbers::{Dual, Sum};
 use core::cell::RefCell;
 
-/// The walk of a stone.
+/// The computation, phase by phase, of a motion of a stone.
 pub(super) type StoneWalk<'a, 'n, const N: usize> = Walk<'a, StonePhases<'n>, N>;
 
-/// The longest step of a rougher run as a share of the longest allowed one. Without this factor both
-/// runs would take the same steps where the longest step limits them, and their difference would not
-/// show the errors.
+/// The longest step of the run with the larger tolerance, as a share of the longest allowed step. Without this factor
+/// both runs would take the same steps where the longest step limits them, and their difference would not show the
+/// errors.
 pub(super) const ROUGH_STRIDE: f64 = 0.7;
-/// An end whose room (see [`known`](super::known)) is larger than this is certain in all motions that count
-/// as known; its room is not computed more closely.
+/// The end of a phase is certain, in all motions that count as known, if only a change of the state by more than this
+/// can undo it ([`known`](super::known)); a larger change is not computed exactly.
 const DEEP: f64 = 1e-2;
-/// From this share of the Painleve coefficient on, more than one contact force may be consistent, and
-/// all are counted.
+/// If the coefficient of friction is above this share of the least one with the paradox of Painleve, more than one
+/// contact force may be consistent, and all are counted.
 const DOUBTFUL: f64 = 0.9;
 
-/// The data of a stone's walk: the flow of the present phase.
+/// The data of a stone's motion: the equations of the current phase.
 pub(super) struct StonePhases<'n> {
     pub flow: StoneFlow<'n>,
-    /// True if friction of the patch has just let the drilling go.
+    /// Whether friction of the patch has just ceased to hold the drilling.
     freed: bool,
-    /// The motion that a dry loss has just let go.
+    /// The rotation that a dry loss has just ceased to hold.
     known: Option<(Resting, bool)>,
     /// The horizontal position of the centre of mass at the start, which is constant on a smooth table.
     still_centre: [f64; 2],
-    /// The smallest moment of inertia.
+    /// The smallest moment of inertia, in M a^2.
     pub least: f64,
 }
 
 impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
-    /// Begins a walk; `fine` is the requested tolerance.
+    /// Begins the computation of a stone's motion; `fine` is the requested tolerance.
     pub fn of_stone(
         (stone, start): (&Ellipsoid, &Start<StoneState>),
         times: &'a [f64],
@@ -110,12 +110,12 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         Ok(walk)
     }
 
-    /// The contact in a phase in which the stone does not slip with friction.
+    /// The kind of contact in a phase without friction of a slip: rolling, held or smooth.
     fn resting(&self) -> Touch {
         if self.kind() == Kind::Slipping { Touch::Smooth } else { self.of.flow.resting(&self.at).touch }
     }
 
-    /// True if the edge lies on the table and does not leave it.
+    /// Whether the edge lies on the table and does not rise.
     fn is_down(&self) -> bool {
         let flow = &self.of.flow;
         let place = flow.place(self.at);
@@ -171,7 +171,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         }
     }
 
-    /// Ends a phase at the numbers `y`, and chooses the next one.
+    /// Ends a phase at the state vector `y`, and chooses the next phase.
     fn phase_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.flow.touch == Touch::Slips {
             self.made.path.slipping += y[TIME] - self.began;
@@ -237,14 +237,15 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.continues_with(next);
     }
 
-    /// True if the friction for rolling has just jumped past its limit, as when a dry couple changes its direction.
+    /// Whether the friction that rolling needs has just jumped past its limit, as when a dry couple changes its
+    /// direction.
     fn jumps(&self) -> bool {
         let Seen { at, to, .. } = self.of.flow.seen_at(&self.at);
         let along = plus(to.force, -to.free, at.n);
         dot(along, along).sqrt() > self.of.flow.mu * to.free * (1.0 + JUMP)
     }
 
-    /// Makes motions vanish exactly that dry losses resist and that have hardly begun.
+    /// Sets rotations to exactly zero that dry losses resist and that have hardly begun.
     fn stops_exactly(&mut self) {
         let (flow, losses) = (&self.of.flow, self.ask.losses);
         let (rolls, drills) = (flow.rolls_at(&self.at), flow.drilling(&self.at).abs());
@@ -257,8 +258,8 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         self.claims(8.0 * REST);
     }
 
-    /// The motions at rest besides the slip, if dry losses resist any; the coefficients of sliding and of static friction;
-    /// and whether more than one behaviour may be consistent.
+    /// The rotations at rest that dry losses resist, with the coefficients of sliding and of static friction, and
+    /// whether more than one behaviour may be consistent; None if there are no such rotations.
     fn together(&self) -> Option<(Together, [f64; 2], bool)> {
         let rests = StoneFlow { touch: Touch::Rolls, ..self.of.flow }.together(&self.at, None)?;
         let HeldContact { mu, doubtful, .. } = self.rest();
@@ -273,7 +274,7 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         }
     }
 
-    /// Sets which motions dry losses resist or hold. Returns the next phase if the stone stays at rest.
+    /// Sets which rotations dry losses resist or hold at rest. Returns the next phase if the stone stays at rest.
     fn begins_to_lose(&mut self, toward: [f64; 2]) -> Option<Next> {
         let known = core::mem::take(&mut self.of.known);
         let left = self.of.flow.sets_ways(&mut self.at, toward, known);
@@ -284,13 +285,13 @@ impl<'a, 'n, const N: usize> StoneWalk<'a, 'n, N> {
         (stops && flow.stays_at_rest(&self.at)).then_some(Next::Ends(Ending::Stops))
     }
 
-    /// Begins a rolling from rest in a slip.
+    /// Lets rolling begin from rest during a slip.
     fn rolls_off(&mut self) -> [f64; N] {
         if self.of.flow.push == [0.0; 2] { self.at } else { self.begins_at_once([0.0; 2], 0.0) }
     }
 
-    /// Records the room of an end by margin `i`: how far this margin falls below zero after the end. A margin
-    /// that only touches zero may stay positive in the exact motion.
+    /// Records how certain the end of a phase by the zero of margin `i` is: how far this margin falls below zero
+    /// after the end. A margin that only touches zero may stay positive in the exact motion.
     fn ends_by(&self, i: usize) {
         let Some(recorded) = self.of.flow.recorded else { return };
         let (leans, calm) = (self.of.flow.leans(&self.at, i), self.of.flow.calm(&self.at));

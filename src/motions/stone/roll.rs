@@ -1,8 +1,8 @@
 //! The motion of a stone, through phases of rolling, of slipping, and in the air.
 //!
-//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip when
-//! rolling needs more friction than mu_s N. When a slip ends, the contact point sticks if rolling needs no more
-//! friction than that. Each phase is integrated as a `StoneFlow`.
+//! The phases are those of [`walk`](crate::motions::walk): a contact point at rest begins to slip when rolling needs
+//! more friction than mu_s N. When a slip ends, the contact point sticks if rolling needs at most the friction mu_s
+//! N. The equations of each phase are those of `StoneFlow`.
 //!
 //! Error: from a second run with a larger tolerance, as for a body with friction; `tests/laws/stone.rs`
 //! compares it with references of 25 digits.
@@ -27,10 +27,10 @@ use core::cell::RefCell;
 /// The components of a slip, initially and in all outputs, are along the horizontal axes x and y of the laboratory
 /// frame in which the stone is turned from upright by the smallest angle. `ask` has the contact, the losses, the
 /// restitution, the tolerance, `beyond` and the outputs; a stone has no fixed step and no second rim that could land.
-/// With a restitution it may start in the air, and goes on where it leaves the table; the edge of a half ellipsoid
-/// ends the motion where it lands. The `heading` of a start turns that laboratory about the vertical, and its `place`
-/// is that of the first contact point; on a slope x points downhill. `go_on` and the limits of the work are as for a
-/// body ([`roll_with`](crate::motion::roll_with)).
+/// With a restitution a stone may start in the air, and its motion continues where it leaves the table; the motion of
+/// a half ellipsoid ends where its edge lands. The `heading` of a start turns these axes x and y about the vertical,
+/// and its `place` is that of the first contact point; on a slope x points downhill. `go_on` and the limits of the
+/// work are as for a body ([`roll_with`](crate::motion::roll_with)).
 ///
 /// ```
 /// use spincyl::{Ellipsoid, motion::Ask, stone};
@@ -70,9 +70,9 @@ fn rolled(
     Ok(Motion::from(found).advanced(start.time))
 }
 
-/// The motion and its path, with the error from a rougher run, under the options and perhaps a law of friction of the user.
-/// The finer run records reversals and ends in `recorded`; reversals after the time up to which the motion is known are
-/// removed.
+/// Computes the motion and its path under the options and perhaps a user-defined law of friction, with the error from
+/// a second run with a larger tolerance. The first run records reversals of the spin and ends of phases in
+/// `recorded`; reversals after the time up to which the motion is known are removed.
 pub(crate) fn followed(
     stone: &Ellipsoid,
     start: &Start<StoneState>,
@@ -89,7 +89,8 @@ pub(crate) fn followed(
     })
 }
 
-/// The motion of [`followed`] from a start that is checked, in the units in which gravity across the table is 1.
+/// The motion of [`followed`] from a checked start, in the units in which the component of gravity normal to the
+/// table is 1.
 fn settled(
     (stone, start): (&Ellipsoid, &Start<StoneState>),
     times: &[f64],
@@ -123,8 +124,8 @@ fn settled(
     Ok(found)
 }
 
-/// The question and the start of a motion on a smooth table with impacts: the centre is at rest until an impact, and the
-/// stone slips without friction.
+/// For a motion on a smooth table with impacts: options and start with friction of coefficient 0, and a slip with
+/// which the centre has no horizontal velocity. Other motions keep their own.
 fn on_ice(stone: &Ellipsoid, ask: &Ask, start: &Start<StoneState>) -> (Ask, Start<StoneState>) {
     let (mut ask, mut start) = (*ask, *start);
     if ask.table == Table::Smooth && ask.restitution.is_some() {
@@ -136,7 +137,7 @@ fn on_ice(stone: &Ellipsoid, ask: &Ask, start: &Start<StoneState>) -> (Ask, Star
     (ask, start)
 }
 
-/// Begins a walk, on the heap, since threads may have only a small stack.
+/// Prepares the computation of a stone's motion, on the heap, since threads may have only a small stack.
 #[inline(never)]
 fn walk<'a, 'n, const N: usize>(
     of: (&Ellipsoid, &Start<StoneState>),

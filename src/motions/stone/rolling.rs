@@ -20,7 +20,7 @@ use crate::motions::walk::two_runs::rougher;
 use crate::numbers::vector::{cross, dot};
 use crate::numbers::{Dual, larger_or_nan};
 
-/// Length of y; its last number is the time.
+/// Number of components of the state vector of a rolling stone; the last one is the time.
 pub(super) const N: usize = 10;
 const FREE_TIME: usize = 9;
 
@@ -39,14 +39,14 @@ pub struct RollingStone {
     pub orientation_rate: [f64; 4],
     /// The velocity of the centre of mass, in sqrt(g a).
     pub centre_velocity: [f64; 2],
-    /// The vertical and the angular velocity.
+    /// The vertical along the axes of the stone, and the angular velocity along them, in sqrt(g/a).
     pub state: StoneState,
-    /// The normal force per weight; a real stone would lift off when it becomes negative.
+    /// The normal force in weights; a real stone would lift off when it becomes negative.
     pub normal: f64,
 }
 
-/// Computes the motion of a rolling stone from its state at time 0, at `times` in ascending order from 0 on,
-/// and its estimated error.
+/// Computes the motion of a rolling stone from its state at time 0, at `times` in ascending order from 0 on. Returns
+/// the stone at each time, and the estimated error.
 ///
 /// `tol` is the tolerance of a step. `go_on` is called often; if it returns false, the result is `Ok(None)`.
 ///
@@ -91,16 +91,16 @@ pub fn rolling(
     Ok(Some((rows, larger_or_nan(tol, StoneState::SAFETY * tol / rough * apart))))
 }
 
-/// A stone that rolls, as a flow without margins.
+/// The equations of a stone that rolls without events.
 #[derive(Clone, Copy)]
 pub(super) struct FreeRolling {
     pub law: StoneLaw<f64>,
     pub tol: f64,
-    /// The longest step of this run as a share of the longest allowed one.
+    /// The longest step of this run as a share of the longest allowed step.
     pub stride: f64,
 }
 
-/// The reasons for which a flow without margins halts.
+/// The reasons for which the integration of a stone that rolls without events halts.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum FreeRollingHalt {
     Over,
@@ -108,7 +108,7 @@ pub(super) enum FreeRollingHalt {
 }
 
 impl FreeRolling {
-    /// The stone at each of the times.
+    /// Computes the stone at each of the times; None if the computation is interrupted.
     fn follow(
         &self,
         start: &StoneState,
@@ -140,7 +140,7 @@ impl FreeRolling {
         Ok(flown.map(|_| rows))
     }
 
-    /// The numbers y of an initial state.
+    /// The state vector of an initial state.
     pub(super) fn numbers(&self, start: &StoneState) -> [f64; N] {
         let at = self.law.touching(start.vertical, start.w);
         let ([a, b, c, d], [e, f, g]) = (start.orientation(), start.w);
@@ -148,7 +148,7 @@ impl FreeRolling {
         [a, b, c, d, e, f, g, -dot(lab[0], at.r), -dot(lab[1], at.r), 0.0]
     }
 
-    /// Writes the derivatives of the numbers, and returns the vertical and the normal force.
+    /// Writes the derivative of the state vector to `all`. Returns the vertical and the normal force.
     #[inline(never)]
     pub(super) fn rates_of<const M: usize>(&self, y: &[f64; M], all: &mut [f64; M]) -> ([f64; 3], f64) {
         let [a, b, c, d, e, f, g] = core::array::from_fn(|i| y[i]);

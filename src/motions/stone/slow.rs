@@ -1,4 +1,4 @@
-//! The slow slips of a stone, as power series of all of its numbers.
+//! The slow slips of a stone, as power series of all components of its state vector.
 
 use crate::laws::stone::law::{StoneLaw, across, laboratory, turning};
 use crate::motions::walk::numbers::{TIME, loses};
@@ -7,7 +7,7 @@ use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::Series;
 use crate::numbers::vector::dot;
 
-/// The series of a stone's slow slips: its numbers, the heat, the contact point (x, y), and the energy lost.
+/// The power series of a stone's slow slips: of its state, the heat, the contact point (x, y), and the energy lost.
 pub(super) struct StoneSlips {
     slips: SlowSlips<7>,
 }

@@ -1,4 +1,4 @@
-//! The flights of a stone and its impacts, of its lowest point as of a rim.
+//! The flights of a stone, and the impacts of its lowest point.
 
 use super::flow::{
     SLID_X, SLID_Y, STONE_HEAT, STONE_X, STONE_Y, StoneFlow, StoneNumbers, Touch, output_slip, slip_of, state,
@@ -19,12 +19,13 @@ use crate::motions::walk::numbers::{TIME, lost};
 use crate::motions::{AboveTable, Ending, Kind, Lands, Strike};
 use crate::numbers::vector::{cross, dot, plus};
 
-/// Number of terms that a piece of a flight counts as, in units of the evaluations of a step.
+/// Cost of a piece of a flight's power series, in evaluations of the equations of motion.
 const PIECE_COSTS: u64 = 30;
-/// Number of pieces between two calls of `go_on`.
+/// Number of pieces of a flight's power series between two calls of `go_on`.
 const PIECES_PER_CALL: u64 = 64;
 
-/// A contact of a stone: the axes of the laboratory, the point, and what an impulse there does.
+/// A contact of a stone: the axes of the laboratory, the contact point, and the change of velocity by an impulse
+/// there.
 struct StoneContact {
     lab: [[f64; 3]; 3],
     at: Touching<f64>,
@@ -33,19 +34,20 @@ struct StoneContact {
 }
 
 impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
-    /// The current numbers, with those of a flight.
+    /// The stone at the current state, with its height and vertical velocity.
     fn aloft(&self) -> StoneAloft<N> {
         let Takeoff { height, lift, .. } = self.hops.takeoff;
         StoneAloft { y: self.at, height, lift }
     }
 
-    /// Moves the walk to these numbers.
+    /// Sets the current state of the motion to this stone.
     fn sets(&mut self, to: &StoneAloft<N>) {
         self.at = to.y;
         (self.hops.takeoff.height, self.hops.takeoff.lift) = (to.height, to.lift);
     }
 
-    /// The contact at these numbers. Nothing is held that is in the air.
+    /// The contact of the stone at the state vector `y`, where friction holds no rotation at rest, since the stone
+    /// comes from the air.
     fn contact_at(&self, y: &[f64; N]) -> StoneContact {
         let (law, w) = (&self.of.flow.law, y.omega());
         let lab = laboratory(y.quaternion());
@@ -65,7 +67,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         StoneContact { lab, at, light, patch }
     }
 
-    /// N0, the normal force without friction, and the size of its terms.
+    /// The normal force without friction, N0, and the size of its terms.
     fn pressed(&self, y: &[f64; N]) -> [f64; 2] {
         let (StoneContact { at, light, .. }, w) = (self.contact_at(y), y.omega());
         let to = self.of.flow.law.pulled(&at, w, [0.0; 3]);
@@ -73,7 +75,8 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         [dot(to.force, at.n), size / light.normal]
     }
 
-    /// The flight of a stone that starts in the air, or its landing if it starts on the table and comes down.
+    /// The first phase of a stone that starts in the air: its flight, or its landing if it starts on the table and
+    /// moves down.
     pub(super) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
         self.hops.takeoff = Takeoff { height, lift, leaves: (height == 0.0).then_some(1) };
         Next::Own(Kind::Flying)
@@ -92,8 +95,8 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         }
     }
 
-    /// The phase after the impact that stops a slip which presses the stone into the table. None where the stone could
-    /// leave the table as well.
+    /// The phase after the impact that stops a slip whose friction presses the stone into the table (Painleve). None
+    /// where the stone could leave the table as well.
     fn jams(&mut self, e: f64) -> Option<Next> {
         self.hops.takeoff = Takeoff::default();
         let from = self.aloft();
@@ -111,7 +114,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         Some(self.leaves_impact())
     }
 
-    /// Computes a flight to its end, which sets the next phase.
+    /// Computes a flight to its end, and sets the next phase.
     #[inline(never)]
     pub(super) fn flies(&mut self, go_on: &mut dyn FnMut() -> bool) {
         let (start, law) = (self.aloft(), self.of.flow.law);
@@ -184,7 +187,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         self.continues_with(next);
     }
 
-    /// The impact of the lowest point; None for a rolling contact without a solution.
+    /// The impact of the lowest point on the table; None for a contact that only rolls if there is no solution.
     fn impact(&self, from: &StoneAloft<N>, e: f64) -> Option<Struck> {
         let (StoneContact { light, patch, .. }, own) = (self.contact_at(&from.y), self.of.flow.own);
         self.point_impact((slip_of(&from.y), from.lift), (light, patch), &own).on(&self.ask.table, e, &own)
@@ -227,7 +230,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         self.leaves_impact()
     }
 
-    /// The time of all bounces after an impact, if they are over so soon that they are summed.
+    /// The total time of all bounces after an impact; None unless it is so short that the bounces are summed.
     fn bounces(&mut self, after: &StoneAloft<N>, struck: &Struck, e: f64) -> Option<f64> {
         let (StoneContact { lab, at, light, patch }, w, law) =
             (self.contact_at(&after.y), after.y.omega(), self.of.flow.law);
@@ -245,7 +248,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         Some(left)
     }
 
-    /// The numbers after an impact.
+    /// The stone after an impact.
     fn after(&self, from: &StoneAloft<N>, struck: &Struck) -> StoneAloft<N> {
         let StoneContact { lab, at, .. } = self.contact_at(&from.y);
         let [x, y, z] = struck.impulse;
@@ -258,7 +261,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         StoneAloft { y, lift: struck.lift, ..*from }
     }
 
-    /// The numbers after an impact, which is also recorded.
+    /// The stone after an impact, which is also recorded in the results.
     fn struck(&mut self, from: &StoneAloft<N>, struck: &Struck, stays: bool) -> StoneAloft<N> {
         let &Struck { hit, impulse, couple, lost, .. } = struck;
         let after = self.after(from, struck);
@@ -284,7 +287,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         after
     }
 
-    /// The phase after an impact.
+    /// The phase after an impact of a stone: contact or flight.
     fn leaves_impact(&mut self) -> Next {
         if self.hops.takeoff.lift > 0.0 {
             self.hops.takeoff.leaves = Some(1);
@@ -293,7 +296,7 @@ impl<'n, const N: usize> StoneWalk<'_, 'n, N> {
         self.touches_down()
     }
 
-    /// Compares the energy with that at the start.
+    /// Includes the error of the energy balance since the start in the estimated error.
     pub(super) fn compares_energy(&mut self) {
         if self.ask.restitution.is_none() || self.perturbation > 0.0 {
             return;

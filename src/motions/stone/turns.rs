@@ -6,12 +6,13 @@
 //!            within twice their range, the step is halved until the cubic through both ends has an error
 //!            of at most 1e-4 of that tenth
 //! ```
-//! So no reversal within a step is missed. Error of its time: the error of the cubic over the derivative of the spin.
+//! In this way no reversal within a step is missed. Error of the time of a reversal: the error of the cubic over the
+//! derivative of the spin.
 
 use crate::methods::search::crossing;
 use crate::numbers::Dual;
 
-/// The spin at a time, and its derivative.
+/// The spin of a stone at a time, and its time derivative.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spot {
     pub t: f64,
@@ -37,21 +38,22 @@ const COUNTS: f64 = 0.1;
 /// An initial spin below this share of the largest angular velocity, or of 1, counts as zero: it has no
 /// direction, and no reversals are counted.
 const NONE: f64 = 1e-12;
-/// Allowed error of a cubic, as a share of `enough`. A larger error shifts the times of reversals.
+/// Allowed error of the cubic that approximates the spin, as a share of the spin `enough`. A larger error would shift
+/// the times of reversals.
 const CUBIC: f64 = 1e-4;
-/// Largest number of halvings of a step.
+/// Largest number of halvings of a step in the search for a reversal.
 const STEP_HALVINGS: u32 = 12;
 
 impl Reversals {
-    /// Begins to count, with the initial spin and the largest angular velocity.
+    /// Begins to count reversals, from the initial spin and the largest angular velocity.
     pub fn of(spin: f64, fastest: f64) -> Self {
         let none = spin.abs() <= NONE * fastest.max(1.0);
         let enough = if none { f64::INFINITY } else { COUNTS * spin.abs() };
         Self { enough, side: spin.signum(), crossed: f64::NAN, times: Vec::new() }
     }
 
-    /// True if the spin may reach zero or complete a reversal along these spots, whose spins have the
-    /// error `known`.
+    /// Whether the spin may reach zero or complete a reversal between these points, whose spins have the error
+    /// `known`.
     pub fn near(&self, spots: &[Spot], known: f64) -> bool {
         if self.enough == f64::INFINITY {
             return false;
@@ -68,7 +70,7 @@ impl Reversals {
         within(0.0) || within(-self.side * self.enough)
     }
 
-    /// Follows the spin between two spots, given by a function of time.
+    /// Counts the reversals between two points of the motion; `at` returns the spin at a time.
     pub fn follow(&mut self, at: &dyn Fn(f64) -> Spot, from: Spot, to: Spot) {
         self.halved(at, from, to, STEP_HALVINGS);
     }
@@ -86,7 +88,7 @@ impl Reversals {
         }
     }
 
-    /// Follows the cubic between two spots, which rises or falls between its extrema.
+    /// Counts the reversals of the cubic between two points of the motion, which is monotonic between its extrema.
     pub fn along(&mut self, from: Spot, to: Spot) {
         if self.enough == f64::INFINITY {
             return;
@@ -124,7 +126,7 @@ impl Reversals {
     }
 }
 
-/// The cubic through two spots, at the share `x` of the time between them.
+/// The cubic with the spins and derivatives of two points of the motion, at the share `x` of the time between them.
 fn cubic(Spot { t, spin: a }: Spot, Spot { t: later, spin: b }: Spot, x: f64) -> f64 {
     let (y, whole) = (1.0 - x, x * (1.0 - x) * (later - t));
     let (low, high) = (y * y * (1.0 + 2.0 * x), x * x * (1.0 + 2.0 * y));
@@ -135,7 +137,7 @@ fn cubic(Spot { t, spin: a }: Spot, Spot { t: later, spin: b }: Spot, x: f64) ->
 mod tests {
     use super::*;
 
-    /// Follows a spin over one step, and returns the times of its reversals.
+    /// Returns the times of the reversals of a spin over one step.
     fn over(spin: impl Fn(f64) -> f64, last: f64) -> Vec<f64> {
         let at = |t: f64| {
             let slope = (spin(t + 1e-6) - spin(t - 1e-6)) / 2e-6;

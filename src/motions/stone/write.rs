@@ -1,4 +1,4 @@
-//! The outputs of a stone: states, poses and forces from its numbers.
+//! Computes the outputs of a stone's motion: states, poses and forces from its state vector.
 
 use super::flow::{SLID_X, SLID_Y, STONE_HEAT, StoneFlow, Touch, output_slip, state};
 use crate::laws::stone::StoneState;
@@ -11,7 +11,7 @@ use crate::motions::walk::numbers::lost;
 use crate::motions::walk::two_runs::Followed;
 use nalgebra::Vector3;
 
-/// Adds a point to the outputs.
+/// Adds the state vector `y` of a stone to the outputs.
 pub(super) fn write<const N: usize>(
     made: &mut Followed<StoneState>,
     (flow, ask, still): (&StoneFlow<'_>, &Ask, [f64; 2]),

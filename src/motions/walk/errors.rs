@@ -1,4 +1,4 @@
-//! Errors of an integrated motion, from the exact motion where there is one, else from another run.
+//! Estimates the error of an integrated motion, from the exact motion where there is one, else from another run.
 
 use crate::error::{Error, room};
 use crate::laws::body::Body;
@@ -16,8 +16,9 @@ pub(crate) fn pose_distance(a: &Pose, b: &Pose) -> f64 {
     moved.into_iter().fold(larger_or_nan(angle(a.phi, b.phi), angle(a.psi, b.psi)), larger_or_nan)
 }
 
-/// The largest difference between two poses that are seen from the two equal rims of a body, `a` from the one that was
-/// not down at the start. The points on the table differ along the lean, by a length of the body.
+/// The largest difference between two poses of a body with two equal rims, where `a` is given from the rim that did
+/// not touch the table at the start. The contact points may differ in the direction of the lean, where the two rims
+/// are a body's length apart.
 pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
     let by = |a: Angle, turns: f64, rest: f64| ((a.turns - turns) * TAU + (a.rest - rest)).abs();
     let turned =
@@ -26,11 +27,11 @@ pub(crate) fn pose_distance_over(a: &Pose, b: &Pose) -> f64 {
     larger_or_nan(turned, (moved.y * cos - moved.x * sin).abs())
 }
 
-/// Relative error of a number of a state from a few roundings.
+/// Relative error of a component of a state from a few roundings.
 const ROUNDING_ERROR: f64 = 4.0 * f64::EPSILON;
 
-/// The force `at` a state whose theta and w have the given errors, and the largest error of the numbers of that force,
-/// from the given errors and from a few roundings of every number.
+/// The contact force `at` a state whose theta and w have the given errors, and the largest error of a component of
+/// that force, from the given errors and from a few roundings.
 pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Force) -> (Force, f64) {
     let numbers = |y: &[f64; 4]| {
         let force = at(&State::from(*y));
@@ -40,7 +41,8 @@ pub(crate) fn doubted(y: &State, [theta, w]: [f64; 2], at: impl Fn(&State) -> Fo
     (Force { normal, along, across }, off)
 }
 
-/// The numbers of a force `at` the numbers of a state with the errors `known`, and the largest error of that force.
+/// The three components of a force, computed by `at` from the components `of` a state with the errors `known`, and
+/// the largest error of a component.
 pub(crate) fn doubted_of<const K: usize>(
     of: &[f64; K],
     known: [f64; K],
@@ -60,14 +62,14 @@ pub(crate) fn doubted_of<const K: usize>(
     (here, if largest.is_nan() { f64::INFINITY } else { largest })
 }
 
-/// The largest difference between the numbers of two forces.
+/// The largest difference between the components of two forces.
 pub(crate) fn force_distance(a: &Force, b: &Force) -> f64 {
     let [normal, along, across] = [a.normal - b.normal, a.along - b.along, a.across - b.across];
     [normal, along, across].into_iter().fold(0.0, |most, x| larger_or_nan(most, x.abs()))
 }
 
-/// Sets the error of an integrated motion from the exact motion at some of its times, or at all if they are fewer than
-/// 256.
+/// Sets the error of an integrated motion by comparison with the exact motion at some of its times, or at all of them
+/// if they are fewer than 256.
 pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0: f64) {
     let count = motion.times.len();
     let every = (count / 128).max(1);
@@ -100,8 +102,8 @@ pub(crate) fn judge(motion: &mut Motion, swing: &Swing, exact: Option<Event>, t0
     }
 }
 
-/// Sets the error of an integrated motion to its difference from another run with the same end; without the same end to
-/// infinity.
+/// Sets the error of an integrated motion to its difference from another run with the same end, or to infinity if the
+/// ends differ.
 pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     for (i, (a, b)) in motion.states.iter().zip(&other.states).enumerate() {
         motion.error = larger_or_nan(motion.error, a.distance(b));
@@ -121,12 +123,13 @@ pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     }
 }
 
-/// Whether two solutions have the same end.
+/// Whether two solutions end with the same event at times that differ by at most 1 %.
 pub(crate) fn same_end(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }
 
-/// Adds the contact force at each state to the motion, or ends it after the last force if `go_on` interrupts.
+/// Adds the contact force at each state to the motion, or cuts the motion off after the last force if `go_on`
+/// interrupts.
 pub(crate) fn with_contact_forces(
     mut motion: Motion,
     contact: Contact,

@@ -1,12 +1,13 @@
-//! Flights and impacts of any body: how a flight begins, the bounces that are summed, and the errors that impacts multiply.
+//! Flights and impacts of bodies and stones: how a flight begins, the sum of endless small bounces, and how impacts
+//! multiply errors.
 //!
 //! ```text
 //! bounces             last 2 u_n/(G (1 - q)) in all,  G = a_n N0,  q the ratio of the next bounce to this one
 //! contact             where 2 u_n^2 < TAIL G (1 - q): the last impact is taken with e = 0
 //! ```
-//! The impulses of the bounces that are summed agree with the contact force to first order, and to second order where
-//! they slip. Where they stick, the contact point has moved in each flight before: the error of their sum is of second
-//! order, about TAIL, and part of the estimated error. The friction of all bounces is lost in impacts.
+//! The summed impulses of the last bounces agree with the contact force to first order, and to second order where the
+//! contact point slips. Where it sticks, it has moved in each flight before: the error of the sum is of second order,
+//! about TAIL, and part of the estimated error. The work of friction in all bounces counts as lost in impacts.
 
 use super::numbers::lost;
 use super::two_runs::CHANCE;
@@ -19,75 +20,83 @@ use crate::laws::contact::{ImpactLaw, Table};
 use crate::laws::custom::SpeedLaw;
 use crate::motions::{Ending, Kind, Method, Moving};
 
-/// Share of the state that the summed bounces may change: this part of the tolerance of a sweep, within these two
-/// limits.
+/// Largest share by which the summed bounces may change the state, over the tolerance of many motions at once; the
+/// product stays between `TAIL` and `LONGEST_TAIL`.
 const TAIL_SHARE: f64 = 0.1;
 const TAIL: f64 = 1e-13;
 const LONGEST_TAIL: f64 = 1e-10;
-/// The same share for a body with losses, which act at a contact, but not on a body that bounces.
+/// Further factor of the share by which summed bounces may change the state, for a body with losses, which act at a
+/// contact, but not on a body that bounces.
 const LOSSY_TAIL: f64 = 1e-8;
-/// Relative error of the numbers by the sum of the bounces, in units of their time and their first velocity.
+/// Relative error of the state by the sum of the bounces, in units of their total time and of their first vertical
+/// velocity.
 const SUM_ERROR: f64 = 1.0;
-/// The same error of bounces that slip, in units of their velocity over that of the slip.
+/// Relative error of the state by the sum of bounces that slip, in units of their vertical velocity over the slip.
 const TURNS: f64 = 10.0;
-/// The tolerance of a step along an impact: this share of that of a motion, within these two limits.
+/// The tolerance of a step in the integration of an impact, over that of the motion; the product stays within
+/// `IMPACT_TOL`.
 const IMPACT_SHARE: f64 = 1e-4;
 const IMPACT_TOL: [f64; 2] = [3e-14, 1e-12];
-/// The same tolerance under a coefficient that depends on the speed, in units of the tolerance of the motion.
+/// The tolerance of a step in the integration of an impact whose coefficient of friction depends on the speed, over
+/// that of the motion.
 const OWN_IMPACT_TOL: f64 = 1e-3;
-/// The first step of a rougher run is this many times as long as that of the finer run, so that their steps differ.
+/// The first step of the run with the larger tolerance is this many times as long as in the other run, so that the
+/// steps of the two runs differ.
 pub(crate) const LONGER: f64 = 3.0;
-/// Share of its terms below which N0 is a rounding error.
+/// The normal force without friction, N0, counts as a rounding error if it is below this share of its terms.
 pub(crate) const ROUNDED: f64 = 1e-12;
-/// A term of the second order of a height that is smaller than this, in units of the fall, may be an error of the numbers.
+/// A second-order term of the height in a flight may be an error of the state if it is smaller than this, in units of
+/// that of free fall.
 pub(crate) const HARDLY: f64 = 1e-8;
 /// A bounce in which the body turns by less than this angle is short; its landing is that of a power series.
 pub(crate) const SHORT_BOUNCE: f64 = 0.1;
-/// Within its radius the terms of a series fall by this factor; a landing before this share of it is sought with fewer
-/// terms, of which the last is below exp(-DIGITS).
+/// At its radius of use each term of a flight's power series is this many times smaller than the one before. A
+/// landing before the share `EARLY` of that radius is sought with fewer terms, of which the last is below
+/// exp(-DIGITS).
 const NARROWS: f64 = 3.0;
 const EARLY: f64 = 0.5;
 const DIGITS: f64 = 36.0;
-/// A jam needs a larger impulse than this share of the slip.
+/// An impact without a unique impulse counts as a jam (Painleve) only if its impulse is larger than this share of the
+/// slip.
 pub(crate) const JAM_TAKES: f64 = 1e-9;
 
-/// The beginning of a point's flight: above the table, or on the table with a height that grows as t^k.
+/// How a point begins its flight: `None` above the table, or `Some(k)` on the table with a height that grows as t^k.
 pub(crate) type Leaves = Option<usize>;
 
-/// The beginning of a flight.
+/// The height and velocity with which a flight begins.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Takeoff {
-    /// The height of the lowest point, and its vertical velocity.
+    /// The height of the lowest point of the body; `lift` is its vertical velocity.
     pub height: f64,
     pub lift: f64,
     /// The power of time with which the point leaves the table; None for a start above the table.
     pub leaves: Leaves,
 }
 
-/// What a walk knows of its flights and impacts.
+/// What the computation of a motion records about flights and impacts.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Hops {
     /// The beginning of the next flight, or the height and the vertical velocity of a body in the air.
     pub takeoff: Takeoff,
-    /// The energy that the impacts before the last one have taken, and the sum of energy, heat and all that was lost
-    /// at the start.
+    /// The energy lost in the impacts before the last one. `energy` is the sum of the energy, the heat of friction
+    /// and all losses at the start.
     pub struck: f64,
     energy: Option<f64>,
-    /// The step errors by which a rougher run has been perturbed.
+    /// The sum of step errors up to the last perturbation of the run with the larger tolerance.
     shown: f64,
 }
 
-/// The number of terms that a series needs up to a landing as early as this share of its radius, where the height leaves the
-/// table as a power of time of this order; None if it needs all of them.
+/// The number of terms that the power series of a flight needs up to a landing at the share `early` of its radius, if
+/// the height begins as the power `order` of time; None if it needs all terms.
 pub(crate) fn terms_until(early: f64, order: usize) -> Option<usize> {
     (early > 0.0 && early < EARLY).then(|| order + 2 + (DIGITS / (NARROWS / early).ln()) as usize)
 }
 
-/// A bounce, and what acts on the body after it.
+/// An impact after which the body bounces, and the forces that would act on it in contact.
 pub(crate) struct Bounce<'a> {
     pub struck: &'a Struck,
     pub light: &'a Delassus,
-    /// The patch of contact after it.
+    /// The patch of contact after the impact.
     pub patch: Option<PatchedPoint>,
     /// N0, the normal force without friction.
     pub force: f64,
@@ -96,8 +105,8 @@ pub(crate) struct Bounce<'a> {
 }
 
 impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
-    /// The impact of a point of the body. A rougher run begins it with a longer step, so that the two runs take different
-    /// steps.
+    /// The impact of a point of the body. The run with the larger tolerance begins its integration with a longer
+    /// step, so that the two runs take different steps.
     pub fn point_impact(
         &self,
         (slip, lift): ([f64; 2], f64),
@@ -116,8 +125,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         PointImpact { slip, lift, light, patch, law: self.ask.impact_law, tol: tol * rougher, longer }
     }
 
-    /// The time of all bounces after an impact, if they are over so soon that they are summed. `rates` are those of the
-    /// slip without a contact force.
+    /// The total time of all bounces after an impact; None unless it is so short that the bounces are summed. `rates`
+    /// is the acceleration of the slip without a contact force.
     pub fn bounces_for(
         &self,
         Bounce { struck, light, patch, force, loses }: &Bounce<'_>,
@@ -153,10 +162,10 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         (ratio < 1.0 && left * struck.lift < tail).then_some(left)
     }
 
-    /// Counts the friction of the bounces that are summed as lost in impacts, as that of all other bounces, and not as
-    /// the heat of a slip. Includes the error of the sum in the estimated error. The bounces take the time `left`, and
-    /// begin with the velocity `bounce`; `power` is that of friction, which takes energy from the slip after them. Returns
-    /// the relative error.
+    /// Counts the work of friction in summed bounces as lost in impacts, and not as the heat of a slip. Includes the
+    /// error of the sum in the estimated error. The bounces take the time `left`, and begin with the velocity
+    /// `bounce`; `power` is that of friction, which takes energy from the slip after them. Returns the relative
+    /// error.
     pub fn sums_bounces(&mut self, (left, bounce): (f64, f64), [slip, power]: [f64; 2], w: [f64; 3]) -> f64 {
         let mut share = SUM_ERROR * left * bounce;
         if slip > 0.0 {
@@ -173,8 +182,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         share
     }
 
-    /// The time of a landing at `t`, which is as uncertain as `late`. A rougher run lands sooner or later by more than
-    /// this error.
+    /// Returns the time of a landing at `t`, whose error `late` is included in the estimated error. The run with the
+    /// larger tolerance lands sooner or later by more than `late`, to show what this error does to the motion.
     pub fn claims_landing(&mut self, t: f64, late: f64) -> f64 {
         self.claims(late);
         let shown = self.shows() * self.sign_of_rounding();
@@ -183,9 +192,9 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         (t + late * shown).max(0.0)
     }
 
-    /// The share by which a rougher run perturbs the state at the end of a phase. A motion that has hopped is also
-    /// perturbed by a share of the step errors since the last time: impacts multiply them, and where both runs take the
-    /// same steps only this shows by how much.
+    /// The share by which the run with the larger tolerance perturbs the state at the end of each phase of the
+    /// motion. After impacts it includes a share of the step errors since the last perturbation: impacts multiply
+    /// step errors, and where both runs take the same steps only the perturbation shows by how much.
     pub fn share_of_errors(&mut self) -> f64 {
         let mut share = self.perturbation;
         if share > 0.0 && !self.made.path.impacts.is_empty() {
@@ -195,22 +204,21 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         share
     }
 
-    /// Includes a relative error of the numbers in the estimated error, although both runs make the same error: the
-    /// rougher run is perturbed by as much as the difference of the runs has to show. The growth of the error is then
-    /// that of the difference.
+    /// Includes a relative error of the state, which both runs make alike, in the estimated error. It perturbs the
+    /// run with the larger tolerance, so that the difference of the runs includes this error and its growth.
     pub fn doubts(&mut self, share: f64) {
         P::perturbs_by(self, share * self.shows() * self.sign_of_rounding());
     }
 
-    /// The sign of a perturbation after this impact, as irregular as that of a rounding error: thousands of errors of one sign
-    /// would add up to more than roundings do.
+    /// The sign of a perturbation after the last impact, irregular like that of a rounding error: thousands of errors
+    /// of one sign would add up to more than roundings do.
     pub fn sign_of_rounding(&self) -> f64 {
         let mixed = (self.made.path.impacts.len() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         if mixed >> 63 == 0 { 1.0 } else { -1.0 }
     }
 
-    /// Compares the energy of the body, with all that has been taken from it, with that at the start. Their difference,
-    /// over the largest speed, is an error of the numbers.
+    /// Includes the error of the energy balance in the estimated error: the energy plus heat and all losses, minus
+    /// their sum at the start, over the largest speed.
     pub fn compares_energy_with_start(&mut self, energy: f64, fastest: f64) {
         let last = self.made.path.impacts.last().map_or(0.0, |hit| hit.lost);
         let whole = energy + self.at[P::HEAT] + self.hops.struck + last + lost(&self.at);
@@ -218,7 +226,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         self.claims((whole - first).abs() / fastest);
     }
 
-    /// The flight of a body that leaves the table, where N0 and the size of its terms are these.
+    /// The phase after lift-off: a flight, or the end of the motion if only rolling friction lifts the body. `free`
+    /// is N0, the normal force without friction, and `size` that of its terms.
     pub fn lifts_off(&mut self, [free, size]: [f64; 2]) -> Next {
         if matches!(self.ask.table, Table::Rolling { .. }) && free > ROUNDED * size {
             // Friction lifts the body, and on a real table the contact point would slip first.
@@ -229,14 +238,15 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         Next::Own(Kind::Flying)
     }
 
-    /// Claims the energy that an impact has gained by its rounding errors, unless the law of restitution may give some.
+    /// Includes energy that an impact has gained by rounding in the estimated error, under the law of restitution
+    /// (Stronge's) that never gains energy.
     pub fn claims_no_gain(&mut self, lost: f64) {
         if self.ask.impact_law == ImpactLaw::Stronge {
             self.claims(-lost);
         }
     }
 
-    /// The contact that begins where the normal velocity is zero.
+    /// The phase of contact that begins where the normal velocity is zero.
     pub fn touches_down(&mut self) -> Next {
         self.hops.takeoff = Takeoff::default();
         self.first_phase().unwrap_or(Next::Ends(Ending::Painleve))

@@ -1,5 +1,5 @@
-//! The walk of a body or of a stone through the phases of its motion: the beginning of each phase, and the choice of
-//! the next.
+//! The computation of a motion through its phases, such as rolling, slipping and flying, for a body or a stone: how
+//! each phase begins, and which comes next.
 //!
 //! ```text
 //! start    slips, sticks, or ends at once
@@ -8,8 +8,8 @@
 //! both     to N = 0, or until a face, an edge or the other rim lands
 //! with restitution: in the air to a landing, an impact, and on; on both rims until one rises
 //! ```
-//! Bodies of revolution and stones share the walk. [`Phases`] has the differences: the numbers, the equations
-//! along a phase, and the conditions for its beginning and its end.
+//! Bodies of revolution and stones share this code. The trait [`Phases`] has the differences: the components of the
+//! state vector, the equations of motion in each phase, and the conditions for its beginning and its end.
 
 pub(crate) mod errors;
 pub(crate) mod hops;
@@ -34,30 +34,34 @@ use hops::Hops;
 pub(crate) use phases::Phases;
 pub(crate) use slips::{SlowLaw, SlowSeries};
 
-/// Largest number of phases: `PHASES_PER_TIME` for each unit of time, but within these two limits. A motion with more
-/// phases stops there: some motions slip for a moment in each nutation for ever.
+/// Least value of the largest number of phases of a motion, which is `PHASES_PER_TIME` per unit of time, but at most
+/// `MOST_PHASES`. The computation stops after this number: some motions slip for a moment in each nutation for ever.
 const FEWEST_PHASES: usize = 5_000;
 const MOST_PHASES: usize = 10_000;
 const PHASES_PER_TIME: f64 = 20.0;
-/// Largest number of impacts; the flight after each is fast to compute.
+/// Largest number of impacts of a motion, after which its computation stops; the flight after each is fast to
+/// compute.
 const MOST_IMPACTS: usize = 30_000;
-/// Largest number of consecutive phases without an advance of time; a motion with more stops there.
+/// Largest number of consecutive phases of zero duration, after which the computation of a motion stops.
 pub(crate) const STILL: u32 = 6;
-/// The computation of a body that loses energy stops after more than `MOST_SHORT_PHASES` consecutive phases, without a flight,
-/// shorter than `SHORT_PHASE`:
-/// then two laws of dry friction alternate without end.
+/// Largest duration of a phase that counts as short. The computation of a body with losses stops after more than
+/// `MOST_SHORT_PHASES` short phases in a row without a flight, in which two laws of dry friction alternate without
+/// end.
 const SHORT_PHASE: f64 = 1e-9;
 const MOST_SHORT_PHASES: u32 = 200;
-/// Number of additional crawling steps that each change of the motion allows, since short steps after a change do not
-/// mean that time hardly advances.
+/// Number of additional very short steps that are allowed after each change of the phase, since short steps after a
+/// change do not mean that time hardly advances.
 const CRAWLING_STEPS_PER_CHANGE: u64 = 1000;
 
-/// Length of the first step of a slip that has no series, in a straight line: its square is below rounding.
+/// Duration of the first step of a slip from rest that has no power series. The step is a straight line, since its
+/// square is below rounding.
 pub(crate) const MOMENT: f64 = 1e-8;
 
-/// A dry slip is over where its speed has fallen below this share of mu; the rest is extrapolated linearly.
+/// A slip under dry friction ends where its speed has fallen below this share of mu; the time to zero is extrapolated
+/// linearly.
 const OVER: f64 = 1e-13;
-/// Number of steps between two calls of `go_on`, where a series may take up a slip.
+/// Number of steps between two calls of `go_on`, at which a power series may also replace the integration of a slow
+/// slip.
 const BREATH: u64 = 256;
 
 /// The speed below which a slip under friction of this strength counts as zero.
@@ -65,13 +69,13 @@ pub(crate) fn slip_over(dry: bool, strength: f64) -> f64 {
     if dry { OVER * strength.min(1.0) } else { 0.0 }
 }
 
-/// The largest number of phases up to the last of the times. Also the largest number of times at which, within a phase,
-/// a motion that dry losses resist stops or begins.
+/// The largest number of phases up to the last of the times. It also limits how often a rotation against dry friction
+/// may stop or begin within phases.
 pub(crate) fn most_phases(times: &[f64]) -> usize {
     times.last().map_or(FEWEST_PHASES, |t| ((PHASES_PER_TIME * t) as usize).clamp(FEWEST_PHASES, MOST_PHASES))
 }
 
-/// The next phase of a walk.
+/// The next phase of a motion.
 pub(crate) enum Next {
     /// A slip with the current velocity.
     Slips,
@@ -83,39 +87,39 @@ pub(crate) enum Next {
         alpha: f64,
         growth: f64,
     },
-    /// Rolling, or free sliding on a smooth table. With `at_limit` static friction may exceed its limit by the share
-    /// `GRACE`, for rolling that needs exactly the limit.
+    /// Rolling, or free sliding on a smooth table. If `at_limit` is true, static friction may exceed its limit by the
+    /// share `GRACE`, for rolling that needs exactly the limiting friction.
     Rolls {
         at_limit: bool,
     },
-    /// A phase that only a body has: in the air, or on both rims.
+    /// A phase other than rolling and slipping: in the air, or on both rims.
     Own(Kind),
     Ends(Ending),
 }
 
-/// The next task for the caller of a walk, or the end of the walk.
+/// The next task for the caller that computes a motion phase by phase, or the end of the motion.
 pub(crate) enum WalkStep<const N: usize> {
-    /// The caller integrates the flow from these numbers on.
+    /// The caller integrates the equations of the current phase from this state vector on.
     Flows([f64; N]),
-    /// The caller computes a phase of rolling with this coefficient of static friction by the first integrals, among those
-    /// of other walks.
+    /// The caller computes a phase of rolling with this coefficient of static friction by the first integrals,
+    /// together with those of other motions.
     #[cfg(feature = "many")]
     Rolls(f64),
-    /// The walk is complete.
+    /// The motion is complete.
     Done,
 }
 
-/// Whether a flow has paused before its end.
+/// Whether the integration of a phase has paused before its end.
 #[derive(PartialEq)]
 pub(crate) enum Pause<const N: usize> {
     No,
-    /// The flow has paused at these numbers, with this next step if it is known.
+    /// The integration has paused at this state vector, with this next step if it is known.
     Here([f64; N], Option<f64>),
 }
 
 /// The computation of a motion, phase by phase.
 pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
-    /// The equations of the body or of the stone, and the data of the current phase.
+    /// The equations of motion of the body or of the stone, and the data of the current phase.
     pub of: P,
     pub ask: Ask,
     pub t0: f64,
@@ -123,44 +127,45 @@ pub(crate) struct Walk<'a, P: Phases<N>, const N: usize> {
     pub since: Vec<f64>,
     times: &'a [f64],
     pub made: Followed<P::State>,
-    /// Whether the memory has sufficed for all phases and impacts; an error ends the walk before its next phase.
+    /// An error if the memory did not suffice for all phases and impacts; it ends the computation before the next
+    /// phase.
     memory_result: Result<(), Error>,
-    /// The numbers at the beginning of the current phase, or at its end once it has ended.
+    /// The state vector at the beginning of the current phase, or at its end once it has ended.
     pub at: [f64; N],
     pub next: Option<Next>,
     /// The time at which the current phase began.
     pub began: f64,
-    /// Whether an earlier phase continues.
+    /// Whether the phase that begins is a continuation of the one before.
     resumes: bool,
-    /// The time of the last change of the motion.
+    /// The time at which the phase last changed, or a dry rotation last stopped or began.
     last_change: f64,
-    /// The next flight, and what the impacts have taken so far.
+    /// The beginning of the next flight, and the energy lost in impacts so far.
     pub hops: Hops,
-    /// Number of consecutive changes at the same time as the change before.
+    /// Number of consecutive changes of the motion that happened at the same time as the change before.
     pub still: u32,
-    /// Number of consecutive changes at most `SHORT_PHASE` later than the change before.
+    /// Number of consecutive changes of the motion that happened at most `SHORT_PHASE` later than the change before.
     short: u32,
-    /// Number of changes within phases.
+    /// How often a rotation against dry friction has stopped or begun within a phase.
     turns: usize,
-    /// Largest number of crawling steps.
+    /// Largest number of steps so short that time hardly advances.
     crawling: u64,
-    /// The share by which a rougher run perturbs the state at each end of a phase; 0 in the finer run. Where
-    /// the motion is unstable, the difference of the two runs then shows the instability.
+    /// The share by which the run with the larger tolerance perturbs the state at each end of a phase; 0 in the other
+    /// run. Where the motion is unstable, the difference of the two runs then shows the instability.
     pub perturbation: f64,
     pub spent: Spent,
     looked: slips::Looked,
-    /// Number of steps since `go_on` was asked last, in flows that are shorter than its turn.
+    /// Number of steps since the last call of `go_on`, if the phases are shorter than the interval between calls.
     steps_since_call: u64,
-    /// The series of the last slow slip.
+    /// The power series of the last slow slip.
     slow: Option<Box<P::Slow>>,
-    /// Whether a lane has used up its crawling steps, so that the next flow is tested at once
-    /// for being stuck.
+    /// Whether the SIMD code has used up the very short steps that are allowed, so that the next integration is
+    /// tested at once for not advancing.
     tired: bool,
 }
 
 impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
-    /// A walk from its initial state, whose first phase is not chosen yet. The tolerance of its steps is that of `of`,
-    /// which exceeds the requested tolerance `fine` in a rougher run.
+    /// The computation of a motion at its initial state, before the first phase is chosen. The tolerance of its steps
+    /// is that of `of`; in the second run, which shows the error, it exceeds the requested tolerance `fine`.
     pub fn new(
         of: P,
         at: [f64; N],
@@ -204,7 +209,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         })
     }
 
-    /// The whole motion, or the motion up to the limit at which the computation stopped.
+    /// Computes the whole motion, or the motion up to the limit at which the computation stops.
     #[allow(clippy::boxed_local)] // On the heap it leaves the stack to the flows.
     pub fn run(mut self: Box<Self>, go_on: &mut dyn FnMut() -> bool) -> Result<Followed<P::State>, Error> {
         loop {
@@ -222,7 +227,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         }
     }
 
-    /// Continues through the phases up to one that is integrated, or to the end.
+    /// Computes phases up to the first that the caller has to integrate, or to the end of the motion.
     #[inline(never)] // its frame is not on the stack of the flows
     pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> Result<WalkStep<N>, Error> {
         while let Some(next) = self.next.take() {
@@ -287,8 +292,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(WalkStep::Done)
     }
 
-    /// Counts a change of the motion at the current time: the beginning of a phase, or the end of a hold. Returns the
-    /// limit that the changes have reached.
+    /// Counts a change of the motion at the current time: a phase begins, or a contact point is no longer held.
+    /// Returns a limit if there have been too many changes.
     fn changes(&mut self) -> Option<Limit> {
         let now = self.at[TIME];
         self.still = if now > self.last_change { 0 } else { self.still + 1 };
@@ -304,8 +309,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         }
     }
 
-    /// Counts a change within a phase: a motion that dry losses stop, hold or let go. Returns whether the computation
-    /// stops because there are too many; the walk then ends.
+    /// Counts a change within a phase: dry friction stops, holds or lets go a rotation. Returns true if there are too
+    /// many changes, and then ends the computation of the motion.
     pub fn turns_too_often(&mut self) -> bool {
         self.turns += 1;
         let limit = self.changes();
@@ -315,13 +320,14 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         limit.is_some()
     }
 
-    /// The end of a motion whose computation stops at this limit.
+    /// Ends a motion whose computation stops at this limit.
     pub fn gives_up(&mut self, limit: Limit) -> Next {
         self.made.motion.limit = Some(limit);
         Next::Ends(Ending::Bounded)
     }
 
-    /// The phase after an ending past which the motion continues. One ending may follow another at the same time.
+    /// The phase after an ending past which a motion with restitution continues. Several endings may follow each
+    /// other at the same time.
     fn goes_on(&mut self, mut next: Next) -> Next {
         for _ in 0..STILL {
             let Next::Ends(ending) = next else { break };
@@ -333,7 +339,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         next
     }
 
-    /// Computes the flow of a phase from the numbers `y`, for at most `most` steps; `first` is the first step if it is
+    /// Integrates a phase from the state vector `y`, for at most `most` steps; `first` is the first step if it is
     /// known.
     pub fn flows(
         &mut self,
@@ -370,14 +376,14 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         }
     }
 
-    /// The number of evaluations that are still allowed.
+    /// The number of evaluations of the rates that remain of the allowed number.
     pub fn toil(&self) -> u64 {
         let most = self.ask.max_evaluations;
         let most = most.unwrap_or_else(|| toil_of(self.since.last().copied().unwrap_or(0.0)));
         most.saturating_sub(self.spent.evaluations)
     }
 
-    /// The phase that begins at the current numbers, initially or after a landing. An error if no unique contact force
+    /// The phase that begins at the current state, initially or after a landing. An error if no unique contact force
     /// exists.
     pub fn first_phase(&mut self) -> Result<Next, Error> {
         if !self.ask.table.rubs() {
@@ -424,7 +430,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.resumes = true;
     }
 
-    /// Records the beginning of a phase, whose first steps may crawl.
+    /// Records the beginning of a phase, whose first steps may be very short.
     pub fn begins_phase(&mut self, kind: Kind) {
         self.began = self.at[TIME];
         self.allows_crawling();
@@ -443,26 +449,28 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.memory_result = self.memory_result.and(grow(&mut self.made.path.impacts, impact));
     }
 
-    /// Allows more crawling steps after a change of the motion.
+    /// Allows more very short steps after a change of the motion.
     pub fn allows_crawling(&mut self) {
         self.spent.patience = (self.spent.patience + CRAWLING_STEPS_PER_CHANGE).min(self.crawling);
     }
 
-    /// Records an event outside the model, at the current numbers, unless an earlier event is recorded.
+    /// Records an event after which the model does not hold, at the current state, unless an earlier event is
+    /// recorded.
     pub fn records_event(&mut self, ending: Ending) {
         let Phase { time, state, rim, .. } = P::seen(self, self.kind());
         let event = Event { ending, time, state, rim };
         self.made.motion.event.get_or_insert(event);
     }
 
-    /// Writes the outputs up to the current time that no flow has written, as for a motion that is over at once.
+    /// Writes the outputs up to the current time that no integration has written, as for a motion that ends at its
+    /// start.
     pub fn writes_up_to_now(&mut self) {
         while self.until().is_some_and(|t| t <= self.at[TIME]) {
             P::write_here(self);
         }
     }
 
-    /// The finished motion and its path.
+    /// Returns the finished motion and its path.
     pub fn done(mut self) -> Result<Followed<P::State>, Error> {
         self.memory_result?;
         let count = self.made.motion.states.len();
@@ -488,19 +496,19 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.ask.table.friction()
     }
 
-    /// Raises the estimated error of the motion to at least this error, which remains if it is NaN.
+    /// Raises the estimated error of the motion to at least this `error`. A NaN makes it NaN for good.
     pub fn claims(&mut self, error: f64) {
         self.made.motion.error = larger_or_nan(self.made.motion.error, error);
     }
 
-    /// The factor by which a rougher run exaggerates an error that both runs make alike, so that the scaled difference
-    /// of the runs shows this error; 0 in the finer run.
+    /// The factor by which the run with the larger tolerance exaggerates an error that both runs make alike, so that
+    /// the scaled difference of the runs shows this error; 0 in the other run.
     pub fn shows(&self) -> f64 {
         self.perturbation / f64::EPSILON
     }
 
-    /// Includes the error of the time of an end at `y` in the estimated error. It is the error of the steps, divided by
-    /// the rate at which the margin fell, or the speed of a body that comes to rest.
+    /// Includes the error of the time at which a phase ends, at the state vector `y`, in the estimated error. It is
+    /// the error of the steps divided by `steep`, the rate at which the condition of the phase fell to zero.
     pub fn claims_time_error(&mut self, halt: Halt, steep: f64, y: &[f64; N]) {
         // In the midst of bounces the time of an end has no meaning, and its effect is in the difference of the runs.
         if self.ask.restitution.is_some() && y[TIME] - self.began <= BRIEF_PHASE {
@@ -515,7 +523,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         }
     }
 
-    /// Adds the cost of a flow.
+    /// Adds the evaluations and step errors of an integration to those of the motion.
     pub fn has_spent(&mut self, Spent { evaluations, erred, patience, exhausted }: Spent) {
         self.made.motion.limit = exhausted.map(Limit::from).or(self.made.motion.limit);
         self.spent.evaluations += evaluations;
@@ -523,7 +531,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         self.spent.patience = patience;
     }
 
-    /// Adds the cost of a flow that a lane has computed, in which `given` steps were allowed to crawl.
+    /// Adds the evaluations and step errors of an integration by the SIMD code, in which `given` very short steps
+    /// were allowed.
     pub fn has_spent_elsewhere(&mut self, spent: Spent, given: u64) {
         let crawled = given - spent.patience.min(given);
         self.tired = spent.patience == 0;
@@ -531,7 +540,7 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
     }
 }
 
-/// The phase that follows from the behaviour of a contact point with zero slip.
+/// The phase that follows from the behaviour of a contact point with zero slip: it sticks or slips off.
 pub(crate) fn after_rest(found: Standstill) -> Next {
     match found {
         Standstill::Sticks => Next::Rolls { at_limit: false },
@@ -541,7 +550,7 @@ pub(crate) fn after_rest(found: Standstill) -> Next {
     }
 }
 
-/// The ending that a halt means for the motion.
+/// The reason for which a motion ends where the integration of its phase halts for this reason.
 pub(crate) fn ending(halt: Halt) -> Ending {
     match halt {
         Halt::Time | Halt::Pause | Halt::Standstill | Halt::Pole => Ending::Done,

@@ -1,4 +1,4 @@
-//! The numbers of a motion that slips or loses energy, and the reasons for which its flow halts.
+//! The state vector of a motion that slips or loses energy, and the reasons for which its integration halts.
 //!
 //! ```text
 //! y = (s, c, w1, w2, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
@@ -9,12 +9,12 @@ use crate::laws::body::Rim;
 use crate::numbers::Real;
 use core::f64::consts::PI;
 
-/// The reason for which a flow halts.
+/// The reason for which the integration of a phase halts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Halt {
-    /// The flow has reached the last time.
+    /// The integration has reached the last time.
     Time,
-    /// The flow has taken the largest number of steps that its caller allows.
+    /// The integration has taken the largest number of steps that its caller allows.
     Pause,
     /// The contact point comes to rest on the table.
     Standstill,
@@ -50,9 +50,10 @@ pub(crate) enum Halt {
     Endless,
 }
 
-/// Number of margins of a motion.
+/// Number of margins of a motion: functions of the state whose zeros end a phase.
 pub(crate) const MARGINS: usize = 6;
-/// The indices of the numbers of a body's motion. Those of the time, of a stone, too.
+/// Index of sin(theta) in the state vector of a body's motion; the other components follow. `TIME` is also that of a
+/// stone.
 pub(crate) const SIN: usize = 0;
 pub(crate) const COS: usize = 1;
 pub(crate) const W1: usize = 2;
@@ -66,7 +67,7 @@ pub(crate) const PHI: usize = 9;
 pub(crate) const PSI: usize = 10;
 pub(crate) const X: usize = 11;
 pub(crate) const Y: usize = 12;
-/// The number in place of w1 where a flow uses another variable: p = w1 s, or w_z of a contact that is held.
+/// Index of the variable that replaces w1 in some phases: p = w1 sin(theta), or w_z where the contact point is held.
 pub(crate) const P: usize = 2;
 
 /// The rates of phi, psi and the place (x, y) of a contact point that moves over the table along e_h and e2, from the sine and
@@ -80,16 +81,19 @@ pub(crate) fn pose_rates(
     [precession, spin, out * cos - on * sin, out * sin + on * cos]
 }
 
-/// The rates of cos phi, sin phi and x of such a point, which lanes compute instead.
+/// The time derivatives of cos phi, sin phi and x of a contact point that moves with the velocity `out` along e_h and
+/// `on` along e2, for the SIMD code.
 #[inline(always)]
 pub(crate) fn heading_rates<T: Real>([cos, sin]: [T; 2], precession: T, [out, on]: [T; 2]) -> [T; 3] {
     [-(precession * sin), precession * cos, out * cos - on * sin]
 }
 
-/// The sine of a heading straight up or down a slope: no number is exactly pi, and a lean uphill is unstable in phi.
+/// A body whose sin(phi) is at most this leans straight up or down the slope: no double is exactly pi, and a lean
+/// uphill is unstable in phi.
 const UP_OR_DOWN: f64 = 2.0 * f64::EPSILON;
 
-/// The pull of a table whose slope has this tangent, along e_h and e2; 0 if the pose is not among the numbers.
+/// The component of gravity along a table whose slope has the tangent `tilt`, along e_h and e2; 0 if the state vector
+/// has no pose.
 #[inline(always)]
 pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
     if !poses(N) || tilt == 0.0 {
@@ -98,26 +102,28 @@ pub(crate) fn pull<const N: usize>(tilt: f64, y: &[f64; N]) -> [f64; 2] {
     pull_along(tilt, y[PHI].sin_cos())
 }
 
-/// The pull of such a table from the sine and cosine of phi.
+/// The component of gravity along a table whose slope has the tangent `tilt`, along e_h and e2, from the sine and
+/// cosine of phi.
 #[inline(always)]
 pub(crate) fn pull_along(tilt: f64, (sin, cos): (f64, f64)) -> [f64; 2] {
     [tilt * cos, if sin.abs() <= UP_OR_DOWN { 0.0 } else { -(tilt * sin) }]
 }
 
-/// The velocity of a table that turns at this rate under the contact point, along e_h and e2, from the sine and cosine of phi.
+/// The velocity, along e_h and e2, of a turntable with the rate `turning` at the contact point; `heading` is the sine
+/// and cosine of phi.
 #[inline(always)]
 pub(crate) fn carried<const N: usize>(turning: f64, y: &[f64; N], heading: (f64, f64)) -> [f64; 2] {
     carried_at(turning, heading, [y[X], y[Y]])
 }
 
-/// The velocity of a table that turns at this rate under the point (x, y), along e_h and e2, from the sine and
+/// The velocity, along e_h and e2, of a turntable with the rate `turning` at the point (x, y), from the sine and
 /// cosine of phi.
 #[inline(always)]
 pub(crate) fn carried_at(turning: f64, (sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
     [turning * (x * sin - y * cos), turning * (x * cos + y * sin)]
 }
 
-/// The velocity of the contact point over the table, along e_h and e2.
+/// The velocity at which the point of contact moves over the table, along e_h and e2.
 #[inline(always)]
 pub(crate) fn contact_velocity<T: Real>(
     rim: &Rim<T>,
@@ -135,14 +141,15 @@ pub(crate) fn sum([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
     [a + c, b + d]
 }
 
-/// The pull of a table that turns at this rate on a body whose contact point runs along e_h and e2, added to another one.
+/// Adds the acceleration by a turntable to the acceleration `pull_h`, `pull_2` along e_h and e2, for a contact point
+/// that moves with the velocity `out` along e_h and `on` along e2.
 #[inline(always)]
 pub(crate) fn driven(turning: f64, [pull_h, pull_2]: [f64; 2], [out, on]: [f64; 2]) -> [f64; 2] {
     [pull_h + turning * on, pull_2 - turning * out]
 }
 
-/// The axis of a ball may have passed the vertical, where s is negative: then the ball leans to the other side, so that s,
-/// w1, w2 and the slip change their signs. Returns whether it does.
+/// If s = sin(theta) is negative, the axis of a ball has passed the vertical: changes the signs of s, w1, w2 and the
+/// slip, since the ball leans to the other side. Returns whether it has.
 pub(crate) fn leans_over<const N: usize>(y: &mut [f64; N]) -> bool {
     let over = y[SIN] < 0.0;
     if over {
@@ -154,13 +161,13 @@ pub(crate) fn leans_over<const N: usize>(y: &mut [f64; N]) -> bool {
     over
 }
 
-/// The numbers of a body's motion that belong together.
+/// Parts of the state vector of a body's motion.
 pub(crate) trait BodyNumbers<T> {
     /// Sine and cosine of theta.
     fn angle(&self) -> (T, T);
     /// The angular velocity along e1, e2, e3.
     fn w(&self) -> [T; 3];
-    /// The slip along e_h and e2.
+    /// The velocity of the slip along e_h and e2.
     fn slip(&self) -> [T; 2];
 }
 
@@ -179,17 +186,17 @@ impl<T: Copy, const N: usize> BodyNumbers<T> for [T; N] {
     }
 }
 
-/// Whether the lost energy is the last of the numbers.
+/// Whether a state vector with `count` components ends with the lost energy.
 pub(crate) const fn loses(count: usize) -> bool {
     count == 10 || count == 14
 }
 
-/// The lost energy among the numbers; 0 if it is not computed.
+/// The lost energy in the state vector; 0 if it is not computed.
 pub(crate) fn lost<const N: usize>(y: &[f64; N]) -> f64 {
     if loses(N) { y[N - 1] } else { 0.0 }
 }
 
-/// Whether the pose is among the numbers, from number 9 on.
+/// Whether a state vector with `count` components contains the pose, from index 9 on.
 pub(crate) const fn poses(count: usize) -> bool {
     count >= 13
 }

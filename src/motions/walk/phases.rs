@@ -1,4 +1,4 @@
-//! The differences between the walks of a body of revolution and of a stone.
+//! The differences between the computation of a motion of a body of revolution and of a stone.
 
 use super::numbers::Halt;
 use super::{Next, Pause, SlowLaw, SlowSeries, Walk, WalkStep};
@@ -7,60 +7,60 @@ use crate::laws::contact::standstill::Standstill;
 use crate::methods::flow::Steps;
 use crate::motions::{Ask, Ending, Kind, Moving, Phase};
 
-/// The phases of a body of revolution or of a stone, whose motion has N numbers.
+/// The phases of motion of a body of revolution or of a stone, whose state vector has N components.
 pub(crate) trait Phases<const N: usize>: Sized {
     type State: Moving;
     type Slow: SlowLaw<N>;
-    /// Indices of the slip's first component and of the heat among the numbers.
+    /// Index of the slip's first component in the state vector; `HEAT` is that of the heat of friction.
     const SLIP: usize;
     const HEAT: usize;
 
-    /// The tolerance of the steps.
+    /// The tolerance of an integration step.
     fn tol(&self) -> f64;
     /// Whether the friction of a slip is dry.
     fn is_dry(&self) -> bool;
     /// The speed below which a slip counts as zero.
     fn over(&self) -> f64;
-    /// Whether the energy lost to the losses is among the outputs.
+    /// Whether the energy that the loss laws take is among the outputs.
     fn loses(ask: &Ask) -> bool {
         !ask.losses.is_none()
     }
 
-    /// A phase of this kind that begins at the current numbers, in the components of the outputs.
+    /// The record of a phase of this kind that begins at the current state, in the components of the outputs.
     fn seen(walk: &Walk<'_, Self, N>, kind: Kind) -> Phase<Self::State>;
-    /// Perturbs the state by this share.
+    /// Perturbs the current state by this share of its components.
     fn perturbs_by(walk: &mut Walk<'_, Self, N>, share: f64);
-    /// Perturbs the state of a rougher run by more than rounding.
+    /// Perturbs the current state, by more than rounding, in the run with the larger tolerance.
     fn perturbs(walk: &mut Walk<'_, Self, N>) {
         let share = walk.share_of_errors();
         Self::perturbs_by(walk, share);
     }
     /// Writes a point of a slip to the outputs.
     fn write(walk: &mut Walk<'_, Self, N>, y: &[f64; N]);
-    /// Writes the current point, which is not on a flow.
+    /// Writes the current state, which is not on an integrated phase, to the outputs.
     fn write_here(walk: &mut Walk<'_, Self, N>);
 
-    /// The halt of a slip that is over at once, because a margin fails.
+    /// The reason for which a slip ends at its beginning; None if it does not.
     fn ends_slip(walk: &mut Walk<'_, Self, N>) -> Option<Halt>;
-    /// The ending of a motion that is over at once, because an edge or the other rim lies on the table and does not
-    /// rise; `found` is the behaviour of the contact point, which is at rest.
+    /// The ending of a motion that is over at its start because an edge or the other rim lies on the table and does
+    /// not rise; else None. `found` is the behaviour of the contact point, which is at rest.
     fn lies(walk: &mut Walk<'_, Self, N>, found: Standstill) -> Option<Ending>;
     /// The first phase without a law of friction.
     fn begins_without_slip(walk: &mut Walk<'_, Self, N>) -> Next;
-    /// The behaviour of a contact point at rest, and of one that static friction has just ceased to hold.
+    /// The behaviour of a contact point at rest, or of one that static friction has just ceased to hold.
     fn rests(walk: &Walk<'_, Self, N>) -> Standstill;
     fn lets_go(walk: &Walk<'_, Self, N>) -> Standstill;
     /// The error for an initial state without a unique contact force.
     fn no_unique_force(walk: &Walk<'_, Self, N>) -> Error;
 
-    /// The normal force at the current numbers; negative where a table would have to pull.
+    /// The normal force at the current state; negative where a table would have to pull the body down.
     fn normal_here(_: &Walk<'_, Self, N>) -> f64 {
         0.0
     }
-    /// Tests the numbers between two phases; what cannot be true is an error of the motion.
+    /// Tests the state between two phases; a physically impossible value is included in the estimated error.
     fn audits(_: &mut Walk<'_, Self, N>) {}
-    /// Ends the motion before the next phase if its end is already known, or known at all where it would be given up.
-    /// Returns whether it has ended.
+    /// Ends the motion before the next phase if its end is certain or, with `given_up` (the computation would stop
+    /// here), if its end can be derived at all. Returns whether it has ended.
     fn is_over(_: &mut Walk<'_, Self, N>, _: &Next, _given_up: bool) -> bool {
         false
     }
@@ -68,7 +68,7 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn goes_on(_: &mut Walk<'_, Self, N>, ending: Ending) -> Next {
         Next::Ends(ending)
     }
-    /// Computes a phase that only this body has, or begins its flow.
+    /// Computes a phase that only this kind of body has, or begins its integration.
     fn goes(
         _: &mut Walk<'_, Self, N>,
         _: Kind,
@@ -76,18 +76,18 @@ pub(crate) trait Phases<const N: usize>: Sized {
     ) -> Result<Option<WalkStep<N>>, Error> {
         Ok(None)
     }
-    /// The kind of a phase that slips from rest.
+    /// The kind of phase in which a contact point slips from rest.
     fn slip_kind(_: &Walk<'_, Self, N>) -> Kind {
         Kind::Slipping
     }
-    /// Computes a slip that is known without steps; returns false for any other slip.
+    /// Computes a slip that has a closed form; returns false for any other slip.
     fn slips_known(_: &mut Walk<'_, Self, N>) -> bool {
         false
     }
-    /// Begins a slip, or continues one. Returns the numbers at which its flow starts.
+    /// Begins a slip, or continues one. Returns the state vector at which its integration starts.
     fn slips(walk: &mut Walk<'_, Self, N>) -> [f64; N];
     fn slips_on(walk: &mut Walk<'_, Self, N>) -> [f64; N];
-    /// The speed of the slip of the contact point, or of the rim of its patch by drilling.
+    /// The slip speed of the contact point or, if larger, that of the rim of its patch by drilling.
     fn rubbing(walk: &Walk<'_, Self, N>) -> f64 {
         walk.at[Self::SLIP].hypot(walk.at[Self::SLIP + 1])
     }
@@ -95,46 +95,48 @@ pub(crate) trait Phases<const N: usize>: Sized {
     fn begins_slowly(_: &Walk<'_, Self, N>) -> bool {
         true
     }
-    /// Whether the current flow is a slip that a power series may take up where it is slow.
+    /// Whether the current phase is a slip whose integration a power series may replace where it is slow.
     fn has_series(walk: &Walk<'_, Self, N>) -> bool;
     /// Makes a contact point at rest slip along `way`.
     fn lets_slip(walk: &mut Walk<'_, Self, N>, way: [f64; 2]);
-    /// The series of slow slips, with which a slip from rest begins.
+    /// The power series of slow slips, with which a slip from rest begins.
     fn slow(walk: &Walk<'_, Self, N>) -> Self::Slow;
-    /// Whether `known` are the series of slow slips under the current law, so that it need not be recorded again.
+    /// Whether the known series are those of slow slips under the current law, so that the law need not be recorded
+    /// again.
     fn is_slow(_: &Walk<'_, Self, N>, _: &Self::Slow) -> bool {
         false
     }
-    /// The time since the start of a series up to which no margin fails, at most the duration of the series.
+    /// The time since the start of a series up to which the conditions of the slip hold, at most the duration of the
+    /// series.
     fn clear_until(walk: &Walk<'_, Self, N>, series: &SlowSeries<N>) -> f64;
-    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
-    /// rate `growth`. Used where no series exists.
+    /// The state vector at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the rate
+    /// `growth`. Used where no series exists.
     fn nudged(walk: &mut Walk<'_, Self, N>, way: [f64; 2], growth: f64) -> [f64; N];
     /// Evaluates a slow slip along its series up to a time since the beginning of the series, to count reversals of the
     /// spin.
     fn passed(_: &Walk<'_, Self, N>, _: &SlowSeries<N>, _: f64) {}
-    /// Computes a rolling phase up to its event, or begins its flow.
+    /// Computes a rolling phase up to its event, or begins its integration.
     fn rolls(
         walk: &mut Walk<'_, Self, N>,
         at_limit: bool,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Option<WalkStep<N>>, Error>;
-    /// The length of a flow's first step.
+    /// The length of the first integration step from the state vector `y`.
     fn first(walk: &Walk<'_, Self, N>, y: &[f64; N]) -> f64;
-    /// Computes the flow of the current phase.
+    /// Integrates the current phase.
     fn flows(
         walk: &mut Walk<'_, Self, N>,
         y: [f64; N],
         steps: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<Pause<N>, Error>;
-    /// Ends a slip at the numbers `y`, and chooses the next phase.
+    /// Ends a slip at the state vector `y`, and chooses the next phase.
     fn slip_halts(walk: &mut Walk<'_, Self, N>, y: [f64; N], halt: Halt);
-    /// Whether the margin of this halt vanished exactly where the current phase began.
+    /// Whether the condition whose zero caused this halt was already zero where the current phase began.
     fn leaves_margin(_: &Walk<'_, Self, N>, _: Halt) -> bool {
         false
     }
-    /// The factor by which the error of a halt's margin exceeds that of the numbers; None for a halt
-    /// without a margin.
+    /// The factor by which the error of the function whose zero causes this halt exceeds that of the state; None for
+    /// a halt without such a function.
     fn grows(&self, halt: Halt, y: &[f64; N]) -> Option<f64>;
 }

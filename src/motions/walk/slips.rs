@@ -17,20 +17,20 @@ pub(crate) struct SlowSeries<const N: usize> {
     pub numbers: [Series; N],
     /// The time at which the series starts.
     pub from: f64,
-    /// The time since then up to which the series may be used.
+    /// The largest time since the start of the series at which the series may be used.
     pub until: f64,
-    /// Whether the slip ends at that time.
+    /// Whether the slip ends at the time `until`.
     pub ends: bool,
     /// Whether this series takes less work than the steps of an integrator would.
     pub pays: bool,
-    /// The time in which a deviation of the direction falls by a factor e, per speed.
+    /// The time in which a deviation of the direction of the slip falls by a factor e, divided by the speed.
     pub settling: f64,
     /// The angle alpha of the direction of the slip.
     pub angle: Series,
 }
 
 impl<const N: usize> SlowSeries<N> {
-    /// The numbers at a time since the start of the series.
+    /// The state vector at a time `t` since the start of the series.
     pub fn at(&self, t: f64) -> [f64; N] {
         core::array::from_fn(|i| self.numbers[i].value(t))
     }
@@ -42,21 +42,22 @@ impl<const N: usize> SlowSeries<N> {
     }
 }
 
-/// Number of steps between two looks at how fast the speed of a slow slip changes, and of any other slip.
+/// Number of steps between two tests of how fast the speed of a slip changes: of a slow slip, and of any other slip.
 const STEPS_TO_LOOK: [u64; 2] = [24, 240];
-/// A series takes up a slow slip whose speed changes by a smaller factor than exp(CREEPS) in a step: such steps are
-/// short only because the direction of the slip follows the motion so fast that longer ones would be unstable.
+/// A power series replaces the integration of a slow slip whose speed changes by a smaller factor than
+/// exp(CREEP_CHANGE) in a step: such steps are short only because the direction of the slip follows the motion so
+/// fast that longer steps would be unstable.
 const CREEP_CHANGE: f64 = 0.15;
-/// The change of the speed is that of the last steps, fewer than these: a lane looks after 96.
+/// The change of the slip's speed is measured over fewer than this many steps: the SIMD code tests it after 96.
 const RECENT_STEPS: f64 = 110.0;
-/// The direction of a slip has settled where its distance from the series, times the speed, is below this share of the
-/// tolerance.
+/// The direction of a slip has settled where its angle from that of the power series, times the speed, is below this
+/// share of the tolerance.
 const SETTLED_DIRECTION: f64 = 0.5;
-/// Cost of a series, in evaluations of the rates.
+/// Cost of the power series of a slip, in evaluations of the rates.
 const SERIES_COST: u64 = 100;
 
-/// The speed of a slip where it was looked at last, the number of evaluations until then, and the number of looks to be
-/// skipped, after an attempt that failed, and before the next one.
+/// The last test whether a power series may replace the integration of a slip: the speed, the number of evaluations
+/// until then, and how many tests to skip after a failed attempt and before the next one.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Looked {
     speed: f64,
@@ -64,26 +65,27 @@ pub(super) struct Looked {
     skips: [u32; 2],
 }
 
-/// For this share of the time in which the body turns by a radian, at most of a unit of time, a slip under a law of the
-/// user keeps its direction after static friction has ceased to hold. The error is the cube of this share.
+/// After static friction has ceased to hold, a slip under a user-defined law keeps its direction for this share of
+/// the time in which the body turns by a radian, or of a unit of time if that is shorter. The error is the cube of
+/// this share.
 const KEEPS_ITS_WAY: f64 = 1e-5;
 
-/// A series lasts at most about this many times as long as the one before it.
+/// A power series of a slip is used for at most about this many times as long as the series before it.
 const SERIES_DURATION_RATIO: f64 = 2.0;
 
-/// Phases shorter than this, in units of time, may be left out.
+/// Phases of a motion shorter than this, in sqrt(R/g), may be left out.
 const NEGLIGIBLE_PHASE: f64 = 1e-6;
 
-/// The series of slow slips under the laws of a phase.
+/// The power series of slow slips under the laws of a phase.
 pub(crate) trait SlowLaw<const N: usize> {
-    /// The series from the numbers `y`, in a direction near `angle`, with a `speed` that grows at the rate `growth`.
-    /// None for a slip that would not keep such a direction, or is too fast.
+    /// The power series from the state vector `y`, in a direction near `angle`, with a `speed` that grows at the rate
+    /// `growth`. None for a slip that would leave this direction, or is too fast.
     fn follow(&mut self, y: &[f64; N], angle: Series, growth: f64, speed: f64) -> Option<Box<SlowSeries<N>>>;
 }
 
 impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
-    /// Computes a slip from rest along alpha, whose speed grows at the rate `growth`. Returns the numbers at which an
-    /// integrator continues; None if the slip ends before that.
+    /// Computes a slip from rest in the direction `alpha`, whose speed grows at the rate `growth`. Returns the state
+    /// vector at which an integrator continues; None if the slip ends before that.
     pub(super) fn slips_off(&mut self, (alpha, growth): (f64, f64)) -> Option<[f64; N]> {
         let way = towards(alpha);
         P::lets_slip(self, way);
@@ -117,13 +119,14 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         known.unwrap_or_else(|| Box::new(P::slow(self)))
     }
 
-    /// Notes the speed of a slip that begins at the numbers `y`.
+    /// Records the speed of a slip that begins at the state vector `y`.
     pub(super) fn note_slip(&mut self, y: &[f64; N]) {
         let speed = y[P::SLIP].hypot(y[P::SLIP + 1]);
         self.looked = Looked { speed, evaluations: self.spent.evaluations, skips: [0; 2] };
     }
 
-    /// Number of steps of the current flow, from the numbers `y` on, up to the next look whether a series takes it up.
+    /// Number of integration steps from the state vector `y` on up to the next test whether a power series replaces
+    /// the integration.
     pub fn steps_to_look(&self, y: &[f64; N]) -> u64 {
         if !P::has_series(self) {
             return u64::MAX;
@@ -131,7 +134,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         STEPS_TO_LOOK[usize::from(y[P::SLIP].hypot(y[P::SLIP + 1]) > SLOW_SLIP)]
     }
 
-    /// A slow slip at the numbers `y`, whose steps would remain short up to its end, continues by its series.
+    /// Continues a slow slip at the state vector `y` by its power series if the integration steps would remain short
+    /// up to its end.
     pub(super) fn continue_by_series(&mut self, y: [f64; N], step: Option<f64>) -> Pause<N> {
         let (speed, spent) = (y[P::SLIP].hypot(y[P::SLIP + 1]), self.spent.evaluations);
         let Looked { speed: before, evaluations, skips: [skips, last] } = self.looked;
@@ -169,8 +173,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         }
     }
 
-    /// Follows a slow slip by its series. Returns the numbers at which an integrator continues; None if the slip ends
-    /// before that. `on` says whether further series may follow.
+    /// Follows a slow slip by its power series, and if `on` is true by further series. Returns the state vector at
+    /// which an integrator continues; None if the slip ends before that.
     fn follow_series(
         &mut self,
         mut slow: Box<P::Slow>,
@@ -213,8 +217,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         left
     }
 
-    /// Begins a motion that has no series, a slip from rest along `way` or a rolling from rest, with a straight line over
-    /// the time `MOMENT`, and writes the outputs in that time.
+    /// Begins a motion that has no power series, a slip from rest along `way` or rolling from rest, with a straight
+    /// line over the time `MOMENT`, and writes the outputs in that time.
     pub fn begins_at_once(&mut self, way: [f64; 2], growth: f64) -> [f64; N] {
         let y = P::nudged(self, way, growth);
         while self.until().is_some_and(|t| t <= y[TIME]) {
@@ -223,8 +227,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         y
     }
 
-    /// Begins a slip from rest under a law of the user: it keeps its direction for a share of the time `moment`, which is
-    /// longer if it begins continuously, with a speed that grows at no rate. `slips` has the numbers after a time.
+    /// Begins a slip from rest under a user-defined law: it keeps its direction for a share of the time `moment`, a
+    /// larger share if its speed begins with the rate of growth 0. `slips` returns the state vector after a time.
     pub fn keeps_its_way(&mut self, growth: f64, moment: f64, slips: impl Fn(f64) -> [f64; N]) -> [f64; N] {
         let (from, lasts) = (self.at[TIME], moment * if growth == 0.0 { KEEPS_ITS_WAY } else { MOMENT });
         while let Some(t) = self.until().filter(|t| *t <= from + lasts) {
@@ -233,7 +237,8 @@ impl<P: Phases<N>, const N: usize> Walk<'_, P, N> {
         slips(lasts)
     }
 
-    /// Removes a phase that has lasted only for a moment, such as one in which the drilling of a patch passes zero.
+    /// Removes a phase that has lasted only for a moment, such as one in which the drilling rate of a patch passes
+    /// zero.
     pub fn forgets_a_moment(&mut self, now: f64) {
         if now - self.began < NEGLIGIBLE_PHASE && self.made.path.phases.len() > 1 {
             self.made.path.phases.pop();

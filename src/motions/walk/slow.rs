@@ -5,34 +5,34 @@
 //! r' = lambda(alpha),   r alpha' = f(alpha)
 //! order n:   (n r1 - f_alpha) a_n = [f - r alpha']_n of known terms
 //! ```
-//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator
-//! would need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the
-//! other. With r0 > 0 the term r0 (n + 1) a_(n+1) is taken from the series of the previous sweep, in the
-//! first sweep from the series that ended here. The sweeps converge to the slow manifold of singular
-//! perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that began from
-//! rest. With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last
-//! terms show how far it may be used.
+//! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
+//! need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the other. With r0
+//! > 0 the coefficients are computed several times, in sweeps: the term r0 (n + 1) a_(n+1) is taken from the previous
+//! sweep, in the first sweep from the series before this one. The sweeps converge to the slow manifold of singular
+//! perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that began from rest.
+//! With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last terms show how
+//! far it may be used.
 //!
-//! Error: the tolerance `tol` of the series; the last two terms of each number are below `tol` where
-//! the series ends.
+//! Error: the tolerance `tol` of the series; the last two terms of each component are below `tol` where the series
+//! ends.
 
 use crate::laws::contact::standstill::towards;
 use crate::methods::search::crossing;
 use crate::numbers::tape::{Player, Tape, Taped};
 use crate::numbers::{Series, TERMS};
 
-/// Number of coefficients for each digit of the tolerance.
+/// Number of coefficients of the power series for each digit of the tolerance.
 const TERMS_PER_DIGIT: f64 = 1.2;
 /// A series is used only while the last two terms of alpha(t) are below this, in radians.
 const LAST_TERMS: f64 = 1e-7;
-/// A slip faster than this is computed by the integrator.
+/// A slip faster than this, in sqrt(g R), is computed by the integrator, not by a power series.
 pub(super) const SLOW_SLIP: f64 = 0.02;
-/// Longest time over which two sweeps for the series of a slow slip must agree, and largest number of sweeps; without
-/// agreement there is no series, and the integrator computes the slip.
+/// Longest time over which two sweeps (computations of the power series of a slow slip, each from the one before)
+/// must agree. If they do not after `SWEEPS` sweeps, the integrator computes the slip.
 const LONGEST_SWEEP: f64 = 0.05;
 const MOST_SWEEPS: i32 = 16;
 
-/// Number of coefficients that a tolerance needs.
+/// Number of coefficients of the power series that a tolerance needs.
 fn terms(tol: f64) -> usize {
     ((1.0 - tol.log10()) * TERMS_PER_DIGIT).ceil().clamp(5.0, TERMS as f64) as usize
 }
@@ -43,25 +43,26 @@ fn time_within_terms(x: &Series, terms: usize, allowed: f64) -> f64 {
     until(terms - 2).min(until(terms - 1))
 }
 
-/// A series that lasts longer than this many settling times takes less work than an integrator, each of whose
-/// steps spans about six of them. In a settling time a deviation of the direction falls by a factor e.
+/// A power series that lasts longer than this many settling times takes less work than an integrator, each of whose
+/// steps spans about six settling times. In a settling time a deviation of the slip's direction falls by a factor e.
 const WORTHWHILE_SETTLING_TIMES: f64 = 30.0;
 
-/// Whether a series up to the time `until` takes less work than an integrator.
+/// Whether the power series of a slip up to the time `until` takes less work than an integrator.
 pub(crate) fn pays(until: f64, settling: f64) -> bool {
     until > WORTHWHILE_SETTLING_TIMES * settling
 }
 
-/// Number of times at which the speed along a series is tested for a zero.
+/// Number of times at which the slip's speed along a series is tested for a zero.
 const SPEED_SAMPLES: usize = 64;
 
-/// Number of parts of a series between which margins are checked.
+/// Number of parts of a series at whose ends the conditions of the slip are checked.
 const MARGIN_CHECKS: usize = 8;
-/// Largest number of halvings of a series that is too long for its margins.
+/// Largest number of halvings of the duration of a series within which a condition of the slip fails.
 const HALVINGS: u32 = 60;
 
-/// The time up to which no margin fails, at most `until`. `margins` returns the margins at a time. The slip may vanish
-/// at both ends and then has no direction; the second argument of `margins` is a time close by at which it has one.
+/// The time up to which the conditions of a slip hold, at most `until`. `margins` returns functions at a time that
+/// are positive where the conditions hold. The slip may vanish at both ends and then has no direction; the second
+/// argument of `margins` is a time close by at which it has one.
 pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, f64) -> [f64; M]) -> f64 {
     for _ in 0..HALVINGS {
         let part = |k: usize| until * k as f64 / MARGIN_CHECKS as f64;
@@ -80,8 +81,8 @@ pub(crate) fn clear_until<const M: usize>(mut until: f64, margins: impl Fn(f64, 
     until
 }
 
-/// Whether no margin fails after the first of some places that lie close together. At the first place, the beginning, a
-/// margin may vanish.
+/// Whether the conditions of a slip hold at all of some times close together: no margin is negative. At the first
+/// time, the beginning, a margin may be zero.
 fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     let fails = |i: usize| {
         let falls = margins[1..].iter().any(|m| m[i] <= 0.0 || m[i].is_nan());
@@ -96,44 +97,47 @@ fn are_clear<const M: usize>(margins: &[[f64; M]]) -> bool {
     !(0..M).any(fails)
 }
 
-/// The rates of the K numbers of a body without its slip, of its slip, and (`more`) of numbers on which no rate
-/// depends.
+/// The time derivatives of the K components of the state without the slip, of the slip, and (`more`) of components on
+/// which no derivative depends.
 pub(crate) struct SlowRates<T, const K: usize> {
     pub numbers: [T; K],
     pub slip: [T; 2],
     pub more: Vec<T>,
 }
 
-/// The series of slow slips under one law of dry friction.
+/// The power series of slow slips under one law of dry friction.
 pub(crate) struct SlowSlips<const K: usize> {
     player: Player,
     tol: f64,
     terms: usize,
 }
 
-/// The series of a slow slip: the K numbers of the body, the slip, its speed, and the angle of its direction.
+/// The power series of a slow slip: the K components of the state, the slip, its speed, and the angle of its
+/// direction.
 pub(crate) struct SlowSlip<const K: usize> {
     pub known: [Series; K],
     pub slip: [Series; 2],
     pub angle: Series,
     speed: Series,
-    /// The settling time at the start, in which a deviation of the direction falls by a factor e, per speed.
+    /// The time in which a deviation of the slip's direction falls by a factor e at the start, divided by the speed.
     pub settling: f64,
     pub terms: usize,
     tol: f64,
 }
 
 impl<const K: usize> SlowSlips<K> {
-    /// Indices of the speed of the slip, and of the cosine and the sine of its direction, after
-    /// the K numbers.
+    /// Index of the speed of the slip, after the K components of the state; the cosine and the sine of its direction
+    /// follow.
     const SPEED: usize = K;
     const COSINE: usize = K + 1;
     const SINE: usize = K + 2;
-    /// Indices of f and lambda after the K rates.
+    /// Index, after the K rates, of f, the rate at which the slip turns times its speed; `lambda`, the growth of its
+    /// speed, follows.
     const TURNS: usize = K;
     const GROWS: usize = K + 1;
 
-    /// The series under a law, which is a function of the K numbers, the slip and its direction.
+    /// Records a law of friction for its power series: a function of the K components of the state, the slip and its
+    /// direction.
     pub fn of(
         tol: f64,
         law: impl for<'a> FnOnce(
@@ -154,9 +158,9 @@ impl<const K: usize> SlowSlips<K> {
         Self { player: tape.player(&given, &first, &more), tol, terms: terms(tol) }
     }
 
-    /// The series from the numbers `start` on, in a direction near `angle`, with the speed `begin` that grows
-    /// at the rate `growth`; for a speed above 0 lambda replaces `growth`. None where the slip would not keep
-    /// that direction, or is faster than `SLOW_SLIP`.
+    /// The power series from the state `start` on, in a direction near `angle`, with the speed `begin` that grows at
+    /// the rate `growth`; for a speed above 0 the law gives the growth. None where the slip would leave that
+    /// direction, or is faster than `SLOW_SLIP`.
     pub fn follow(
         &mut self,
         start: [f64; K],
@@ -249,14 +253,15 @@ impl<const K: usize> SlowSlips<K> {
         })
     }
 
-    /// Sets the coefficients `n` > 0 of the cosine and of the sine of an angle with this rate.
+    /// Sets the coefficient of order `n` > 0 of the power series of the cosine and of the sine of an angle whose time
+    /// derivative is `rate`.
     fn set_direction(player: &mut Player, rate: &[f64; TERMS], n: usize) {
         let [cosine, sine] = [Self::COSINE, Self::SINE].map(|i| turned(player.given(i), rate, n));
         player.set(Self::COSINE, n, -sine);
         player.set(Self::SINE, n, cosine);
     }
 
-    /// The series of the rate `i` of [`SlowRates::more`], for the slip that was computed last.
+    /// The power series of the rate `i` of [`SlowRates::more`], for the slip that was computed last.
     pub fn more(&self, i: usize) -> Series {
         self.player.later(i, self.terms - 1)
     }
@@ -269,7 +274,7 @@ impl<const K: usize> SlowSlip<K> {
         ends || pays(until, self.settling * self.speed.at[0])
     }
 
-    /// The time up to which the series of these numbers may be used, and whether the slip ends then.
+    /// The time up to which the power series `numbers` of the components may be used, and whether the slip ends then.
     pub fn until(&self, numbers: &[Series]) -> (f64, bool) {
         let (speed, mut until) = (&self.speed, f64::INFINITY);
         let mut within =
@@ -306,7 +311,7 @@ impl<const K: usize> SlowSlip<K> {
     }
 }
 
-/// The coefficient `n` > 0 of the integral of the series `x` times the series `rate`.
+/// The coefficient of order `n` > 0 of the integral of the power series `x` times the power series `rate`.
 pub(crate) fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
     (0..n).fold(0.0, |sum, j| sum + x[j] * rate[n - 1 - j]) / n as f64
 }
@@ -315,8 +320,8 @@ pub(crate) fn turned(x: &[f64; TERMS], rate: &[f64; TERMS], n: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// A slip whose speed has a minimum of `lowest` at the time 0.503, and whose series may be used up
-    /// to the time 1.
+    /// For a slip whose speed has a minimum of `lowest` at the time 0.503: the time up to which its series may be
+    /// used, and whether the slip ends then. Without the minimum it may be used up to the time 1.
     fn dipping(lowest: f64) -> (f64, bool) {
         let mut speed = Series::of(0.503f64.powi(2) + lowest);
         (speed.at[1], speed.at[2]) = (-2.0 * 0.503, 1.0);

@@ -1,4 +1,4 @@
-//! A motion through phases, and its error from a second run with a larger tolerance.
+//! Estimates the error of an integrated motion from a second run with a larger tolerance.
 //!
 //! The second run has a tolerance up to ten thousand times as large, and takes about a third of the time of the first.
 //! The estimated error is the difference of the two runs, scaled by the ratio of the tolerances, times
@@ -9,40 +9,41 @@ use crate::laws::state::{Slip, State};
 use crate::motions::{AboveTable, Ending, Kind, Limit, Motion, Moving, Path, Phase};
 use crate::numbers::larger_or_nan;
 
-/// A motion and its path, before the path becomes a part of the motion.
+/// A motion and its path (phases, slips, heat and impacts), before the path becomes a part of the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Followed<S: Moving = State> {
     pub motion: Motion<S>,
     pub path: Path<S>,
 }
 
-/// The second run has `ROUGHER` times the tolerance of the first, at most `ROUGH`, but at least `BARELY`
-/// times as much.
+/// The second run, which shows the error, has this many times the tolerance of the first, at most the tolerance
+/// `ROUGH`, but at least `BARELY` times that of the first.
 const ROUGHER: f64 = 1e4;
 const BARELY: f64 = 32.0;
 const ROUGH: f64 = 1e-7;
-/// Where only one of the two runs has an end, this end may be this far from the last time, and the estimated error is
-/// the difference. If the end is farther away the runs disagree, and the error is infinite.
+/// If only one of the two runs ends before the last time, at most by this time, the estimated error is the difference
+/// of the runs. If it ends earlier the runs disagree, and the error is infinite.
 const END_DISTANCE: f64 = 1e-6;
-/// Two phases of the two runs correspond to each other if the times of their beginnings differ by less than
-/// this share of the length of the shorter one.
+/// Two phases of the two runs correspond to each other if their beginnings differ by less than this share of the
+/// duration of the shorter phase.
 const SAME_PHASE_SHARE: f64 = 0.3;
-/// A second run with more than this share of the evaluations of the first has made almost the same steps, so
-/// that the difference of the runs hides the errors of these steps.
+/// A second run that needs more than this share of the evaluations of the first has made almost the same steps, so
+/// that the difference of the runs does not show the errors of these steps.
 const ALIKE_EVALUATIONS: f64 = 0.66;
 /// The estimated error is at least this share of the sum of all step errors, since two runs may agree by chance.
 const LEAST_SHARE: f64 = 0.25;
-/// The share of the step errors by which a rougher run that hops is perturbed.
+/// The share of the step errors by which the second run of a motion with impacts is perturbed.
 pub(crate) const CHANCE: f64 = 0.1;
-/// A phase of a motion with impacts that is shorter has no meaning of its own: it belongs to bounces, of which another
-/// run with the same motion before and after may have one more or one less.
+/// A phase of a motion with impacts that is shorter than this is not compared between runs: it belongs to bounces, of
+/// which another run with the same motion before and after may have one more or one less.
 pub(crate) const BRIEF_PHASE: f64 = 1e-4;
-/// A motion with impacts has an estimated error that is larger by this factor: a flight in air has few steps, whose
+/// The estimated error of a motion with impacts is multiplied by this factor: a flight in air has few steps, whose
 /// errors are less proportional to the tolerance, and impacts multiply them.
 const HOPPING_ERROR_FACTOR: f64 = 2.0;
-/// The estimated error, in units of the difference, of a motion whose two runs do not hop alike.
+/// The estimated error, in units of the difference of the two runs, if these do not have the same impacts.
 const UNLIKE_ERROR_FACTOR: f64 = 3.0;
-/// Runs that differ by this share of the largest speed have parted, and the error is their whole difference.
+/// If the two runs differ by more than this share of the largest speed, the estimated error is their whole
+/// difference.
 const PARTED_SHARE: f64 = 0.3;
 
 /// The tolerance of the second run, which shows the error of a path with the tolerance `tol`.
@@ -50,8 +51,8 @@ pub(crate) fn rougher(tol: f64) -> f64 {
     (ROUGHER * tol).min(ROUGH).max(BARELY * tol)
 }
 
-/// The motion of a `run` with the tolerance `fine`, with its error from a rougher run; that error is infinite if a run
-/// is interrupted.
+/// Computes a motion by `run` with the tolerance `fine`, and its error from a second run with a larger tolerance; the
+/// error is infinite if a run is interrupted.
 pub(crate) fn judged<S: Moving>(
     fine: f64,
     times: &[f64],
@@ -82,13 +83,13 @@ impl<S: Moving> From<Followed<S>> for Motion<S> {
     }
 }
 
-/// Phases of two runs that belong together.
+/// Pairs of phases of two runs of a motion that correspond to each other.
 type PhasePairs<'a, S> = Vec<[&'a Phase<S>; 2]>;
 
-/// The pairs of phases of two runs that correspond to each other, up to the time `end`, and the length of the
-/// longest phase that only one of the runs has. Pairs by number would all be wrong after a slip that only one
-/// run has. `whirrs`: the last turns of a whirr are left out, one run may have computed more turns than the
-/// other, its additional phases at the end do not count, and the last phase that a run has is followed by others.
+/// The pairs of phases of two runs that correspond to each other, up to the time `end`, and the duration of the
+/// longest phase that only one of the runs has. Phases are not paired by number, which would fail after a slip that
+/// only one run has. With `whirrs` the last turns of a whirr are not computed, and one run may have computed more
+/// turns than the other: its additional phases at the end do not count.
 fn pairs_of_phases<S>(
     runs: [&[Phase<S>]; 2],
     end: f64,
@@ -128,7 +129,7 @@ fn pairs_of_phases<S>(
     Ok((pairs, alone))
 }
 
-/// The phases of a motion with impacts, up to the time `end`, that are not brief.
+/// The phases of a motion with impacts, up to the time `end`, that last longer than `BRIEF_PHASE`.
 fn phases_that_last<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<S>>, Error> {
     let mut found = room(phases.len())?;
     let next = phases.iter().skip(1).map(|phase| phase.time).chain([end]);
@@ -137,14 +138,15 @@ fn phases_that_last<S: Copy>(phases: &[Phase<S>], end: f64) -> Result<Vec<Phase<
     Ok(found)
 }
 
-/// Whether a phase follows a brief one, so that the number of bounces decides when it begins.
+/// Whether a phase follows one shorter than `BRIEF_PHASE`, so that the number of bounces decides when it begins.
 fn follows_bounces<S>(phases: &[Phase<S>], phase: &Phase<S>) -> bool {
     let before = phases.partition_point(|other| other.time < phase.time).checked_sub(1);
     before.is_some_and(|i| phase.time - phases[i].time <= BRIEF_PHASE)
 }
 
 impl Followed {
-    /// State, slip and rim at the last time, or at the end of the motion.
+    /// The state, the slip and the index of the rim that touches the table, at the last time or at the end of the
+    /// motion.
     pub(crate) fn last(&self) -> Option<(State, Slip, u8)> {
         match self.motion.event {
             Some(event) => Some((event.state, self.path.last_slip, event.rim)),
@@ -171,14 +173,14 @@ impl<S: Moving> Followed<S> {
         self.motion.event.is_some_and(|event| event.ending == Ending::Bounded)
     }
 
-    /// Marks a motion whose error a rougher run does not show, because the computation was interrupted.
+    /// Marks a motion that no second run checks, because the computation was interrupted: its error is infinite.
     pub(crate) fn stays_unjudged(&mut self) {
         self.motion.limit = Some(Limit::Interrupted);
         self.motion.make_error_infinite();
     }
 
-    /// Estimates the errors of this motion from its difference from a rougher run, or returns an error if the memory does
-    /// not suffice to compare their phases.
+    /// Estimates the errors of this motion from its difference from the run `rough` with a larger tolerance. Returns
+    /// an error if the memory does not suffice to compare their phases.
     pub(crate) fn judge(&mut self, rough: &Self, tol: f64) -> Result<(), Error> {
         let claimed = (S::SAFETY * tol / rougher(tol)).min(1.0);
         let given_up = self.is_given_up();
@@ -319,7 +321,7 @@ impl<S: Moving> Followed<S> {
 mod tests {
     use super::*;
 
-    /// Phases that alternately roll and slip; the first one rolls.
+    /// Phases that begin at these times and alternately roll and slip; the first one rolls.
     fn phases(times: &[f64]) -> Vec<Phase> {
         let state = State { theta: 1.0, w1: 0.0, w2: 0.0, w3: 0.0 };
         let kind = |i: usize| if i.is_multiple_of(2) { Kind::Rolling } else { Kind::Slipping };

@@ -1,4 +1,4 @@
-//! Flight against the air: the couple of the air on a body in the air, by steps.
+//! Flight against the air: integrates the rotation of a body in the air under the couple of the air.
 //!
 //! ```text
 //! y = (change of the quaternion q of the body's axes, w along them, lost, time)
@@ -6,14 +6,14 @@
 //! z' = z x w         the vertical in the body's axes, for the power series at the start
 //! (x, y)'' = F       of a drive alone: the centre beside its parabola, four numbers more
 //! ```
-//! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation act
-//! in the air; the others need a contact or a gap under the face. In these axes the poles are ordinary points, and no
-//! number changes fast near them: an integral of sin theta, which has a sharp bend there, would deceive the estimated
-//! error of a step. The height of a rim and cos theta follow from the changes of q since the start, of which small ones
-//! have all their digits. The heights of the rims are the margins of the flow, which also finds one that is negative for a
-//! moment. Where a rim touches at the start, the couple of the air belongs to the leading terms of its height, so that the
-//! power series there includes it; up to the time until which the series shows the height, it is no margin. Error: the
-//! tolerance of the steps.
+//! The centre moves along its parabola: drag on the centre is not modelled. Only the laws that resist all rotation
+//! act in the air; the others need a contact or a gap under the face. In the body's axes the poles (a vertical axis)
+//! are ordinary points, and no component changes fast near them: the step errors would not show that of an integral
+//! of sin theta, which has a sharp bend at a pole. The height of a rim and cos theta follow from the changes of q
+//! since the start, of which small ones have all their digits. The integration ends at a zero of the height of a rim,
+//! also if the height is negative only for a moment. The height of a rim that touches at the start begins as a power
+//! series, which includes the couple of the air; up to the time until which this series is used, the height is not
+//! watched for a zero. Error: the tolerance of the steps.
 
 use super::lands::{AngleSeries, RIM_TERMS};
 use super::{Aloft, FirstLanding, Flies, Flight};
@@ -30,42 +30,44 @@ use crate::numbers::{Dual, Real, TERMS};
 use core::cell::RefCell;
 use core::f64::consts::{FRAC_PI_2, TAU};
 
-/// Count of the numbers, and of those of a body that a force drives, which moves its centre beside the parabola.
+/// Number of components of the state vector of a flight. `DRIVEN_NUMBERS` is that of a body whose centre a force
+/// drives off its parabola.
 const NUMBERS: usize = 9;
 pub(crate) const DRIVEN_NUMBERS: usize = NUMBERS + 4;
 const AIR_LOST: usize = 7;
 const AIR_TIME: usize = 8;
-/// The first of the velocities of the centre beside its parabola, after its place.
+/// Index of the velocity of the centre relative to its parabola in the state vector, after its relative place.
 const AIR_VELOCITY: usize = NUMBERS + 2;
-/// Length of the first step, in units of the time in which the body turns by one radian.
+/// Length of the first integration step, in units of the time in which the body turns by one radian.
 const FIRST_STEP: f64 = 0.05;
-/// Angle by which the fastest of rotation and nutation turns in the longest step.
+/// Angle, in radians, by which the faster of rotation and nutation turns in the longest step.
 const LONGEST_STEP: f64 = 3.0;
-/// The series at the start holds for this share of the time that it would without the air, or for less, until its last
-/// two terms are below `LAST_SHARE` of its largest one.
+/// The power series at the start of a flight is used for at most this share of the time that it would be without the
+/// air, and only while its last two terms are below `LAST_SHARE` of its largest term.
 const AIR_SHARE: f64 = 0.25;
 const LAST_SHARE: f64 = 1e-17;
-/// Angle of phi in a part of a step, and length of a part in units of the first step, below which a part is not divided.
+/// A part of a step in which phi turns by less than this angle, in radians, is not divided to count the turns of phi;
+/// nor is one shorter than `SHORT_PART` first steps.
 const FAR_TURN: f64 = 1.0;
 const SHORT_PART: f64 = 1e-9;
-/// Number of terms of a polynomial through the values of a couple of the user.
+/// Number of terms of the polynomial through the values of a user-defined couple.
 const FITTED: usize = 7;
-/// Count of the numbers of a body at a time, with its pose.
+/// Number of components of a body's state vector with its pose.
 const BODY_NUMBERS: usize = PHI + 4;
-/// Number of coordinates of the vertical and of w.
+/// Number of components of the vertical and of w together.
 const MOVING: usize = 6;
-/// Below this size of the cosine of theta its sine follows from it.
+/// The sine of theta is computed from the cosine if abs(cos(theta)) is below this.
 const LEVEL_COSINE: f64 = 0.5;
 
-/// A step of a flight against the air: the numbers at its start, and phi and psi there.
+/// The start of an integration step of a flight against the air: the state vector, and phi and psi.
 #[derive(Debug, Clone, Copy)]
 struct AirStep<const N: usize> {
     y: [f64; N],
     angles: [f64; 2],
 }
 
-/// The start of a flight at the time `now` of a motion, on a slope with the tangent `tilt`. Steps have this tolerance, and the
-/// first one is `longer` by this factor.
+/// The start of a flight at the time `now` of a motion, on a slope with the tangent `tilt`. Integration steps have
+/// the tolerance `tol`; the first one is longer than usual by the factor `longer`.
 #[derive(Clone, Copy)]
 pub(crate) struct Launch<'a> {
     pub body: &'a Body,
@@ -76,17 +78,17 @@ pub(crate) struct Launch<'a> {
     pub tilt: f64,
 }
 
-/// A flight against the air.
+/// A flight against the air, computed by integration.
 pub(crate) struct AirFlight<G = (), const N: usize = NUMBERS> {
     shape: Shape<f64>,
     from: Aloft,
-    /// The quaternion at the start.
+    /// The quaternion of the body's axes at the start of the flight.
     facing: [f64; 4],
-    /// The flight without the air, which has the parabola of the centre.
+    /// The flight of the same body without the air, which gives the parabola of the centre.
     free: Flight,
     losses: Couples<f64>,
     own: G,
-    /// Both rims, if laws of the user see a body from the lower one.
+    /// Both rims, if the arguments of user-defined laws are counted from the lower one.
     rims: Option<[Rim<f64>; 2]>,
     now: f64,
     steps: RefCell<Vec<AirStep<N>>>,
@@ -95,7 +97,7 @@ pub(crate) struct AirFlight<G = (), const N: usize = NUMBERS> {
     spent: Spent,
 }
 
-/// The flow of such a flight, of which these rims may land.
+/// The equations of a flight against the air; `rims` says for each rim whether it may land.
 #[derive(Clone, Copy)]
 struct AirFlow<'a, G, const N: usize> {
     of: &'a AirFlight<G, N>,
@@ -106,17 +108,17 @@ struct AirFlow<'a, G, const N: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum AirHalt {
     Time,
-    /// This rim lands.
+    /// The rim with this index lands.
     Lands(usize),
-    /// A law of the user has a wrong value.
+    /// A user-defined law has a wrong value.
     Fault,
     GivenUp,
 }
 
-/// The times up to which no rim can land.
+/// The times up to which each rim cannot land.
 type Clear = [f64; MOST_CIRCLES];
 
-/// The angular velocity along the axes of the body.
+/// The angular velocity in the state vector, along the axes of the body.
 fn body_rates<const N: usize>(y: &[f64; N]) -> [f64; 3] {
     [y[4], y[5], y[6]]
 }
@@ -137,7 +139,7 @@ fn axes([w, x, y, z]: [f64; 4]) -> [[f64; 3]; 3] {
 }
 
 impl<G: Own, const N: usize> AirFlight<G, N> {
-    /// A flight against the air of these losses and of `own` laws.
+    /// A flight against the air under these losses and the user-defined laws `own`.
     pub fn new(from: Launch<'_>, losses: Couples<f64>, own: G) -> Self {
         let Launch { body, from, now, tol, longer, tilt } = from;
         let (free, shape) = (Flight::new(body, from, tilt), &body.shape());
@@ -159,7 +161,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         Self { shape: *shape, from: *from, facing, free, losses, own, rims, now, steps, tol, first, spent }
     }
 
-    /// The couple of the air along the axes of the body, with these numbers.
+    /// The couple of the air at the state vector `y`, along the axes of the body.
     fn couple(&self, y: &[f64; N]) -> [f64; 3] {
         let w = body_rates(y);
         let m = self.losses.at(&Kinematics::of(&self.shape.rim, (1.0, 0.0), w[0], w)).free;
@@ -170,7 +172,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         core::array::from_fn(|i| m[i] + own[i])
     }
 
-    /// The state with these numbers, and the sine and cosine of psi in it.
+    /// The state at the state vector `y`, and the sine and cosine of psi.
     fn state(&self, y: &[f64; N]) -> (State, [f64; 2]) {
         // The vertical is s e1 + c e3.
         let [first, second, axis] = axes(self.quaternion(y));
@@ -181,7 +183,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         (State { theta: s.atan2(axis[2]), w1, w2, w3 }, [sin, cos])
     }
 
-    /// The couple of the user along the axes of the body. No normal force acts.
+    /// The user-defined couple at the state vector `y`, along the axes of the body, for a normal force of 0.
     fn own_couple(&self, y: &[f64; N]) -> [f64; 3] {
         let (state, [sin, cos]) = self.state(y);
         let (own, driven) = (self.own.couple_at(&state, 0.0), self.driven(y));
@@ -189,7 +191,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         [cos * m1 - sin * m2, sin * m1 + cos * m2, m3]
     }
 
-    /// Asks the drive at these numbers. Returns its couple along e1, e2, e3.
+    /// Calls the user-defined drive at the state vector `y`. Returns its couple along e1, e2, e3.
     fn driven(&self, y: &[f64; N]) -> [f64; 3] {
         if N == NUMBERS {
             return [0.0; 3];
@@ -206,14 +208,14 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         if lower.is_some() { [m1, -m2, -m3] } else { [m1, m2, m3] }
     }
 
-    /// The velocity of the centre along x and y.
+    /// The velocity of the centre of mass along x and y.
     fn velocity(&self, y: &[f64; N]) -> [f64; 2] {
         let ([forth, aside, _], (sin, cos)) = (self.free.velocity, self.from.pose[0].sin_cos());
         let falls = self.free.tilt * y[AIR_TIME];
         [forth * cos - aside * sin + falls + y[AIR_VELOCITY], forth * sin + aside * cos + y[AIR_VELOCITY + 1]]
     }
 
-    /// The body with these numbers, and with these phi and psi since the start.
+    /// The body in the air at the state vector `y`, where phi and psi have changed by these angles since the start.
     fn aloft(&self, y: &[f64; N], [phi, psi]: [f64; 2]) -> Aloft {
         let (sin, cos) = psi.sin_cos();
         let [along, aside, w3] = body_rates(y);
@@ -247,7 +249,7 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         Leaning { axis: [change[0] - s, change[1], c + change[2]], change }
     }
 
-    /// The height of the lowest point of a rim, and its rate.
+    /// The height of the lowest point of rim `k`, and its time derivative.
     fn rim(&self, y: &[f64; N], k: usize) -> [f64; 2] {
         let (Leaning { axis, change }, (s0, c0), t) = (self.leans(y), self.from.angle, y[AIR_TIME]);
         let (rim, began) = (self.free.rim_at(k, axis[2]), self.free.rim_at(k, c0));
@@ -266,18 +268,19 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         ]
     }
 
-    /// The flow of these rims.
+    /// The equations of the flight, with the rims that may land.
     fn flow(&self, rims: [bool; MOST_CIRCLES]) -> AirFlow<'_, G, N> {
         AirFlow { of: self, rims }
     }
 
-    /// The numbers after a part of a step.
+    /// The state vector after the part `h` of a step.
     fn part(&self, step: &AirStep<N>, h: f64) -> [f64; N] {
         let flow = self.flow([false; MOST_CIRCLES]);
         flow.part(&flow.place(step.y), h)
     }
 
-    /// phi and psi since the start, from the numbers, within half a turn of those before.
+    /// The changes of phi and psi since the start, from the state vector `y`, within half a turn of the values
+    /// before.
     fn angles(&self, y: &[f64; N], [phi, psi]: [f64; 2]) -> [f64; 2] {
         let [first, _, axis] = axes(self.quaternion(y));
         let turned = (-axis[1]).atan2(-axis[0]);
@@ -290,8 +293,8 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         [phi, spun + TAU * ((psi - spun) / TAU).round()]
     }
 
-    /// phi and psi at `y`, at the end of the part [from, to] of a step. Close to a pole phi turns by up to half a turn
-    /// in a moment, so that parts in which it turns far are divided.
+    /// The changes of phi and psi at the end `y` of the part [from, to] of a step. Close to a pole phi turns by up to
+    /// half a turn in a moment, so that parts in which phi turns by more than `FAR_TURN` are divided.
     fn turned(&self, step: &AirStep<N>, [from, to]: [f64; 2], before: [f64; 2], y: &[f64; N]) -> [f64; 2] {
         let angles = self.angles(y, before);
         let middle = 0.5 * (from + to);
@@ -304,7 +307,8 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
 }
 
 impl<G: Own, const N: usize> AirFlight<G, N> {
-    /// The coefficients of the couple of the user in powers of the time, up to `near`: a polynomial through its values.
+    /// The coefficients of a user-defined couple in powers of the time, up to the time `near`: those of a polynomial
+    /// through its values.
     fn fitted(&self, near: f64) -> [[f64; FITTED]; 3] {
         let mut all = [[0.0; FITTED]; 3];
         if !self.own.has_couple() {
@@ -332,8 +336,8 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         all
     }
 
-    /// The coefficients of sine and cosine of theta in powers of the time since the start, where those of the couple of
-    /// the user are known.
+    /// The coefficients of sine and cosine of theta in powers of the time since the start; `own` has those of the
+    /// user-defined couple.
     fn series(&self, own: &[[f64; FITTED]; 3]) -> [[f64; TERMS]; 2] {
         let tape = Tape::default();
         let number = |x: f64| tape.number(x);
@@ -375,8 +379,8 @@ impl<G: Own, const N: usize> AirFlight<G, N> {
         [player.result(MOVING).at, *player.given(2)]
     }
 
-    /// The earliest landing of a rim that touches at the start, up to the time until which a series shows it; and the
-    /// times up to which no other landing is possible.
+    /// The earliest landing, by power series, of a rim that touches at the start; and for each rim the time up to
+    /// which no other landing is possible.
     fn leaves(&self, leaves: [Leaves; MOST_CIRCLES]) -> Result<(FirstLanding, Clear), Exhausted> {
         let (mut first, mut clear) = (None, [0.0; MOST_CIRCLES]);
         if leaves == [None; MOST_CIRCLES] {
@@ -423,7 +427,7 @@ impl<G: Own, const A: usize> Flow<MOST_CIRCLES> for AirFlow<'_, G, A> {
     const TIME: usize = AIR_TIME;
     const OVER: AirHalt = AirHalt::Time;
     const PAUSE: AirHalt = AirHalt::GivenUp;
-    /// Each call of a law of the user may be slow.
+    /// Number of steps between two calls of `go_on`; 1 with user-defined laws, each call of which may be slow.
     const BREATH: u64 = if G::IS { 1 } else { 256 };
     const LOOKS_ON: bool = true;
     const CLOSELY: bool = true;

@@ -24,7 +24,8 @@ use crate::motions::walk::{Next, Phases};
 use crate::motions::{AboveTable, Ending, Kind};
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A pose as seen from the other rim; `over` if it is that of the other rim. Applied twice it returns the same pose.
+/// A pose whose phi, psi and place are counted from the other rim; `over` if the given pose is that of the other rim.
+/// Applied twice it returns the same pose.
 pub(crate) fn pose_from(at: &Aloft, rims: &[Rim<f64>; 2], over: bool, pose: [f64; 4]) -> [f64; 4] {
     let mut other = Aloft { pose, ..*at }.on_other_rim(rims).pose;
     if over {
@@ -38,17 +39,17 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.body.has_two_rims()
     }
 
-    /// How far the body is from the inclination at which both rims touch: the sine of the angle.
+    /// The sine of the angle between the body and the inclination at which both rims touch.
     pub(crate) fn tilt(&self, angle: (f64, f64)) -> f64 {
         tilt(self.of.body.border_angle(), angle)
     }
 
-    /// Whether the body is at the upper border of its circle.
+    /// Whether the body is at the largest inclination at which its circle of contact carries it.
     fn at_border(&self, angle: (f64, f64)) -> bool {
         self.of.body.theta_end() < PI && angle == self.of.body.border_angle()
     }
 
-    /// Whether both rims touch the table; both or one of them may carry the body.
+    /// Whether both rims touch the table, in a motion with restitution; both or one of them may carry the body.
     pub(crate) fn is_level(&self) -> bool {
         let State { theta, w2, .. } = self.of.state;
         self.ask.restitution.is_some()
@@ -57,7 +58,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
             && w2 == 0.0
     }
 
-    /// The current numbers, with those of a flight.
+    /// The body at the current state, with its height and vertical velocity.
     pub(crate) fn aloft(&self) -> Aloft {
         let [s, c, w1, w2, w3, u, v] = core::array::from_fn(|i| self.at[i]);
         let pose = if poses(N) { core::array::from_fn(|i| self.at[9 + i]) } else { [0.0; 4] };
@@ -65,14 +66,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Aloft { angle: (s, c), w: [w1, w2, w3], slip: [u, v], lift, height, pose, om: self.of.turning }
     }
 
-    /// The state with these numbers. Its inclination is computed once in an impact of a uniform ball, whose bounces cost
+    /// The state of the body `at`. In an impact of a uniform ball theta is not computed again, since its bounces cost
     /// little else.
     pub(crate) fn state_of(&self, at: &Aloft) -> State {
         let ([w1, w2, w3], here) = (at.w, self.at.angle());
         if self.of.uniform && at.angle == here { State { w1, w2, w3, ..self.of.state } } else { at.state() }
     }
 
-    /// Moves the walk to these numbers.
+    /// Sets the current state of the motion to this body.
     pub(crate) fn sets(&mut self, to: &Aloft) {
         let ((s, c), [mut w1, w2, mut w3], [u, mut v]) = (to.angle, to.w, to.slip);
         if self.of.planar {
@@ -92,12 +93,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.hops.takeoff.height, self.hops.takeoff.lift) = (to.height, to.lift);
     }
 
-    /// Changes to the view from the other rim, which lands at theta_end.
+    /// Counts the state from the other rim, which lands at theta_end, from this moment on.
     pub(crate) fn turns_over(&mut self) {
         self.turns(self.of.body.rims(), self.of.body.beyond());
     }
 
-    /// Looks from the end from which the nearer border of the circle that carries is its upper one.
+    /// Counts the state from that end of the body from which theta is near the upper limit of the inclinations at
+    /// which the circle of contact carries.
     pub(crate) fn looks_at_border(&mut self, theta: f64) {
         let [low, high] = self.of.body.carries();
         if border_at([low, high], theta) != high {
@@ -112,7 +114,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Changes to the view from the other end of the body, in which another circle carries it.
+    /// Counts the state from the other end of the body, where another circle carries it.
     fn turns(&mut self, rims: [Rim<f64>; 2], body: Body) {
         let from = self.aloft();
         let pose = pose_from(&from, &rims, self.made.path.view.over, from.pose);
@@ -125,7 +127,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sets(&Aloft { pose, angle, ..over });
     }
 
-    /// The flight of a body that starts in the air, or its landing if it starts on the table and comes down.
+    /// The first phase of a body that starts in the air: its flight, or its landing if it starts on the table and
+    /// moves down.
     pub(crate) fn starts_in_air(&mut self, [height, lift]: [f64; 2]) -> Next {
         if self.has_two_rims() && self.of.state.theta == self.of.body.theta_end() {
             (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
@@ -138,7 +141,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::Flying)
     }
 
-    /// N0, the normal force without friction, and the size of its terms.
+    /// The normal force without friction, N0, and the size of its terms.
     pub(crate) fn pressed(&self, from: &Aloft) -> [f64; 2] {
         if self.of.uniform {
             return [1.0; 2];
@@ -207,7 +210,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Computes a flight to its end, which sets the next phase.
+    /// Computes a flight to its end, and sets the next phase.
     #[inline(never)]
     pub(crate) fn flies(&mut self, go_on: &mut dyn FnMut() -> bool) {
         if !poses(N) && self.of.uniform {
@@ -293,8 +296,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.continues_with(next);
     }
 
-    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`. A
-    /// rim below the table is an error of the motion: the estimated error is at least its depth.
+    /// The body at a time of its flight. The energy lost to the air until then is added to the energy lost `before`.
+    /// If a rim is below the table, the estimated error of the motion becomes at least its depth.
     fn flown(&mut self, course: &dyn Flies, t: f64, before: f64) -> Aloft {
         let (mut at, lost) = course.at(t);
         if loses(N) {
@@ -311,8 +314,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         at
     }
 
-    /// Compares the energy, with all that has been taken from it, with that at the start. Their difference, over the
-    /// largest speed, is an error of the numbers.
+    /// Includes the error of the energy balance in the estimated error: the energy plus heat and all losses, minus
+    /// their sum at the start, over the largest speed.
     pub(crate) fn compares_energy(&mut self) {
         if self.ask.restitution.is_none() || self.perturbation > 0.0 || self.is_driven() {
             return;

@@ -1,4 +1,4 @@
-//! The first landing of a rim in a flight; no landing is missed.
+//! Finds the first landing of a rim in a flight, with bounds by which no landing is missed.
 //!
 //! ```text
 //! height of a rim   h = z - (l c + a s + rho)           k = 0 for the rim that was down last, then for the others
@@ -7,11 +7,13 @@
 //! one landing               if h(t1) > 0 >= h(t2) and h'(t1) + K (t2 - t1) < 0
 //! no landing after          z falls below the least height of a landing: 0 with several rims, else min(0, rho - |l|)
 //! ```
-//! Circles that smooth joints connect are one rim, of which the circle counts that is the lowest one of these at an
-//! inclination: there the heights of both circles agree, with their slopes. The bound is one-sided: s is the length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin
-//! b, while s'' has no upper bound. An interval that is neither free nor certain is halved. The height of a rim that
-//! touches at the start grows as t^k: k = 1 after a bounce, 2 where a contact at rest loses its normal force, 3 where
-//! the normal force of a slip vanishes. There a power series, divided by the known zeros, gives the height.
+//! Circles that smooth joints connect are one rim, whose height at an inclination is that of the lowest of these
+//! circles. At a joint the heights of both circles agree, and so do their slopes. The bound is one-sided: s is the
+//! length of the horizontal part x of e3, so that s s'' >= x.x'' and s'' >= -Lam^2 sin b, while s'' has no upper
+//! bound. A time interval for which neither "no landing" nor "one landing" is proved is halved. The height of a rim
+//! that touches at the start grows as t^k: k = 1 after a bounce, 2 where a contact at rest loses its normal force, 3
+//! where the normal force of a slip vanishes. For a rim that touches at the start a power series, divided by t^k,
+//! gives the height.
 //!
 //! Error: that of h divided by the normal velocity; a rim that only grazes the table lands where h is a rounding error.
 
@@ -21,9 +23,10 @@ use crate::methods::falling::{Falling, first_zero_of_powers};
 use crate::methods::flow::{Exhausted, Steps};
 use crate::motions::walk::hops::{HARDLY, Leaves, terms_until};
 
-/// Number of terms of the series at the start.
+/// Number of terms of the power series of a rim's height at the start of a flight.
 pub(super) const RIM_TERMS: usize = 30;
-/// An angle from a smooth joint that counts as none: there the heights of both circles agree to its square.
+/// An inclination this close to a smooth joint of two circles, in radians, counts as at the joint: the heights of
+/// both circles agree to the square of this angle.
 const JOINED: f64 = 1e-6;
 pub(crate) const TOUCH: f64 = 1e-15;
 
@@ -45,17 +48,17 @@ impl Flight {
         [first + t * (up - 0.5 * t) - rim.slope((sine, cosine)), up - t - rim.slope((sine_rate, cosine_rate))]
     }
 
-    /// The lowest circle of a rim at an inclination with this cosine.
+    /// The lowest circle of the rim `k` at an inclination with this cosine.
     pub(super) fn rim_at(&self, k: usize, cosine: f64) -> Rim<f64> {
         self.landings.rims[self.landings.lowest(k, cosine)]
     }
 
-    /// The height of another rim over this one at an inclination.
+    /// The height of the rim `k` over that from which the state is counted, at an inclination.
     pub(super) fn higher_by(&self, k: usize, angle: (f64, f64)) -> f64 {
         self.shape.rim.less(&self.rim_at(k, angle.1)).height(angle)
     }
 
-    /// The height of a rim at the start.
+    /// The height of the rim `k` at the start of the flight.
     pub(super) fn height_at_start(&self, k: usize) -> f64 {
         self.from.height + self.higher_by(k, self.from.angle)
     }
@@ -105,7 +108,7 @@ impl Flight {
         Ok(None)
     }
 
-    /// The time up to which the series of a rim that touches at the start is used.
+    /// The time up to which the power series of the height is used, for a rim that touches at the start.
     pub(super) fn near(&self, k: usize) -> f64 {
         let (s, sine) = (self.from.angle.0, self.b.sin());
         let near = if s > 0.0 && sine * self.rate > 0.0 && self.rim_at(k, self.from.angle.1).a > 0.0 {
@@ -119,8 +122,8 @@ impl Flight {
         near.min(joined / self.rate)
     }
 
-    /// The landing up to the time `near` of a rim that touches at the start; 0 if it does not leave the table. `swung`
-    /// gives the series of the inclination.
+    /// The landing up to the time `near` of a rim that touches at the start; time 0 if it does not leave the table,
+    /// None if it does not land. `swung` gives the power series of the inclination.
     pub(super) fn leaves(
         &self,
         k: usize,
@@ -140,7 +143,8 @@ impl Flight {
         self.lands_near(k, order, near, (RIM_TERMS, swung))
     }
 
-    /// The landing up to the time `near`, by a series of h/t^k.
+    /// The landing of the rim `k` up to the time `near`, from the power series of its height divided by t to the
+    /// power `order`.
     fn lands_near(
         &self,
         k: usize,
@@ -158,7 +162,7 @@ impl Flight {
         Ok(first_zero_of_powers(series, 1.0, f64::INFINITY)?.map(|x| x * near))
     }
 
-    /// The series of the inclination in units of the time `near`.
+    /// The power series of sine and cosine of theta, for a time in units of `near`.
     fn swung(&self, near: f64, terms: usize) -> AngleSeries {
         let ((s, c), [p, q]) = (self.from.angle, self.swing);
         let (mut cosines, mut sines) = ([0.0; RIM_TERMS], [0.0; RIM_TERMS]);
@@ -190,7 +194,7 @@ impl Flight {
         [sines, cosines]
     }
 
-    /// The series of the height of a rim that touches at the start, in units of the time `near`.
+    /// The power series of the height of a rim that touches at the start, for a time in units of `near`.
     fn heights(&self, k: usize, near: f64, [sines, cosines]: &AngleSeries) -> [f64; RIM_TERMS] {
         let rim = &self.rim_at(k, self.from.angle.1);
         let mut all = core::array::from_fn(|k| -rim.slope((sines[k], cosines[k])));

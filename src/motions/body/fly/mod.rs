@@ -7,9 +7,10 @@
 //! W = hypot(w1, w2) stays;   phi = phi0 - [X - Y],   psi = psi0 + sig t - [X + Y]       Napier's analogies
 //! tan X = cos((a-b)/2)/cos((a+b)/2) tan D,   tan Y = sin((a-b)/2)/sin((a+b)/2) tan D,   D = (pi - C)/2
 //! ```
-//! theta may pass pi/2 or come near a pole, where nothing special happens. Near the poles sums are written so that no
-//! digits are lost. At a start on a pole phi is that with which the axis leaves it, and X and Y are their limits. The symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of
-//! spherical trigonometry. [`lands`] computes the landing.
+//! Theta may pass pi/2 or come near a pole (theta = 0 or pi). Near the poles sums are written so that no digits are
+//! lost. At a start on a pole phi is that with which the axis leaves the pole, and X and Y are their limits. The
+//! symmetric top without a couple is Poinsot's and Euler's; Napier's analogies are those of spherical trigonometry.
+//! [`lands`] computes the landing.
 //!
 //! Error: a few roundings times 1 + Lam t, and of w1, w2, phi and psi over sin(theta).
 
@@ -26,18 +27,18 @@ use crate::motions::walk::hops::Leaves;
 use crate::motions::walk::numbers::carried_at;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// A body in the air, or in an impact, as seen from one of its rims.
+/// A body in the air, or in an impact, with its state counted from one of its rims.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Aloft {
     /// Sine and cosine of theta.
     pub angle: (f64, f64),
     pub w: [f64; 3],
-    /// The velocity of the lowest point of the rim over the table: along e_h, along e2, and upwards.
+    /// The velocity of the lowest point of the rim over the table, along e_h and e2; `lift` is its upward velocity.
     pub slip: [f64; 2],
     pub lift: f64,
-    /// The height of that point.
+    /// The height of the lowest point of the rim above the table.
     pub height: f64,
-    /// phi, psi, and the place on the table below that point.
+    /// phi, psi, and the point (x, y) of the table below the lowest point of the rim.
     pub pose: [f64; 4],
     /// The rate at which the table turns.
     pub om: f64,
@@ -59,13 +60,13 @@ impl Aloft {
         carried_at(self.om, phi.sin_cos(), [x, y])
     }
 
-    /// The same body, told with the phi with which its axis leaves a pole: theta grows from 0, or falls from pi. The
-    /// lowest point then is the opposite one of its face.
+    /// The same body on a pole (theta = 0 or pi) with the phi with which its axis leaves the pole; the lowest point
+    /// may then be the opposite point of its face.
     fn leaving_pole(&self, shape: &Shape<f64>) -> Self {
         if self.angle.0 != 0.0 || self.angle.1 * self.w[1] <= 0.0 { *self } else { self.opposite(shape) }
     }
 
-    /// The same body on a pole, with a state that refers to the opposite point of its face.
+    /// The same body on a pole (theta = 0 or pi), with a state that refers to the opposite point of its face.
     pub fn opposite(&self, shape: &Shape<f64>) -> Self {
         let ((_, c), [w1, w2, w3], [u, v], [phi, psi, x, y]) = (self.angle, self.w, self.slip, self.pose);
         let [radius, lever] = [shape.rim.radius(self.angle), shape.rim.lever(self.angle)].map(|x| 2.0 * x);
@@ -79,7 +80,7 @@ impl Aloft {
         }
     }
 
-    /// The same motion with a state that refers to the other one of two rims, the last one of the body.
+    /// The same body with a state that refers to the rim `there` instead of `here`.
     pub fn on_other_rim(&self, [here, there]: &[Rim<f64>; 2]) -> Self {
         let (angle @ (s, c), [w1, w2, w3], [phi, psi, x, y]) = (self.angle, self.w, self.pose);
         let less = here.less(there);
@@ -97,14 +98,14 @@ impl Aloft {
     }
 }
 
-/// The time of the first landing, and which of the [`Landings`] it is.
+/// The time of the first landing, and the index of the circle in [`Landings`]; None without a landing.
 pub(crate) type FirstLanding = Option<(f64, usize)>;
 
 /// A flight, with or without losses in the air.
 pub(crate) trait Flies {
-    /// The first time after the start at which a rim lands, and which one; None if no rim lands up to the time `until`.
-    /// `leaves` is the beginning of the rims' flights.
-    /// `limits` are those of the steps, if it takes any.
+    /// The first time after the start at which a rim lands, and the index of the rim; None if no rim lands up to the
+    /// time `until`. `leaves` says how each rim begins its flight; `limits` limits the steps of a flight that is
+    /// integrated.
     fn lands(
         &mut self,
         leaves: [Leaves; MOST_CIRCLES],
@@ -112,53 +113,56 @@ pub(crate) trait Flies {
         limits: Steps,
         go_on: &mut dyn FnMut() -> bool,
     ) -> Result<FirstLanding, Exhausted>;
-    /// The body at a time since the start, as seen from the same rim, and the energy lost to the air.
+    /// The body at a time since the start, counted from the same rim, and the energy lost to the air.
     fn at(&self, t: f64) -> (Aloft, f64);
-    /// The flight without losses.
+    /// The flight of the same body without losses.
     fn free(&self) -> &Flight;
-    /// The evaluations and the estimated errors of the steps; None without steps.
+    /// The number of evaluations and the estimated errors of the steps; None for a closed form.
     fn spent(&self) -> Option<Spent> {
         None
     }
 }
 
-/// For |cos theta| above this its small complement is computed.
+/// If abs(cos(theta)) is above this, its small distance from 1 is computed, which keeps more digits.
 const FAR: f64 = 0.9;
 
-/// A flight from its start.
+/// The free flight of a body, in closed form, from its start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Flight {
     shape: Shape<f64>,
-    /// All circles that may land, and the largest distance of their points from the centre.
+    /// All circles that may land; `reach` is the largest distance of their points from the centre of mass.
     landings: Landings,
     reach: f64,
-    /// The start as given, and as seen from the side to which the axis leaves a pole.
+    /// The start as given; `from` is the same start, but on a pole with the phi with which the axis leaves the pole.
     given: Aloft,
     from: Aloft,
-    /// Velocity of the centre along e_h and e2 of the start, and upwards; its height at the start.
+    /// Velocity of the centre of mass along the e_h and e2 of the start, and upwards; `height` is its height at the
+    /// start.
     velocity: [f64; 3],
     height: f64,
-    /// Lam, sig and W.
+    /// Lam = |L|/I1; `spin` is sig = w3 (1 - I3/I1), and `transverse` W = hypot(w1, w2).
     rate: f64,
     spin: f64,
-    /// -1 if the angles are those of the mirror image, else 1.
+    /// -1 if the angles are those of the mirror image of the motion, else 1.
     image: f64,
     transverse: f64,
-    /// The angles a, b and C0, and sin a sin b.
+    /// The angle a between L and the vertical; `b` is that between L and the axis, `begin` is C0, and `wide` is sin a
+    /// sin b.
     a: f64,
     b: f64,
     begin: f64,
     wide: f64,
-    /// sin a sin b times cosine and sine of C0.
+    /// sin(a) sin(b) cos(C0) and sin(a) sin(b) sin(C0), from which cos(theta) follows in time.
     swing: [f64; 2],
-    /// sin((a - b)/2) and cos((a + b)/2); one of them is exactly 0 at a start on a pole.
+    /// sin((a - b)/2) and cos((a + b)/2) of the angles a and b of L with the vertical and with the axis; one of them
+    /// is exactly 0 at a start on a pole.
     apart: [f64; 2],
-    /// The ratios of tan X and of tan Y to tan D; X and Y at the start.
+    /// The ratios of tan X and of tan Y to tan D in Napier's analogies; `napier` is X and Y at the start.
     ratios: [f64; 2],
     napier: [f64; 2],
-    /// Whether the body only tumbles in a vertical plane, so that rounding must not make it turn.
+    /// Whether the body only tumbles in a vertical plane, so that rounding must not make its axis leave the plane.
     planar: bool,
-    /// The tangent of the slope, with which the centre falls along x.
+    /// The tangent of the slope: the acceleration of the centre along x.
     tilt: f64,
 }
 
@@ -223,7 +227,7 @@ impl Flight {
         flight
     }
 
-    /// X and Y at a time; they are continuous for any number of turns.
+    /// The angles X and Y of Napier's analogies at a time, continuous over any number of turns.
     fn analogies(&self, t: f64) -> [f64; 2] {
         let (sin, cos) = (0.5 * (PI - self.begin - self.rate * t)).sin_cos();
         let turns = 0.5 * (PI - self.begin - self.rate * t);
@@ -234,7 +238,7 @@ impl Flight {
         })
     }
 
-    /// The change of cos theta since the start, and its rate.
+    /// The change of cos(theta) since the start, and its time derivative.
     fn cosine(&self, t: f64) -> [f64; 2] {
         let (sin, cos) = (0.5 * self.rate * t).sin_cos();
         let ([p, q], twice) = (self.swing, 2.0 * sin);
@@ -277,7 +281,7 @@ impl Flight {
         [if self.planar { 0.0 } else { self.image * along * per } + 0.0, 0.0 - self.a.sin() * sin * per]
     }
 
-    /// The body at a time since the start, as seen from the same rim.
+    /// The body at a time since the start, counted from the same rim.
     fn flown(&self, t: f64) -> Aloft {
         if t == 0.0 {
             return self.given;
@@ -295,13 +299,14 @@ impl Flight {
         self.placed(t, angle, [w1, w2, self.from.w[2]], turned)
     }
 
-    /// The body at a time since the start, from known orientation and rotation; `turned` are the angles by which phi
-    /// and psi have grown.
+    /// The body at a time since the start, from its inclination and angular velocity; `turned` has the angles by
+    /// which phi and psi have grown.
     fn placed(&self, t: f64, angle: (f64, f64), w: [f64; 3], turned: [f64; 2]) -> Aloft {
         self.placed_beside(t, angle, w, turned, [0.0; 4])
     }
 
-    /// The same body where a force has moved its centre by x and y, and made it faster along both, beside its parabola.
+    /// The body at a time since the start, where a force has moved its centre off the parabola: by x and y, and in
+    /// velocity along x and y.
     fn placed_beside(
         &self,
         t: f64,
@@ -345,23 +350,23 @@ impl Flight {
         flown
     }
 
-    /// The error of the height of a rim at a time, due to rounding.
+    /// The rounding error of the height of a rim at a time.
     pub fn doubt_of_height(&self, t: f64) -> f64 {
         let reach = self.reach;
         4.0 * f64::EPSILON * (self.from.height + t * (1.0 + self.velocity[2].abs() + self.rate * reach))
     }
 
-    /// The angle by which the body has turned at a time.
+    /// The angle by which the body has turned since the start of the flight.
     pub fn turns(&self, t: f64) -> f64 {
         self.rate * t
     }
 
-    /// The error of the numbers at a time, in roundings, away from the poles.
+    /// The error of the state at a time, in units of rounding, away from the poles.
     pub fn roundings(&self, t: f64) -> f64 {
         4.0 * (1.0 + self.turns(t))
     }
 
-    /// The error of the numbers at a time, due to rounding.
+    /// The rounding error of the state at a time.
     pub fn doubt(&self, t: f64, at: &Aloft) -> f64 {
         let fastest = at.w.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
         // Where the axis is vertical, or stays in a plane, nothing is turned by an error of phi.

@@ -1,4 +1,5 @@
-//! The flow of a body that lies on both rims: its rates, its margins, and the ends of its slips.
+//! The equations of a body that lies on both rims: its rates, the conditions that end a phase, and the ends of its
+//! slips.
 //!
 //! ```text
 //! y = (1, 0, w1, 0, w3, u_h, u_2, t, heat; phi, psi, x, y; lost)
@@ -28,16 +29,16 @@ use crate::numbers::{Dual, Real};
 /// The motion of the rims of a lying body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stance {
-    /// Both slip.
+    /// Both rims slip.
     Slips,
-    /// One rim sticks: the one from which the state is seen, or the other one.
+    /// One rim sticks: that from which the state is counted, or the `other` one.
     Pivots { other: bool },
-    /// Both stick.
+    /// Both rims stick.
     Rolls,
 }
 
 impl Stance {
-    /// The kind of its phase, where both circles have the same radius if the border is `even`.
+    /// The kind of phase with this motion of the rims; `even` if both circles have the same radius.
     fn kind(self, even: bool) -> Kind {
         match self {
             Self::Slips => Kind::Lying,
@@ -51,26 +52,27 @@ impl Stance {
 const LYING_ENDS: [Halt; MARGINS] =
     [Halt::Rises, Halt::Changes, Halt::Slips, Halt::Turned, Halt::Drilling, Halt::Contour];
 
-/// The longest step in units of the time in which the slips of both rims turn to their common direction. The estimated
-/// error of an explicit step vanishes for a decay by 5.65 such times in a step, where the true error does not.
+/// The longest step in units of the time in which the slips of both rims turn to their common direction. The
+/// estimated error of an explicit step over 5.65 such times is 0, but the true error is not.
 const TURNS_WITHIN: f64 = 5.0;
 
-/// A phase on both rims.
+/// A phase of a body that lies on both rims.
 #[derive(Clone, Copy)]
 pub(crate) struct LyingPhase<G = ()> {
     pub flow: LyingFlow<G>,
 }
 
-/// A body on both rims, and the motions that dry losses hold.
+/// The equations of a body that lies on both rims, and which rotations dry friction holds at rest.
 #[derive(Clone, Copy)]
 pub(crate) struct LyingFlow<G = ()> {
     pub law: Lying<f64>,
     own: G,
     sloped: Lying<Dual<f64>>,
     pub stance: Stance,
-    /// The sign of w1 in a pivot.
+    /// The sign of w1 while the body pivots about one rim.
     pub turn: f64,
-    /// The largest couples with which dry losses hold w_z and w_h under the whole weight at this rim, and at the other one.
+    /// The largest couples with which dry losses hold w_z and w_h at rest, with the whole weight on this rim, and on
+    /// the other rim.
     limits: [[f64; 2]; 2],
     /// The coefficient of static friction.
     pub fixed: f64,
@@ -82,7 +84,7 @@ pub(crate) struct LyingFlow<G = ()> {
     tilt: f64,
 }
 
-/// w1, w3, u_h and u_2 among the numbers.
+/// Returns w1, w3, u_h and u_2 of a state vector.
 pub(super) fn flat<T: Copy>(y: &[T]) -> Flat<T> {
     [y[W1], y[W3], y[UH], y[U2]]
 }
@@ -109,14 +111,15 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// This flow on a slope with the tangent `tilt`, at the numbers `y`.
+    /// These equations on a slope with the tangent `tilt`, at the state vector `y`.
     pub fn on_slope<const N: usize>(mut self, tilt: f64, y: &[f64; N]) -> Self {
         self.tilt = tilt;
         self.stands_at(y);
         self
     }
 
-    /// Sets the pull of the slope to that at these numbers, for what does not know phi.
+    /// Sets the component of gravity along a slope to that at the state vector `y`, for computations that do not have
+    /// phi.
     pub fn stands_at<const N: usize>(&mut self, y: &[f64; N]) {
         if self.tilt != 0.0 {
             self.law.pull = Some(pull(self.tilt, y));
@@ -128,7 +131,7 @@ impl<G: Own> LyingFlow<G> {
         self.law.losses.as_ref().and_then(|losses| losses.ways).unwrap_or_default()
     }
 
-    /// Sets these signs.
+    /// Sets the signs of w1 and w3 that dry losses resist, and which of them they hold.
     #[inline(never)]
     pub fn turn_to(&mut self, ways: Ways) {
         if let Some(losses) = &mut self.law.losses {
@@ -137,12 +140,12 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// Whether dry losses resist w_z and w_h.
+    /// Whether dry losses resist w_z, and whether they resist w_h.
     fn resists(&self) -> [bool; 2] {
         [0, 1].map(|i| self.limits[0][i].max(self.limits[1][i]) > 0.0)
     }
 
-    /// The largest couples with which dry losses hold w_z and w_h under these forces.
+    /// The largest couples with which dry losses hold w_z and w_h at rest under these contact forces.
     fn limits_under<T: Real>(&self, force: &[[T; 3]; 2]) -> [T; 2] {
         let ([[n, ..], [m, ..]], [here, there]) = (force, self.limits);
         let one = n.splat(1.0);
@@ -155,7 +158,8 @@ impl<G: Own> LyingFlow<G> {
         })
     }
 
-    /// Sets the signs of these w1 and w3, and holds those that are at rest and that dry losses resist.
+    /// Sets the signs of the rotations at the state vector `y`, and holds those that are at rest and that dry losses
+    /// resist.
     pub fn holds_all<const N: usize>(&mut self, y: &[f64; N]) {
         let [resists, resists_rolling] = self.resists();
         let [drilling, rolling] = self.law.turning(y[W1], y[W3]);
@@ -169,7 +173,7 @@ impl<G: Own> LyingFlow<G> {
         self.turn_to(ways);
     }
 
-    /// Lets those of the held motions begin that dry losses cannot hold where a rim slips off along `way`. Returns whether
+    /// Lets those rotations begin that dry losses cannot hold at rest if a rim slips off along `way`. Returns whether
     /// there are any.
     pub fn lets_begin<const N: usize>(&mut self, y: &[f64; N], way: [f64; 2]) -> bool {
         let (held, mut ways) = (self.ways().holds, self.ways());
@@ -180,7 +184,8 @@ impl<G: Own> LyingFlow<G> {
         ways.holds != held
     }
 
-    /// Lets a body at rest roll whose losses cannot hold it in this motion. Returns whether they held it before and cannot.
+    /// Lets a body at rest roll if its dry losses cannot hold it. Returns whether they held it before, but cannot
+    /// under these forces.
     pub fn lets_roll(&mut self, lain: &Lain<f64>) -> bool {
         let ways = self.ways();
         if !ways.holds.has(Resting::Contour) {
@@ -191,25 +196,25 @@ impl<G: Own> LyingFlow<G> {
         self.ways().holds != ways.holds
     }
 
-    /// This flow with another motion of the rims.
+    /// These equations with another motion of the rims.
     pub fn in_stance<const N: usize>(mut self, stance: Stance, y: &[f64; N]) -> Self {
         (self.stance, self.turn) = (stance, self.law.turning(y[W1], y[W3])[0].signum());
         self.sets_ways(y);
         self
     }
 
-    /// Sets the signs of these w1 and w3, and which of them dry losses hold.
+    /// Sets the signs of the rotations at the state vector `y`, and which of them dry losses hold at rest.
     pub fn sets_ways<const N: usize>(&mut self, y: &[f64; N]) {
         self.holds_all(y);
         self.lets_begin(y, [0.0; 2]);
     }
 
-    /// Lets a motion go that a dry loss has held.
+    /// Lets a rotation begin that a dry loss has held at rest.
     pub fn lets_go_of<const N: usize>(&mut self, part: Resting, y: &[f64; N]) {
         self.turn_to(self.ways().beginning(part, self.needs(part, y, [0.0; 2])[0]));
     }
 
-    /// The couple that holds w1 or w3, and its limit.
+    /// The couple that holds drilling or rolling at rest, and its limit.
     fn needs<const N: usize>(&self, part: Resting, y: &[f64; N], way: [f64; 2]) -> [f64; 2] {
         let Lain { couple: [m1, m3], force, .. } = self.lain_along(y, way);
         let [drilling, rolling] = self.limits_under(&force);
@@ -224,18 +229,18 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// The law of these velocities, with the pull where this flow stands.
+    /// The law at these velocities, with the component of gravity along the slope that `stands_at` has set.
     pub fn law_at(&self, y: Flat<f64>) -> Lying<f64> {
         self.own.lying(&self.law, y)
     }
 
-    /// The law at these numbers.
+    /// The law at the state vector `y`.
     pub fn law_here<const N: usize>(&self, y: &[f64; N]) -> Lying<f64> {
         let law = self.law_at(flat(y));
         if self.tilt == 0.0 { law } else { Lying { pull: Some(pull(self.tilt, y)), ..law } }
     }
 
-    /// Forces and accelerations at these numbers.
+    /// Contact forces and accelerations at the state vector `y`.
     pub fn lain<const N: usize>(&self, y: &[f64; N]) -> Lain<f64> {
         if G::IS || self.tilt != 0.0 {
             self.lain_of(&self.law_here(y), flat(y))
@@ -244,8 +249,8 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// Forces and accelerations at these numbers; a rim at rest from which the state is seen, but which slips, slips off
-    /// along `way`.
+    /// Contact forces and accelerations at the state vector `y`; if the rim from which the state is counted slips
+    /// from rest, it slips along `way`.
     pub fn lain_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> Lain<f64> {
         if self.stance != Stance::Slips || !self.law.dry || y.slip() != [0.0; 2] {
             return self.lain(y);
@@ -255,17 +260,19 @@ impl<G: Own> LyingFlow<G> {
         law.slipping_along(y, [way.map(|x| low * x), law.drag(up, law.other_slip(y))])
     }
 
-    /// The largest force along e_h that friction holds at each rim, beside these forces across.
+    /// The largest force along e_h that static friction can hold at each rim, given the normal forces and those
+    /// across.
     pub fn holds_along(&self, force: &[[f64; 3]; 2]) -> [f64; 2] {
         force.map(|[n, across, _]| ((self.fixed * n).powi(2) - across * across).max(0.0).sqrt())
     }
 
-    /// The largest force along e_h that friction holds at both rims together, beside these forces across.
+    /// The largest force along e_h that static friction can hold at both rims together, given the normal forces and
+    /// those across.
     pub fn holds_together(&self, force: &[[f64; 3]; 2]) -> f64 {
         self.holds_along(force).iter().sum::<f64>() * (1.0 + GRACE)
     }
 
-    /// Whether friction holds both rims of a body on a slope, which rolls.
+    /// Whether static friction holds both rims of a body that rolls straight on a slope.
     pub fn holds_both<const N: usize>(&self, y: &[f64; N]) -> bool {
         let (law, force) = (self.law_here(y), self.lain(y).force);
         let grips = |[n, across, _]: [f64; 3]| n >= 0.0 && across.abs() <= self.fixed * n * (1.0 + GRACE);
@@ -313,7 +320,8 @@ impl<G: Own> LyingFlow<G> {
         }
     }
 
-    /// The margin of the friction that holds both rims on a slope: of each across, and of both along e_h.
+    /// How far friction is from its limit where it holds both rims on a slope: the least for each rim across and for
+    /// both along e_h.
     fn grips_both<T: Real>(&self, law: &Lying<T>, y: Flat<T>, at: &Lain<T>) -> T {
         let along = law.pulls_to_apex(y);
         let (fixed, zero) = (along.splat(self.fixed), along.splat(0.0));
@@ -329,7 +337,7 @@ impl<G: Own> LyingFlow<G> {
         self.margins_of(&self.law_here(y), flat(y))
     }
 
-    /// The largest speed, at least 1.
+    /// The largest speed in the state vector, at least 1.
     fn swiftest<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let [here, there] = self.speeds(y);
         here.max(there).max(y[W1].abs()).max(y[W3].abs()).max(1.0)
@@ -352,8 +360,8 @@ impl<G: Own> LyingFlow<G> {
         0.5 * strength * (sum + (sum * sum - 4.0 * product).max(0.0).sqrt())
     }
 
-    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, of the rim from which the state is
-    /// seen.
+    /// The state vector at the time `MOMENT` after the rim from which the state is counted begins to slip along
+    /// `way`.
     pub fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         let mut y = *start;
         (y[UH], y[U2]) = (MOMENT * growth * way[0], MOMENT * growth * way[1]);
@@ -370,7 +378,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
-    /// Each call of a law of the user may be slow.
+    /// Number of steps between two calls of `go_on`; 1 with user-defined laws, each call of which may be slow.
     const BREATH: u64 = if G::IS { 1 } else { 256 };
     const CALLS: bool = true;
 
@@ -435,7 +443,8 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         LYING_ENDS[i]
     }
 
-    /// The error of a dry slip is relative to its speed, so that a vanishing slip keeps its direction.
+    /// The error of a step over the allowed error. That of a slip under dry friction is relative to its speed, so
+    /// that a vanishing slip keeps its direction.
     fn error<const N: usize>(&self, y: &[f64; N], made: &rk8::Step<f64, N>) -> f64 {
         let (per_tol, per_speed) = (1.0 / self.tol, 1.0 / (self.tol * self.swiftest(y)));
         let [here, there] = self.speeds(y);
@@ -476,7 +485,7 @@ impl<G: Own> Flow<MARGINS> for LyingFlow<G> {
         most.min(losses.longest(&losses.seen(&self.sloped.shape.rim, (one, zero), w[0], w), true))
     }
 
-    /// The halt of an almost vanished slip, extrapolated linearly to zero.
+    /// The halt of a slip that has almost vanished, extrapolated linearly to zero; None for a faster slip.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if G::IS {
             let [w1, w3, ..] = flat(&place.y);

@@ -3,8 +3,8 @@
 //! ```text
 //! chi' = w2,   chi = theta_end - theta;   w', u' at the inclination;   T > 0 with chi(T) = 0
 //! ```
-//! Theta is known to a rounding, so that a hop has no digits left where chi, which is w2^2/(2 gamma) at most, is as small.
-//! Here chi itself is the variable, over the hop as one step of the method of Runge and Kutta.
+//! The largest chi is w2^2/(2 gamma). If this is as small as the rounding of theta, theta cannot describe the hop.
+//! Therefore chi itself is the variable, and the hop is one step of the Runge-Kutta method.
 //!
 //! Error: the fifth power of the duration of the hop.
 
@@ -20,20 +20,20 @@ use crate::motions::walk::numbers::{
 };
 use crate::motions::walk::{Next, Phases};
 
-/// A hop is short if its w2, and its duration, are below these.
+/// A hop is short if its first w2 is below this, and its duration below `SOON`.
 const SHORT_HOP: f64 = 1e-4;
 const SOON: f64 = 3e-3;
-/// Where hops follow each other at one time, one that is slower than this is an error, which lasts for so long in units of
-/// its velocity.
+/// If hops follow each other without an advance of time, a hop with a w2 below this is skipped as an error, which is
+/// `HOPS_ON` times its w2.
 const LOST_RISE: f64 = 1e-6;
 const HOPS_ON: f64 = 10.0;
-/// A slip lasts longer than the hop if it is faster than what friction changes in that time by this factor.
+/// A slip lasts throughout a hop if it is at least this many times the change of velocity by friction in the hop.
 const OUTLASTS: f64 = 30.0;
-/// Number of corrections of the duration.
+/// Number of corrections in the search for the duration of a hop.
 const CORRECTIONS: usize = 4;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Computes the current phase if it is a short hop from two rims. Returns whether it is.
+    /// Computes the current phase if it is a short hop of a body that has lain on two rims. Returns whether it is.
     #[inline(never)]
     pub(crate) fn hops_shortly(&mut self) -> bool {
         let (state, rises) = (self.of.state, self.at[W2]);
@@ -90,13 +90,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         true
     }
 
-    /// Moves the walk to these numbers.
+    /// Sets the current state to the state vector `y` and theta to theta_end - `chi`.
     fn hops_to(&mut self, y: [f64; N], chi: f64) {
         self.at = y;
         self.of.state = State { theta: self.of.body.theta_end() - chi, w1: y[W1], w2: y[W2], w3: y[W3] };
     }
 
-    /// The numbers after this time of a hop, and chi.
+    /// The state vector at the time `t` of a hop, and chi = theta_end - theta.
     fn hopped(&self, begin: &[f64; N], t: f64, sticks: bool) -> ([f64; N], f64) {
         let moved =
             |by: f64, rates: &[f64; N]| -> [f64; N] { core::array::from_fn(|i| begin[i] + by * rates[i]) };
@@ -122,12 +122,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (s * cos - c * sin, c * cos + s * sin)
     }
 
-    /// The rates of the numbers, without those of the inclination, which is theta_end - chi.
+    /// The time derivative of the state vector at the inclination theta_end - `chi`, except that of the inclination.
     pub(super) fn hop_rates(&self, y: &[f64; N], chi: f64, sticks: bool) -> [f64; N] {
         self.rates_on_rim(self.hop_angle(chi), self.of.body.theta_end() - chi, y, sticks)
     }
 
-    /// The rates of the numbers at this inclination, without those of the inclination.
+    /// The time derivative of the state vector on one rim at this inclination, except that of the inclination.
     pub(crate) fn rates_on_rim(&self, angle: (f64, f64), theta: f64, y: &[f64; N], sticks: bool) -> [f64; N] {
         let (w, slip) = (y.w(), y.slip());
         let mut all = [0.0; N];

@@ -9,7 +9,8 @@
 //! on a slope, at rest on both: rolls straight if c + c' >= |F_h|, c = sqrt((mu_s N)^2 - F_2^2);  else see `two_at_rest`
 //!   one sticks, to w1 = 0: the same test;   rolls straight, to w3 = 0: turns round, or rests if dry losses hold it
 //! ```
-//! The rim from which the state is seen changes only where the other rim carries the body alone, or slips off first.
+//! The rim from which the state is counted changes only where the other rim carries the body alone, or slips off
+//! first.
 //!
 //! Error: the tolerance of the steps; rolling straight without losses is exact.
 
@@ -44,35 +45,36 @@ use flow::{LyingFlow, LyingPhase, Stance, flat};
 
 /// A slip slower than this, in units of the largest speed, counts as zero where a phase begins.
 const STILL_SLIP: f64 = 1e-12;
-/// A rocking ends in a pivot where one rim slips more slowly than the other one by this factor.
+/// A body that rocks may end by pivoting about one rim if this rim slips more slowly than the other one by this
+/// factor.
 const ROCKS_BESIDE: f64 = 1e-3;
-/// The longest time of a rocking that ends in a pivot, in units of v (1/mu + 1/ell)/(N (1 - f)), with the velocity v of
-/// the rocking, the smaller normal force N of the pivot, and the share f of friction that it needs: 1.55 in 3,100 random
-/// rockings. A longer rocking than `ROCKS_ON` is computed hop by hop.
+/// An upper bound of the time in which a rocking ends in a pivot, in units of v (1/mu + 1/ell)/(N (1 - f)), with the
+/// velocity v of the rocking, the smaller normal force N of the pivot, and the share f of friction that the pivot
+/// needs; the largest in 3,100 random rockings was 1.55. A rocking longer than `ROCKS_ON` is computed hop by hop.
 const ROCKS_LONG: f64 = 3.0;
 const ROCKS_ON: f64 = 1e-9;
-/// Number of phases without a duration after which their order is not trusted.
+/// Largest number of consecutive phases of zero duration whose order is trusted.
 const REPEATED: u32 = 3;
 /// A slip slower than this stops at once where friction does not let it go on.
 const STOPS_AT_ONCE: f64 = 1e-6;
-/// The slip with which both rims begin to slip together.
+/// The slip speed that both rims get when they begin to slip together.
 const NUDGED: f64 = 1e-12;
-/// Number of directions at which the growth of a slip is evaluated.
+/// Number of directions in which the growth of a slip from rest is evaluated.
 const DIRECTIONS: usize = 240;
-/// The shares by which friction that has just ceased to hold both rims is smaller than what they need: the next one where
-/// the search does not end with the one before.
+/// Shares by which friction is taken to be smaller than what both rims need, where it has just ceased to hold them.
+/// Each is tried if the search for the slips fails with the one before.
 const RELEASED: [f64; 3] = [1e-9, 1e-7, 1e-5];
-/// A slip from rest with a smaller rate hardly begins.
+/// A slip from rest whose speed grows at a smaller rate is too slow to begin.
 const BEGINS: f64 = 1e-4;
-/// The times for which a body rolls on that friction has just ceased to hold on both rims, so slowly that the slips follow
-/// their growth: the next one where the search does not end with the one before.
+/// Times for which a body keeps rolling after friction has just ceased to hold both rims, so that slips that hardly
+/// begin have a rate. Each is tried if the search for the slips fails with the one before.
 const ROLLS_ON: [f64; 2] = [1e-3, 1e-4];
 /// A growth rate of the speed below this counts as zero.
 const SLIPS_FASTER: f64 = 1e-11;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The laws of the body on both rims; None for a rolling contact, with which the body cannot turn, and for a rolling
-    /// resistance only while the body rolls, since one rim may roll while the other one slips.
+    /// The equations of the body on both rims. None for a contact that only rolls if the body turns or slips, and for
+    /// a rolling resistance that acts only while the body rolls, since one rim may roll while the other slips.
     fn flat(&self) -> Option<LyingFlow<G>> {
         if self.ask.resists_only_rolling() {
             return None;
@@ -97,7 +99,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
 
     /// The phase of a body at theta = pi/2 with w2 = 0: on both rims, or on one of them that rises.
     ///
-    /// The state on both rims is seen from the first one, whatever came before.
+    /// The state of a body on both rims is always counted from the first rim.
     #[inline(never)]
     pub(super) fn settles_on_side(&mut self) -> Next {
         if self.made.path.view.over {
@@ -154,13 +156,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Whether phases begin and end at one time.
+    /// Whether several phases have begun and ended at the same time.
     pub(super) fn does_not_advance(&self) -> bool {
         self.of.body.has_row() && self.still > REPEATED
     }
 
-    /// Whether friction lets a body slip on both rims, or on one while the other one rises. Where it does not, a slow slip
-    /// stops at once, by an impact along the table that takes hardly any energy.
+    /// Whether a body can slip on both rims, or on one while the other rises, under friction. Where it cannot
+    /// (Painleve), a slow slip stops at once, by an impact along the table that takes hardly any energy.
     fn slips_soundly(&mut self, flow: &mut LyingFlow<G>) -> bool {
         let y @ [.., u_h, u_2] = flat(&self.at);
         let [_, other] = flow.law.other_slip(y);
@@ -177,18 +179,19 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Whether the friction of the rim that carries the body presses it into the table.
+    /// Whether no finite contact force exists for this slip, since friction presses the rim into the table
+    /// (Painleve).
     fn jams_here(&self, slip: [f64; 2]) -> bool {
         self.of.slide.at_start(&self.of.state, slip) == Some(Halt::Jam)
     }
 
-    /// Sets the numbers of the inclination to those of both rims on the table.
+    /// Sets sine and cosine of theta, and w2, to those of a body with both rims on the table.
     fn lays_down(&mut self) {
         (self.at[SIN], self.at[COS]) = self.of.body.border_angle();
         self.at[W2] = 0.0;
     }
 
-    /// Takes the rest of a turn about the vertical and of the slip from a body that rolls.
+    /// Sets the rotation about the vertical and the slip of a body that rolls straight to zero.
     fn rolls_along(&mut self, law: &Lying<f64>) {
         let [_, rolling] = law.turning(self.at[W1], self.at[W3]);
         [self.at[W1], self.at[W3]] = law.turned_by([0.0, rolling]);
@@ -200,14 +203,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = State { w1: self.at[W1], w3: self.at[W3], ..self.of.state };
     }
 
-    /// The normal forces of both rims while both slip, with the signs of the dry losses set.
+    /// The normal forces of both rims while both slip. Sets the signs of the dry losses.
     fn normals(&self, flow: &mut LyingFlow<G>) -> [f64; 2] {
         flow.sets_ways(&self.at);
         let [here, there] = flow.lain(&self.at).force;
         [here[0], there[0]]
     }
 
-    /// Begins a phase on both rims.
+    /// Begins a phase of a body on both rims.
     fn begins_stance(&mut self, flow: LyingFlow<G>, stance: Stance) -> Next {
         let flow = flow.in_stance(stance, &self.at);
         let law = &flow.law;
@@ -242,7 +245,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(kind)
     }
 
-    /// The phase of a body with both rims at rest.
+    /// The phase of a body on both rims whose contact points are at rest: it rolls straight, slips, or rises on one
+    /// rim.
     fn rolls_or_slips(&mut self, flow: LyingFlow<G>) -> Next {
         self.rolls_along(&flow.law);
         if self.of.tilt == 0.0 {
@@ -259,8 +263,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.slips_from_rest(flow, None).unwrap_or(Next::Ends(Ending::Landing))
     }
 
-    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both, or has just ceased to: for some
-    /// time, or by this share. None if the search for it does not end.
+    /// The phase of a body on a slope whose rims are at rest, where friction cannot hold both. If it has just ceased
+    /// to, `released` is the share by which it is too weak, and the time for which the body keeps rolling. None if no
+    /// phase is found.
     #[inline(never)]
     fn slips_from_rest(&mut self, mut flow: LyingFlow<G>, released: Option<(f64, f64)>) -> Option<Next> {
         // Friction that has just held both rims is at its limit.
@@ -348,8 +353,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Ends(Ending::Landing)
     }
 
-    /// The phase in which one rim alone carries the body: the rim from which the state is seen if `here`. It is `still` if it
-    /// does not slip.
+    /// The phase in which one rim alone carries the body: if `here`, the rim from which the state is counted. `still`
+    /// means that this rim does not slip.
     fn rises_on(&mut self, here: bool, still: bool) -> Next {
         self.turns_to(!here, still);
         self.lays_down();
@@ -362,8 +367,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if self.jams_here(slip) { Next::Ends(Ending::Painleve) } else { Next::Slips }
     }
 
-    /// Changes to the view from the other rim, if `other`. A rim that is `still` has a slip of exactly zero, whatever the
-    /// rounding of the slip of the rim from which it was seen.
+    /// If `other`, counts the state from the other rim from this moment on. If `still`, sets the slip of the chosen
+    /// rim to exactly zero, without its rounding error.
     fn turns_to(&mut self, other: bool, still: bool) {
         if other {
             self.turns_over();
@@ -373,8 +378,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// The phase in which one rim rests, if a rocking that has begun at theta = pi/2 ends in it so soon that it is
-    /// summed.
+    /// The phase in which the body pivots about one rim at rest, if a rocking that has begun at theta = pi/2 ends in
+    /// it so soon that its hops are summed; else None.
     #[inline(never)]
     pub(crate) fn rocks_to_pivot(&mut self) -> Option<Next> {
         let mut flow = self.flat()?;
@@ -459,7 +464,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.rolls_or_slips(flow)
     }
 
-    /// What is found while the walk is seen from the other rim, if `other`.
+    /// The result of `find`, which is evaluated with the state counted from the other rim if `other`.
     fn seen_from<T>(&mut self, other: bool, find: impl FnOnce(&Self) -> T) -> T {
         if !other {
             return find(self);
@@ -479,7 +484,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         standstill(&self.of.body, &state, &self.friction(), self.couples())
     }
 
-    /// Whether the other rim rises while this rim, which is at rest, carries the body alone.
+    /// Whether the other rim rises while the rim from which the state is counted, at rest, carries the body alone.
     fn lifts(&self, found: Standstill) -> bool {
         let state = State { w2: 0.0, ..self.of.state };
         match found {
@@ -491,8 +496,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// A slip of the rim at rest, from which the state is seen from now on, while the other rim slips as well.
-    /// `against` is the direction of a slip that begins continuously.
+    /// The phase in which the rim at rest slips off while the other rim slips as well. The state is then counted from
+    /// the rim that was at rest. `against` is the direction of a slip that begins continuously.
     #[inline(never)]
     fn slips_off_two(&mut self, flow: LyingFlow<G>, other: bool, against: Option<f64>) -> Next {
         self.turns_to(other, true);
@@ -544,7 +549,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         })
     }
 
-    /// Computes a phase on both rims, or begins its flow.
+    /// Computes a phase of a body on both rims, or begins its integration.
     #[inline(never)]
     pub(crate) fn lies(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.lying.as_ref()?.flow;
@@ -580,7 +585,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(WalkStep::Flows(self.at))
     }
 
-    /// Computes the flow of a phase on both rims.
+    /// Integrates a phase of a body on both rims.
     #[inline(never)]
     pub(crate) fn lies_on(
         &mut self,
@@ -609,8 +614,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(self.stops_lying(flown.y, flown.halt).map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// Ends a phase on both rims at the numbers `y`, and chooses the next one. Returns the numbers from which the same
-    /// phase continues, if it does.
+    /// Ends a phase of a body on both rims at the state vector `y`, and chooses the next phase. If the same phase
+    /// continues, returns the state vector from which it does.
     #[inline(never)]
     pub(crate) fn stops_lying(&mut self, y: [f64; N], halt: Halt) -> Option<[f64; N]> {
         let mut phase = self.of.lying.take()?;
@@ -682,7 +687,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         None
     }
 
-    /// A phase of this kind that begins at the current numbers; a body on both rims is seen from the first rim.
+    /// The record of a phase of this kind that begins at the current state; the state of a body on both rims is
+    /// counted from the first rim.
     pub(crate) fn told(&self, kind: Kind) -> Phase {
         let (y, slip, over) = (self.of.state, Slip::from(self.at.slip()), self.made.path.view.over);
         let lies = self.of.lying.is_some();
@@ -706,33 +712,33 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Phase { time, kind, state, slip, aloft, rim }
     }
 
-    /// Writes a body on both rims to the outputs.
+    /// Writes the state vector `y` of a body on both rims to the outputs.
     pub(crate) fn writes_lying(&mut self, flow: &LyingFlow<G>, y: &[f64; N]) {
         let over = self.over();
         let seen = LyingView { over: over.as_ref(), way: self.made.path.way, body: &self.of.body };
         self.made.push(row_of(&self.ask, flow, seen, y));
     }
 
-    /// The current numbers, if they are seen from the other rim.
+    /// The current body, if its state is counted from the other rim; else None.
     fn over(&self) -> Option<Aloft> {
         self.made.path.view.over.then(|| self.aloft())
     }
 
-    /// The kind of a slip from rest; for a body that lies, the kind with both rims slipping.
+    /// The kind of phase of a slip from rest: `Lying` for a body on both rims, else `Slipping`.
     pub(crate) fn kind_of_slip(&self) -> Kind {
         if self.of.lying.is_some() { Kind::Lying } else { Kind::Slipping }
     }
 }
 
-/// How a body on both rims is seen: numbers of the same phase if these are seen from the other rim; the direction in which
-/// the slip of a rim just begins; and the body as seen from this rim.
+/// How the state of a body on both rims is counted: the body, if from the other rim; the direction `way` in which the
+/// slip of a rim just begins; and the shape as counted from this rim.
 struct LyingView<'a> {
     over: Option<&'a Aloft>,
     way: [f64; 2],
     body: &'a Body,
 }
 
-/// The outputs of a body on both rims, as seen from the first rim.
+/// The outputs of a body on both rims, counted from the first rim.
 fn row_of<G: Own, const N: usize>(
     ask: &Ask,
     flow: &LyingFlow<G>,

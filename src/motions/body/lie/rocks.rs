@@ -1,12 +1,12 @@
-//! Rocking from rim to rim without a bounce: infinitely many hops in a finite time, of which the last ones are summed.
+//! Rocking from rim to rim without a bounce: infinitely many hops in a finite time, the last of which are summed.
 //!
 //! ```text
 //! a hop lasts 2 w/gamma, gamma = -w2' on one rim at theta = pi/2;   a landing turns w into r w
 //! the rest = the change in one cycle of two hops and two landings, over 1 - r r'
 //! on a slope gamma of both hops differ, by -+ G_h; a rim at rest may slip off in each hop: then three cycles show the ratio
 //! ```
-//! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the time that is
-//! summed, and that time, times the angle by which a slow slip turns.
+//! The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963). Error: the square of the summed time;
+//! beside a slow slip also the summed time, times the angle by which the slip turns.
 
 use crate::laws::contact::landing::{Outcome, land_at};
 use crate::laws::contact::standstill::Standstill;
@@ -16,24 +16,24 @@ use crate::motions::body::own::Own;
 use crate::motions::walk::Phases;
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, PHI, PSI, SIN, TIME, U2, UH, W1, W2, W3, poses};
 
-/// The longest time that is summed, over the time in which the body turns by a radian.
+/// The longest time over which hops are summed, over the time in which the body turns by a radian.
 const SOON_OVER: f64 = 1e-6;
-/// A rocking beside a slow slip is summed only if the slip turns by less than this angle in that time. Dry friction turns
-/// it at a rate of up to this many times mu over its speed.
+/// The hops of a body with a slow slip are summed only if the direction of the slip turns by less than this angle, in
+/// radians, meanwhile. Dry friction turns it at a rate of up to `TURNS_SLIP` mu over its speed.
 const TURNED: f64 = 1e-2;
 const TURNS_SLIP: f64 = 3.0;
 
-/// At a border that is no right angle a hop with a smaller w2 is as low as the roundings of theta.
+/// If two rims touch at an inclination other than pi/2, a hop with a smaller w2 is as low as the rounding of theta.
 const LOST_HOP: f64 = 1e-8;
-/// Landings in three cycles of a rocking; the largest ratio of their velocities from cycle to cycle of which the rest is the
-/// sum; and the share by which that ratio may change.
+/// Number of landings of a rocking after which its ratio is tested. The rest is summed if the velocities shrink from
+/// cycle to cycle by a ratio of at most `MOST_RATIO`, which changes by at most the share `UNLIKE`.
 const LANDINGS: usize = 5;
 const MOST_RATIO: f64 = 0.99;
 const UNLIKE: f64 = 1e-3;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The numbers at the end of a rocking that has just begun another hop at theta = pi/2; None if the end is not
-    /// near.
+    /// The state vector at the end of a rocking that has just begun another hop at theta = pi/2, and its error; None
+    /// if the end is not near.
     pub(crate) fn rocks_out(&mut self) -> Option<([f64; N], f64)> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.hops.takeoff);
         let (body, slide, view) = (self.of.body, self.of.slide, self.made.path.view);
@@ -44,7 +44,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         found
     }
 
-    /// Whether the rim at rest from which the state is seen sticks in the hop that begins from this inclination.
+    /// Whether the rim from which the state is counted, at rest, sticks in the hop that begins from this inclination.
     pub(crate) fn sticks_on_slope(&mut self, theta: f64) -> bool {
         let State { w1, w3, .. } = self.of.state;
         self.of.state = State { theta, w1, w2: 0.0, w3 };
@@ -98,8 +98,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (share > 0.0 && (sums || lost)).then_some((end, left * if sums { turns } else { 1.0 }))
     }
 
-    /// The numbers at the end of a rocking whose slips stop in its hops, so that all of them shrink by one ratio: the changes
-    /// from cycle to cycle are a geometric series. Also returns an error. None until three cycles have shown the ratio.
+    /// The state vector at the end of a rocking whose slips stop in its hops, and its error. All hops shrink by one
+    /// ratio, so that the changes from cycle to cycle are a geometric series. None until three cycles have shown the
+    /// ratio.
     #[inline(never)]
     pub(crate) fn shrinks_out(&mut self) -> Option<([f64; N], f64)> {
         let (on_face, up) = (self.is_on_face(), self.up());

@@ -15,12 +15,12 @@ use crate::motions::dry::creep::LOST_DRILLING;
 use crate::motions::walk::numbers::{Halt, SIN, TIME, U2, UH};
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
-/// Tolerance of steps that take the place of an exact solution, as a share of that of the motion.
+/// Tolerance of integration steps that replace an exact solution, as a share of that of the motion.
 const EXACT_TOLERANCE_SHARE: f64 = 0.1;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the
-    /// numbers of the flow, None if the phase is over at once.
+    /// Begins a phase that loses energy and rolls with friction up to `mu` N, or slides freely. Returns the state
+    /// vector at which its integration starts; None if the phase is over at once.
     pub(super) fn begins_to_lose(&mut self, mu: f64) -> Result<Option<[f64; N]>, Error> {
         let (losses, friction) = (self.ask.losses, self.friction());
         if friction.patch() > 0.0 {
@@ -57,7 +57,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Computes a phase that loses energy without a slip from the numbers `y`, within the limits `steps`.
+    /// Integrates a phase that loses energy without a slip from the state vector `y`, within the limits `steps`.
     pub(crate) fn loses(
         &mut self,
         flow: &LossyFlow<G>,
@@ -95,14 +95,15 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.halts(flown.y, flown.halt)
     }
 
-    /// Continues the phase after a halt, or ends it; `shown` are the numbers that all flows share.
+    /// Continues the phase after a halt of its integration, or ends it; `shown` is the state vector in the variables
+    /// that all phases share.
     fn halts(&mut self, shown: [f64; N], halt: Halt) -> Result<Pause<N>, Error> {
         self.arrives(shown);
         Ok(self.meets_halt(halt)?.map_or(Pause::No, |y| Pause::Here(y, None)))
     }
 
-    /// Applies a halt to the walk. Returns the numbers from which the phase continues, None if the
-    /// phase is over.
+    /// Applies a halt of the integration to the motion. Returns the state vector from which the phase continues; None
+    /// if the phase is over.
     fn meets_halt(&mut self, found: Halt) -> Result<Option<[f64; N]>, Error> {
         let Some(mut phase) = self.of.lossy.take() else { return Ok(None) };
         let (body, ask) = (self.of.body, self.ask);

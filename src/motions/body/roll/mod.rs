@@ -1,4 +1,4 @@
-//! The rolling phases of a body: by the first integrals, or integrated as a flow where energy is lost.
+//! The rolling phases of a body: by the first integrals, or integrated where energy is lost.
 
 mod loses;
 pub(crate) mod lossy;
@@ -23,25 +23,26 @@ use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use nalgebra::Point2;
 
-/// The first integrals lose their digits where the axis is nearer to the vertical than this angle: a face has landed
-/// there, and a ball is integrated.
+/// The first integrals lose their digits where the axis is nearer to the vertical than this angle, in radians. Below
+/// it a face counts as landed, and the motion of a ball is integrated.
 const LEAST_ANGLE_FROM_VERTICAL: f64 = 1e-8;
 
-/// A phase of rolling that ends with a slip after less than so many radians of its rotation or nutation is brief. The next
-/// one takes fewer steps, within a tolerance of at least `BRIEF_ROLLING_TOLERANCE`, than the first integrals take work; a phase with more
-/// than `BRIEF_ROLLING_STEPS` is continued by the first integrals, since it may last for ever.
+/// A phase of rolling is brief if it ends with a slip within this angle, in radians, of rotation or nutation. The
+/// phase after a brief one is integrated, with a tolerance of at least `BRIEF_ROLLING_TOLERANCE`, which takes less
+/// work than the first integrals; after `BRIEF_ROLLING_STEPS` steps these continue it, since it may last for ever.
 const BRIEF_ROLLING_ANGLE: f64 = 20.0;
 const BRIEF_ROLLING_TOLERANCE: f64 = 3e-10;
 pub(crate) const BRIEF_ROLLING_STEPS: u64 = 64;
 
 /// A hop counts as low, and is integrated, if both its height and its speed are below this.
 const LOW_HOP: f64 = 0.1;
-/// A body this close to a border that is no right angle is on it, and leaves it slowly below this rate.
+/// A body within this angle of an inclination, other than pi/2, at which two rims touch counts as at it.
 const ON_BORDER: f64 = 1e-15;
 const SLOW_RISE: f64 = 1e-4;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Computes a rolling phase by the first integrals to its end, or begins its flow if the body loses energy.
+    /// Computes a rolling phase by the first integrals to its end, or begins its integration if the body loses
+    /// energy.
     pub(super) fn rolls_on(
         &mut self,
         at_limit: bool,
@@ -88,7 +89,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state
     }
 
-    /// The same walk, whose caller computes the phases of rolling that the first integrals solve.
+    /// The same computation, but if `others` the caller computes the phases of rolling that the first integrals
+    /// solve.
     #[cfg(feature = "many")]
     pub fn leaving_rolling_to_caller(mut self, others: bool) -> Self {
         self.of.rolls_among = others;
@@ -114,7 +116,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (Start { time: self.at[TIME], ..self.of.state.into() }, ask)
     }
 
-    /// Continues after a phase of rolling, which is known at the next times and up to its event.
+    /// Continues after a phase of rolling, whose states at the next times, and whose event if any, have been
+    /// computed.
     pub(crate) fn continue_after_rolling(
         &mut self,
         mut rolled: Motion,
@@ -166,8 +169,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(())
     }
 
-    /// Whether the body returns to its other rim so soon, or leaves it so slowly, that the first integrals would lose the digits
-    /// of the height: theta is known to 1e-16, and the hop is low.
+    /// Whether the body returns to its other rim so soon, or leaves it so slowly, that the first integrals would lose
+    /// the digits of the height, since theta has a rounding error of 1e-16.
     fn hops_low(&self) -> bool {
         let (c, rises) = (self.tilt(self.at.angle()), self.at[W2]);
         if self.ask.restitution.is_none() || c > LOW_HOP || rises > LOW_HOP || !self.has_two_rims() {
@@ -180,7 +183,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if rises > 0.0 { rises * rises < LOW_HOP * falls } else { rises * rises + falls * c > 0.0 }
     }
 
-    /// A pose of a rolling phase, relative to the beginning of the motion.
+    /// Converts a pose relative to the beginning of a rolling phase to one relative to the beginning of the motion.
     fn moved(&self, pose: &Pose) -> Pose {
         let [phi, psi, x, y] = core::array::from_fn(|i| self.at[9 + i]);
         let turned = |by: f64, angle: Angle| {

@@ -4,8 +4,8 @@
 //! S = |u|,   R = eps |w_z|,   dt = (S + R)/(S + R + soft) dsigma
 //! u -> its slow value at the rate (mu N/R) b     of which a time step of dsigma ~ 1 follows a part
 //! ```
-//! Where the patch drills slowly, u follows the forces of rolling thousands of times faster than the body moves, and the
-//! steps are implicit ([`Creeps`]).
+//! Where the patch drills slowly, u approaches its slow value thousands of times faster than the body moves, and the
+//! integration steps are implicit ([`Creeps`]).
 
 use super::{Own, Slide};
 use crate::laws::body::Shape;
@@ -20,20 +20,21 @@ use crate::motions::walk::numbers::{
 use crate::numbers::{Dual, Real};
 use nalgebra::SMatrix;
 
-/// The number of numbers that react to each other: sine, cosine, w and u.
+/// Number of components of the state vector that depend on each other: sine and cosine of theta, w and the slip u.
 const REACTING: usize = 7;
-/// The slip of a uniform ball has died where it is below this share of the tolerance, and where it differs by less than
-/// `STEADY` tolerances from that of a creep, which steps do not follow more closely.
+/// A slip of a uniform ball on a patch has died out where it differs from that of steady creep by less than this
+/// share of the tolerance, or by less than `STEADY` tolerances where integration steps do not follow the creep more
+/// closely.
 const DEAD: f64 = 0.03;
 const STEADY: f64 = 0.3;
 
-/// Whether a body neither rolls nor rocks.
+/// Whether a body neither rolls nor rocks: w_h and w2 are zero.
 pub(in crate::motions::body) fn is_still<const N: usize>(y: &[f64; N]) -> bool {
     rolling_of(y.angle(), y[W1], y[W3]).hypot(y[W2]) < REST
 }
 
 impl<L: Own> Slide<L> {
-    /// Writes the rates of the numbers on a patch of contact, whose couple also produces heat.
+    /// Writes the derivative of the state vector on a patch of contact, whose couple also produces heat.
     #[inline(never)]
     pub(super) fn patched<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> SlipResponse<f64> {
         let (at, pace, heat) = self.law.answers(y.angle(), y.w(), y.slip());
@@ -45,13 +46,13 @@ impl<L: Own> Slide<L> {
         at
     }
 
-    /// Whether a patch of contact drills, so that its contact point creeps.
+    /// Whether a patch of contact drills, so that its contact point creeps (slips slowly).
     pub(in crate::motions::body) fn creeps<const N: usize>(&self, y: &[f64; N]) -> bool {
         self.law.patch().is_some() && self.rubs(y) > self.over()
     }
 
-    /// The slip of the creep of a uniform ball on a patch; it is zero while the ball does not roll. None for another body,
-    /// and with poses where the slip does not vanish, since it would turn with e_h.
+    /// The slip of a uniform ball that creeps steadily on a patch; zero while the ball does not roll. None for
+    /// another body, and with poses if the slip is not zero, since its components turn with e_h.
     fn creep_of<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let level = self.tilt == 0.0 && self.turning == 0.0;
         let (creeping, angle) = (self.creeping.filter(|_| level)?, y.angle());
@@ -63,8 +64,8 @@ impl<L: Own> Slide<L> {
         (!poses(N)).then(|| way.map(|v| creeping.k * turn * v / way[0].hypot(way[1])))
     }
 
-    /// The difference of the slip of a uniform ball from its creep, if it has died: nothing feeds it while the ball
-    /// drills.
+    /// The difference of the slip of a uniform ball from that of steady creep, once it has died out; None before.
+    /// Nothing makes it grow while the ball drills.
     #[inline(never)]
     pub(in crate::motions::body) fn has_died<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let creep = self.creep_of(y)?;
@@ -74,7 +75,8 @@ impl<L: Own> Slide<L> {
         (dead && self.creeps(y)).then_some(left)
     }
 
-    /// Whether a uniform ball on a patch does not drill but for rounding, so that it rolls on for ever without losses.
+    /// Whether the drilling rate of a uniform ball on a patch is only rounding, so that without losses the ball rolls
+    /// for ever.
     pub(in crate::motions::body) fn no_longer_drills<const N: usize>(&self, y: &[f64; N]) -> bool {
         let drilling = drilling_of(y.angle(), y[W1], y[W3]);
         self.law.losses.is_none()
@@ -82,7 +84,7 @@ impl<L: Own> Slide<L> {
             && drilling.abs() <= f64::EPSILON * Self::fastest(y)
     }
 
-    /// The halt of a patch that no longer slips or drills, or of a slip that has died.
+    /// The halt of a patch that has stopped slipping or drilling, or of a slip that has died out; else None.
     pub(super) fn rubs_no_more<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if !self.died && self.has_died(&place.y).is_some() {
             return Some((Halt::Standstill, place.y));
@@ -90,7 +92,7 @@ impl<L: Own> Slide<L> {
         self.hardly_rubs(place)
     }
 
-    /// The response for margins with their slopes, of which there is one copy for a patch.
+    /// Contact force and accelerations on a patch, with their slopes, compiled as one copy.
     #[inline(never)]
     pub(super) fn sloped_on(
         &self,
@@ -126,7 +128,7 @@ impl<L: Own> Creeps<MARGINS, REACTING> for Slide<L> {
         drilling_of(y.angle(), y[W1], y[W3]) - y[W1].splat(self.turning)
     }
 
-    /// The rims tell how much a force changes the slip.
+    /// The change of the slip by a unit force, from the shape and inertia of the body.
     fn eased<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let (angle, Shape { rim, i1, i3 }) = (y.angle(), &self.law.shape);
         let (lever, height, depth, radius) =
@@ -157,7 +159,7 @@ impl<L: Own> Creeps<MARGINS, REACTING> for Slide<L> {
         })
     }
 
-    /// A psi' under a couple that grows with it follows the motion, too.
+    /// The time within which the fast parts of the motion decay, including a psi' under a couple that grows with it.
     fn damps_within<const N: usize>(&self, y: &[f64; N]) -> f64 {
         if loses(N) { self.damped(y) } else { f64::INFINITY }
     }

@@ -1,4 +1,4 @@
-//! A slip as a flow: its rates, the margins at which it ends, and the lengths and errors of its steps.
+//! Integration of a slip: its rates, the conditions that end it, and the lengths and errors of its steps.
 
 use super::standstill::vanished;
 use super::{Own, Slide};
@@ -19,12 +19,13 @@ use crate::motions::walk::numbers::{
 };
 use crate::numbers::{Dual, Real};
 use core::f64::consts::PI;
-/// The halts of the margins, in the order of the margins.
+/// The reason for which a slip halts at the zero of each margin, in the order of the margins.
 const SLIP_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Jam, Halt::Contour, Halt::Drilling];
 
 impl<L: Own> Slide<L> {
-    /// The error of a step in units of `tol`, where 1 is allowed; speeds count relative to the largest speed.
+    /// The error of an integration step in units of `tol`, so that 1 is allowed; the errors of speeds are relative to
+    /// the largest speed.
     #[inline(always)]
     pub fn error<T: Real, const N: usize>(
         tol: T,
@@ -36,7 +37,8 @@ impl<L: Own> Slide<L> {
         Self::error_beside(tol, y, made, (dry, time), y[UH].mac(y[UH], y[U2] * y[U2]).sqrt())
     }
 
-    /// The error of a step, where that of a dry slip is relative to the speed `slip`; `time` is the index of the time.
+    /// The error of an integration step in units of `tol`. That of a slip under dry friction is relative to the speed
+    /// `slip`; `time` is the index of the time in the state vector.
     #[inline(always)]
     fn error_beside<T: Real, const N: usize>(
         tol: T,
@@ -61,7 +63,7 @@ impl<L: Own> Slide<L> {
         made.error(per, N as f64) * made.strictness(tol, TIME, time)
     }
 
-    /// The largest speed, at least 1.
+    /// The largest of the speeds (w and the slip) in the state vector, at least 1.
     #[inline(always)]
     pub fn fastest<T: Real, const N: usize>(y: &[T; N]) -> T {
         let one = y[SIN].splat(1.0);
@@ -78,7 +80,8 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// The margins of these numbers under this law, or only one of them, which may not need the response that `act` computes.
+    /// The margins (functions of the state whose zeros end a slip) under this law, or `only` one of them, which may
+    /// not need the forces that `act` computes.
     #[inline(always)]
     fn margins_of<T: Real, const N: usize>(
         &self,
@@ -130,12 +133,13 @@ impl<L: Own> Slide<L> {
         [face, side, free, room, contour, drilling]
     }
 
-    /// The time in which the body turns by about a radian, at most a unit of time.
+    /// The time in which the body turns by about a radian, at most 1, in sqrt(R/g).
     pub(crate) fn moment<const N: usize>(&self, y: &[f64; N]) -> f64 {
         (longest(y, &self.law.shape) / 3.0).min((y[SIN] / y[W2]).abs()).min(1.0)
     }
 
-    /// The longest step in sigma towards the roots of the losses.
+    /// The longest step, in the variable sigma, that the loss laws allow, since their square roots are not smooth
+    /// where they vanish.
     pub(super) fn rooted<const N: usize>(&self, place: &FlowPlace<N>) -> f64 {
         let Some(losses) = self.sloped.losses.filter(|_| loses(N) && !self.settled) else {
             return f64::INFINITY;
@@ -152,7 +156,7 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
     const MAY_BE_STIFF: bool = true;
-    /// Each call of a law of the user may be slow.
+    /// Number of steps between two calls of `go_on`; 1 with user-defined laws, each call of which may be slow.
     const BREATH: u64 = if L::IS { 1 } else { 256 };
     const CALLS: bool = L::IS;
 
@@ -242,8 +246,8 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
         self.margins_of::<_, N>(&self.law, y, Some(i), |angle, w, u| self.acts(angle, w, u))[i]
     }
 
-    /// The halt of an almost vanished slip, extrapolated to u = 0, or of a body that
-    /// rests or settles.
+    /// The halt of a slip that has almost vanished, extrapolated to zero, or of a body that comes to rest or whose
+    /// contact settles; else None.
     fn stopped<const N: usize>(&self, place: &FlowPlace<N>) -> Option<(Halt, [f64; N])> {
         if L::IS {
             self.asks_drive(&place.y);
@@ -363,14 +367,15 @@ impl<L: Own> Flow<MARGINS> for Slide<L> {
     }
 }
 
-/// A first step that is short enough, also for an almost flat face that turns or falls fast; the next
-/// steps grow fast.
+/// The length of the first step of a slip, short enough also for a body that is almost on its face and turns or falls
+/// fast; the next steps grow fast.
 pub(crate) fn first<const N: usize>(y: &[f64; N]) -> f64 {
     let fastest = y[W1].abs().max(y[W2].abs());
     0.02 / (1.0 + fastest.max(y[W3].abs()).max((fastest / y[SIN].abs()).min(FASTEST)))
 }
 
-/// The longest step that does not amplify rounding: three radians of the rotation or of the free nutation I3 w3/I1.
+/// The longest time step that does not amplify rounding: three radians of the rotation or of the free nutation I3
+/// w3/I1.
 #[inline(always)]
 pub(crate) fn longest<T: Real, const N: usize>(y: &[T; N], shape: &Shape<T>) -> T {
     let one = y[SIN].splat(1.0);

@@ -1,5 +1,5 @@
-//! Losses during a slip: the signs of the motions that dry losses resist, the settling of the contact of a
-//! falling face, and the end of the rolling.
+//! Losses during a slip: the signs of the rotations that dry losses resist, the settling of the contact of a falling
+//! face, and the end of rolling.
 
 use super::{Own, Slide};
 use crate::laws::body::Shape;
@@ -17,13 +17,13 @@ use crate::motions::dry::settled::{Balance, CLOSE, SLOWER, Turned, balance, lag,
 use crate::motions::walk::numbers::{BodyNumbers, COS, HEAT, Halt, P, SIN, TIME, W1, W2, W3};
 use crate::numbers::{Dual, Real, sign_or_zero};
 
-/// The share by which a couple may exceed the limit of friction that holds a contact which had settled.
+/// The share by which a couple may exceed the limit of dry friction that holds a contact point after it had settled.
 const HELD_SURELY: f64 = 1e-6;
 
 impl<L: Own> Slide<L> {
-    /// Sets the signs (`ways`) of the motions that dry losses resist, and which of them friction holds, at a state whose
-    /// contact has not settled. `toward` is the direction of a slip from rest, and `known` a motion that friction has
-    /// just ceased to hold (true), or that it holds in any case.
+    /// Sets the signs of the rotations that dry losses resist, and which of them friction holds at rest, in a state
+    /// whose contact has not settled. `toward` is the direction of a slip from rest. `known` is a rotation that
+    /// friction has just ceased to hold (true), or that it holds in any case (false).
     pub fn sets_ways(&mut self, y: &State, slip: [f64; 2], toward: [f64; 2], known: Option<(Resting, bool)>) {
         (self.settled, self.rolls_off) = (false, false);
         // A settled contact stops at the very limit of friction, and the push on it falls from there on.
@@ -53,7 +53,8 @@ impl<L: Own> Slide<L> {
         self.turn(ways);
     }
 
-    /// The couple that holds the contact along the rim, and its limit, with the allowance for a contact that had settled.
+    /// The couple that holds the contact point along the rim, and its limit, which is raised by the allowance for a
+    /// contact that had settled.
     pub(super) fn surely<T: Real>(&self, [push, limit]: [T; 2]) -> [T; 2] {
         [push, limit * limit.splat(1.0 + self.sure)]
     }
@@ -79,7 +80,7 @@ impl<L: Own> Slide<L> {
         self.law.losses.map_or(Holds::default(), |losses| losses.holds())
     }
 
-    /// Frees the direction of a rolling that has begun.
+    /// Frees the direction of rolling after it has begun from rest.
     pub fn rolls_freely(&mut self) {
         if let Some(ways) = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off) {
             self.rolls_off = false;
@@ -87,7 +88,7 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// The direction of (w_h, w2) in which a rolling begins.
+    /// The direction of (w_h, w2) in which rolling begins from rest; None if it does not begin.
     pub fn begins_to_roll(&self) -> Option<[f64; 2]> {
         let ways = self.law.losses.and_then(|losses| losses.ways).filter(|_| self.rolls_off)?;
         Some([ways.rolling, ways.rocking])
@@ -101,16 +102,16 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// Reverses the sign of the rocking where a ball now leans to the other side, so that its direction in space stays
-    /// the same.
+    /// Reverses the sign of the rocking where a ball has passed the vertical and leans to the other side, so that the
+    /// direction of rocking in space stays the same.
     pub fn leans_over(&mut self) {
         if let Some(ways) = self.law.losses.and_then(|losses| losses.ways) {
             self.turn(Ways { rocking: -ways.rocking, ..ways });
         }
     }
 
-    /// The motion that friction ceases to hold at this halt; None if the halt stops a motion. A settled contact stops
-    /// where dry friction balances its push, so that friction holds it in any case.
+    /// The rotation that friction ceases to hold at this halt (true); None if the halt stops a rotation. A settled
+    /// contact stops where dry friction balances the couple on it, so that friction holds it in any case (false).
     pub fn known(&self, halt: Halt) -> Option<(Resting, bool)> {
         if halt == Halt::Contour && self.settled {
             return Some((Resting::Contour, false));
@@ -147,7 +148,8 @@ impl<L: Own> Slide<L> {
         s * (spin - balanced).abs() <= within * self.tol * fastest + 1e-8 * s * balanced.abs()
     }
 
-    /// The longest time step that damps a psi' which stops fast near the table, as in [`Lossy::damped`].
+    /// The longest time step with which the integration damps a psi' that stops fast near the table, as in
+    /// [`Lossy::damped`].
     ///
     /// [`Lossy::damped`]: crate::laws::contact::lossy::Lossy::damped
     pub(crate) fn damped<const N: usize>(&self, y: &[f64; N]) -> f64 {
@@ -163,7 +165,7 @@ impl<L: Own> Slide<L> {
         DAMPED / (slope * self.lightness((s, c)))
     }
 
-    /// The balance of a settled contact, from w_z, w2 and the slip.
+    /// The psi' at which the couples on a settled contact balance, from w_z, w2 and the slip.
     fn balance(
         &self,
         angle: (f64, f64),
@@ -180,8 +182,8 @@ impl<L: Own> Slide<L> {
         balance(&losses, (angle, self.law.shape.rim.radius(angle)), (drilling, w2), way, act)
     }
 
-    /// The excess of the push on a settled contact over the limit of dry friction, and the margin of
-    /// held drilling. `w` is that of a contact point at rest, and `bare` is the law without the couples
+    /// The excess of the couple on a settled contact over the limit of dry friction, and how far the couple on a held
+    /// drilling is from its limit. `w` is that of a contact point at rest, and `bare` is the law without the couples
     /// along the contour.
     pub(crate) fn pushed_on<T: Real>(
         &self,
@@ -206,7 +208,8 @@ impl<L: Own> Slide<L> {
         [one.splat(way) * push - dry, kept]
     }
 
-    /// The numbers of this flow, from the common numbers `shown`; the third is w_z for a settled contact.
+    /// The state vector in the variables of a slip, from the state vector `shown` in the variables that all phases
+    /// share: w_z replaces w1 for a settled contact.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         if self.settled {
@@ -215,7 +218,7 @@ impl<L: Own> Slide<L> {
         y
     }
 
-    /// The numbers common to all flows, from the numbers of this flow.
+    /// The state vector in the variables that all phases share, from that in the variables of a slip.
     pub(crate) fn common_numbers<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let mut shown = *y;
         if self.settled {
@@ -227,7 +230,7 @@ impl<L: Own> Slide<L> {
         shown
     }
 
-    /// Writes the rates of the numbers of a settled contact. Returns precession, psi', and the power
+    /// Writes the derivative of the state vector for a settled contact. Returns the precession, psi', and the power
     /// of the losses.
     pub(crate) fn settled_rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 2], f64) {
         let ([s, c, q, w2], u) = (core::array::from_fn(|i| y[i]), y.slip());
@@ -250,7 +253,7 @@ impl<L: Own> Slide<L> {
         1.0 / i3 + c / s * (c / s) / i1
     }
 
-    /// Upper bound of the delay of a settled contact, which stops after dry friction has balanced the push.
+    /// Upper bound of the delay with which a settled contact stops after dry friction has balanced the couple on it.
     pub fn settled_lag(&self, y: &State, slip: [f64; 2]) -> f64 {
         let ((s, c), shape) = (y.theta.sin_cos(), &self.law.shape);
         let turned = self.balance((s, c), drilling_of((s, c), y.w1, y.w3), y.w2, slip).turned;
@@ -260,15 +263,15 @@ impl<L: Own> Slide<L> {
             .map_or(0.0, |losses| lag(&losses.beside(()), (s, c * y.w2), radius, turned.push, lightness))
     }
 
-    /// Error of w1 and w3 while psi' follows its balance: s abs(psi'), times the ratio of s abs(psi') to the
-    /// speed of fall if this is below 1.
+    /// Error of w1 and w3 while psi' follows the balance of couples: sin(theta) abs(psi'), times its ratio to the
+    /// speed of fall if that ratio is below 1.
     pub fn settled_doubt(y: &State) -> f64 {
         let fall = y.theta.cos() * y.w2;
         let slower = y.theta.sin() * y.spin() / fall;
         y.theta.sin() * y.spin().abs() * slower.abs().min(1.0)
     }
 
-    /// The speed of rolling and rocking together, and its time derivative, with this w at a place.
+    /// The speed of rolling and rocking together, sqrt(w_h^2 + w2^2), and its time derivative, for this w at a place.
     pub(crate) fn rolling_growth<const N: usize>(&self, place: &FlowPlace<N>, w: [f64; 3]) -> [f64; 2] {
         let [s, c, _, _, _, u_h, u_2] = core::array::from_fn(|i| place.y[i]);
         rolling_growth((s, c), w, self.acts((s, c), w, [u_h, u_2]).w)

@@ -34,7 +34,7 @@ use crate::numbers::Dual;
 pub(super) use creeps::is_still;
 pub(crate) use flow::longest;
 
-/// Sine of theta at which a slipping face has landed if it comes down by infinitely many turns. It is smaller
+/// Sine of theta at which a slipping face counts as landed if it comes down by infinitely many turns. It is smaller
 /// than `FLAT`, since the time of the landing is extrapolated from the last turns.
 const FLATTER: f64 = 1e-14;
 
@@ -42,30 +42,31 @@ const FLATTER: f64 = 1e-14;
 #[derive(Clone, Copy)]
 pub(crate) struct Slide<L = ()> {
     pub law: Slipping<f64, L, L>,
-    /// The law for numbers with a slope.
+    /// The law for dual numbers (a value and its slope).
     sloped: Slipping<Dual<f64>, L, L>,
     /// The law without the couples along the contour.
     bare: Slipping<f64, L, L>,
-    /// The inclinations within which the circle carries.
+    /// The inclinations between which the circle of contact carries the body.
     range: [f64; 2],
     ball: bool,
     sticks: bool,
-    /// Sine of theta at which a face has landed.
+    /// Sine of theta at which a face counts as landed.
     flat: f64,
-    /// Whether a couple that grows with psi' has almost stopped the contact along the rim.
+    /// Whether a couple that grows with psi' has almost stopped the contact point along the rim.
     pub settled: bool,
-    /// The creep of a uniform ball on a patch of contact, without other losses than rolling resistance, in which every slip
-    /// ends; and whether the slip has become this creep.
+    /// The steady creep (slow slip) of a uniform ball on a patch, without losses other than rolling resistance, in
+    /// which every slip ends. `died` is whether the slip has become this creep.
     pub(super) creeping: Option<Creeping>,
     pub died: bool,
-    /// Whether rolling and rocking begin from rest, in the direction that the signs of the losses have.
+    /// Whether rolling and rocking begin from rest, in the direction that the signs in the loss laws give.
     rolls_off: bool,
-    /// Whether there are laws of loss of the library.
+    /// Whether there are loss laws of the library, not only user-defined ones.
     has_laws: bool,
-    /// The share by which the couple that holds the contact along the rim may exceed its limit, after it has settled.
+    /// The share by which the couple that holds the contact point along the rim may exceed its limit after the
+    /// contact has settled.
     sure: f64,
     pub tol: f64,
-    /// The tangent of the slope, and the rate at which the table turns.
+    /// The tangent of the slope; `turning` is the rate at which the table turns.
     pub tilt: f64,
     pub turning: f64,
 }
@@ -105,7 +106,7 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// This flow on a slope with the tangent `tilt`, or on a table that turns at the rate `turning`.
+    /// These equations on a slope with the tangent `tilt`, or on a table that turns at the rate `turning`.
     pub fn on_table(mut self, [tilt, turning]: [f64; 2]) -> Self {
         let turns = turning != 0.0;
         (self.tilt, self.turning) = (tilt, turning);
@@ -114,13 +115,13 @@ impl<L: Own> Slide<L> {
         self
     }
 
-    /// w_z over the table, from w1 and w3.
+    /// The drilling rate, w_z relative to the table, from w1 and w3.
     #[inline(always)]
     pub fn drills(&self, angle: (f64, f64), w1: f64, w3: f64) -> f64 {
         drilling_of(angle, w1, w3) - self.turning
     }
 
-    /// Asks a drive of the user for its force and couple at these numbers.
+    /// Calls a user-defined drive for its force and couple at the state vector `y`.
     #[inline(always)]
     pub fn asks_drive<const N: usize>(&self, y: &[f64; N]) {
         if L::IS && self.law.varies().drives() {
@@ -129,14 +130,15 @@ impl<L: Own> Slide<L> {
         }
     }
 
-    /// The power of the force of a drive that has been asked at these numbers.
+    /// The power of the force that a user-defined drive returned at its last call, at the state vector `y`.
     pub fn power_of_drive<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let [push_h, push_2] = self.law.varies().pushes(y);
         let [v_h, v_2] = self.law.centre(y.angle(), y.w(), y.slip());
         push_h * v_h + push_2 * v_2
     }
 
-    /// The pull on the centre along e_h and e2, of a slope and of a table that turns, and of a drive that has been asked.
+    /// The acceleration along e_h and e2 by the slope, the turntable and the drive (at its last call), which is added
+    /// to that of the slip.
     pub fn pull<const N: usize>(&self, y: &[f64; N]) -> [f64; 2] {
         let tilted = sum(pull(self.tilt, y), self.law.varies().pushes(y));
         if self.turning == 0.0 {
@@ -146,19 +148,20 @@ impl<L: Own> Slide<L> {
         driven(self.turning, tilted, self.runs(y, w3 - c * w1 / s, y[PHI].sin_cos()))
     }
 
-    /// The velocity of the contact point, over the table and with it, along e_h and e2.
+    /// The velocity at which the point of contact moves in the laboratory, along e_h and e2.
     #[inline(always)]
     fn runs<const N: usize>(&self, y: &[f64; N], spin: f64, heading: (f64, f64)) -> [f64; 2] {
         let over = contact_velocity(&self.law.shape.rim, y.angle(), y[W2], spin, y.slip());
         if self.turning == 0.0 { over } else { sum(over, carried(self.turning, y, heading)) }
     }
 
-    /// The law without those of the user.
+    /// The law of a slip without user-defined laws.
     pub fn of_the_library(&self) -> Slipping<f64> {
         self.law.varying(()).with_losses(self.law.losses.map(|losses| losses.beside(())))
     }
 
-    /// The response of a body that slips with u, or that begins to slip along `way`, and the power of its losses.
+    /// Contact force and accelerations of a body that slips with the velocity `u`, or that begins to slip along
+    /// `way`, and the power of its losses.
     pub fn slips(
         &self,
         angle: (f64, f64),
@@ -173,13 +176,14 @@ impl<L: Own> Slide<L> {
         (at, self.law.power(angle, w, at.force[0]))
     }
 
-    /// The energy of the body with these numbers; on a table that turns, less its rate times the angular momentum.
+    /// The energy of the body at the state vector `y`; on a turntable minus its rate times the angular momentum about
+    /// the vertical.
     pub fn energy<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let state = State { theta: y[SIN].atan2(y[COS]), w1: y[W1], w2: y[W2], w3: y[W3] };
         self.law.energy(&state, y.slip()) + self.energy_on_table(y)
     }
 
-    /// What that energy has beside the one of a body that slips as fast on a level table at rest.
+    /// The difference of [`energy`](Self::energy) from that of a body that slips as fast on a level table at rest.
     pub fn energy_on_table<const N: usize>(&self, y: &[f64; N]) -> f64 {
         if self.tilt == 0.0 && self.turning == 0.0 || !poses(N) {
             return 0.0;
@@ -194,14 +198,14 @@ impl<L: Own> Slide<L> {
         ahead * (v_2 + 0.5 * ahead) - carried - self.tilt * x
     }
 
-    /// The response of the body, as one compiled copy of the law for callers that need it only
-    /// once in a step.
+    /// Contact force and accelerations of the body; one compiled copy of the law for callers that need it only once
+    /// in a step.
     #[inline(never)]
     pub(super) fn acts(&self, angle: (f64, f64), w: [f64; 3], u: [f64; 2]) -> SlipResponse<f64> {
         self.law.answers(angle, w, u).0
     }
 
-    /// The contact force in a state; a slip that begins has the direction `way`.
+    /// The contact force in the state `y`; a slip that begins from rest has the direction `way`.
     pub fn force(&self, y: &State, slip: [f64; 2], way: [f64; 2]) -> Force {
         if L::IS && slip == [0.0; 2] {
             let [normal, along, across] =
@@ -211,7 +215,7 @@ impl<L: Own> Slide<L> {
         self.law.force(y, if slip == [0.0; 2] { way } else { slip })
     }
 
-    /// The halt by the first margin that fails at the start of a slip; None if all margins are positive.
+    /// The halt by the first condition that fails at the start of a slip; None if all conditions hold.
     pub fn at_start(&self, y: &State, u: [f64; 2]) -> Option<Halt> {
         let (s, c) = y.theta.sin_cos();
         let at = self.acts((s, c), [y.w1, y.w2, y.w3], u);

@@ -1,4 +1,4 @@
-//! The first moment of a slip that has no series, in a straight line.
+//! The first moment of a slip from rest that has no power series: a straight line.
 
 use super::{Own, Slide};
 use crate::motions::body::roll::lossy::REST;
@@ -8,7 +8,7 @@ use crate::motions::walk::numbers::{
     BodyNumbers, COS, HEAT, PHI, SIN, U2, UH, loses, pose_rates, poses, sum,
 };
 impl<L: Own> Slide<L> {
-    /// The rates of all numbers in time, for a slip that begins along `way` under a law of the user.
+    /// The time derivative of the state vector, for a slip that begins along `way` under a user-defined law.
     pub(crate) fn rates_along<const N: usize>(&self, y: &[f64; N], way: [f64; 2]) -> [f64; N] {
         self.asks_drive(y);
         let ((s, c), w, mut all) = (y.angle(), y.w(), [0.0; N]);
@@ -28,8 +28,8 @@ impl<L: Own> Slide<L> {
         all
     }
 
-    /// The numbers at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the
-    /// rate `growth`. Used where no series exists.
+    /// The state vector at the time `MOMENT` after the beginning of a slip along `way`, whose speed grows at the rate
+    /// `growth`. Used where no power series exists.
     pub(crate) fn nudged<const N: usize>(&self, start: &[f64; N], way: [f64; 2], growth: f64) -> [f64; N] {
         self.asks_drive(start);
         let (angle, w) = (start.angle(), start.w());

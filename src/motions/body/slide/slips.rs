@@ -19,18 +19,18 @@ use crate::motions::walk::numbers::{
 use crate::motions::walk::two_runs::CHANCE;
 use crate::motions::walk::{Next, Pause, Phases, after_rest, ending};
 
-/// A face barely lands if more than this share of its energy is in the turning, and it falls, rather than whirrs, if the
-/// square of w2 exceeds sin theta by this factor.
+/// A face only just lands if more than this share of its energy is in the rotation w1. It falls, rather than whirrs,
+/// if the square of w2 exceeds sin(theta) by the factor `FALLS_FAST`.
 const LANDS_BARELY: f64 = 1e-4;
 const FALLS_FAST: f64 = 100.0;
-/// Time of a few rockings of a face, in units of w2 (1 + I1).
+/// Time in which a face rocks a few times before it lands, in units of w2 (1 + I1).
 const ROCKINGS: f64 = 8.0;
 
-/// Number of steps between two estimates of the end of a whirr that slips.
+/// Number of integration steps between two estimates of the end of a whirr with slip.
 const STEPS_PER_LOOK: u64 = 64;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Computes a slip from `place`, within the limits `steps`.
+    /// Integrates a slip from `place` on, within the limits `steps`, and chooses the next phase at its end.
     pub(crate) fn slides(
         &mut self,
         place: FlowPlace<N>,
@@ -64,7 +64,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(Pause::No)
     }
 
-    /// Ends a slip at the numbers `y`, and chooses the next phase.
+    /// Ends a slip at the state vector `y`, and chooses the next phase.
     pub(crate) fn slip_ends(&mut self, y: [f64; N], halt: Halt) {
         if self.of.slide.settled && loses(N) && !self.is_driven() {
             // A change of the sum of energy, heat and lost energy while the contact is settled is an error of the
@@ -133,9 +133,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Includes the length of the passage of a pole that has just ended in the estimated error, if an output lies in it:
-    /// there the numbers were linear in time. The couple of dry friction along the rim turns with e_h; that it counts as
-    /// constant changes w by twice what it does in this time, and by more where the body slips faster than it turns.
+    /// Includes the error of a passage of the vertical by a ball's axis in the estimated error. An output during the
+    /// passage is interpolated linearly. The couple of dry friction along the rim turns with e_h, but is taken as
+    /// constant: the error of w is twice its effect in this time, and more where the body slips faster than it turns.
     pub(crate) fn claims_passage(&mut self) {
         let speed = self.at[W1].hypot(self.at[W2]);
         let lasts = 2.0 * self.at[SIN] / speed;
@@ -151,8 +151,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Ends what the slip of a uniform ball has beside its creep, which friction turns into rolling, unless rolling
-    /// resistance holds that.
+    /// Ends the part of a uniform ball's slip that differs from steady creep: friction turns it into rolling, unless
+    /// rolling resistance holds the ball.
     pub(crate) fn drops_slip(&mut self, [u_h, u_2]: [f64; 2]) {
         let [s, c] = [self.at[SIN], self.at[COS]];
         let held = !self.ask.losses.is_none() && is_still(&self.at);
@@ -166,17 +166,16 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = state(&self.at);
     }
 
-    /// The steps since the last known phase have left an error of w, which in phases that are known turns the axis as
-    /// roundings of w do.
+    /// Adds the step errors since the last phase in closed form to the rounding errors of w, which in such phases
+    /// turn the axis.
     pub(crate) fn inherits_errors(&mut self) {
         let of = &mut self.of.roundings;
         let erred = self.spent.erred - core::mem::replace(&mut of.inherited, self.spent.erred);
         of.count += CHANCE * erred * self.of.slide.tol / (f64::EPSILON * <Slide>::fastest(&self.at));
     }
 
-    /// The error of the time at which a falling face has landed, although it hardly cleared the table or hardly did not:
-    /// where rolling resistance has left a turning of the size of rounding errors, these decide whether it lands or goes
-    /// on to rock, a few times at most.
+    /// The error of the landing time of a falling face that only just lands. Where rolling resistance has left a
+    /// rotation of the size of rounding errors, these decide whether the face lands or rocks on, a few times at most.
     pub(crate) fn rocks_on(&self) -> f64 {
         let ([s, _, w1, w2], i1) = (core::array::from_fn(|i| self.at[i]), self.of.body.i1());
         let barely = turning_share(i1, s, w1, w2) > LANDS_BARELY && w2 * w2 > FALLS_FAST * s;
@@ -187,7 +186,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// The time at which a slipping whirr ends, and its error, if they are known and no output is
+    /// The time at which a whirr with slip ends, and its error; None if they are not yet known, or if an output is
     /// requested before.
     pub(crate) fn whirr_ends(&mut self, at: &[f64; N]) -> Option<[f64; 2]> {
         let until = self.until().unwrap_or(f64::INFINITY);
@@ -196,7 +195,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         tail.known(at[SIN], until)
     }
 
-    /// Notes the beginning of a slip from rest.
+    /// Records the beginning of a slip from rest in a whirr, for the estimate of its end.
     pub(crate) fn nods(&mut self) {
         let (at, lost) = (&self.at, lost(&self.at));
         let root = (at[W1] * at[SIN]).abs().cbrt();
@@ -205,8 +204,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Ends a whirr that slips in each nod where the face lands, if that is known and no output is requested before. The
-    /// energy that is left becomes heat, or is lost, in the same shares as that of the last nod.
+    /// Ends a whirr that slips in each nod, if the landing of its face is known and no output is requested before.
+    /// The remaining energy becomes heat, or is lost, in the same shares as in the last nod. Returns whether the
+    /// whirr has ended.
     #[inline(never)]
     pub(crate) fn nods_end(&mut self, given_up: bool) -> bool {
         let Some(end) = self.of.nods.as_ref().and_then(|nods| nods.end()) else { return false };
@@ -229,7 +229,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         accepted
     }
 
-    /// Ends the walk where the face lands, at a time with its error.
+    /// Ends the motion at the time at which the face lands; `doubt` is the error of this time.
     pub(crate) fn lies_flat(&mut self, [time, doubt]: [f64; 2]) {
         self.claims(self.rocks_on());
         (self.at[SIN], self.at[TIME]) = (0.0, time);

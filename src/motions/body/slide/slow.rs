@@ -1,4 +1,4 @@
-//! The slow slips of a body of revolution, as power series of all of its numbers.
+//! The slow slips of a body of revolution, as power series of all components of its state vector.
 
 use crate::laws::body::Rim;
 use crate::laws::contact::lying::Lying;
@@ -11,19 +11,19 @@ use crate::motions::walk::{SlowLaw, SlowSeries};
 use crate::numbers::tape::{Tape, Taped};
 use crate::numbers::{Real, Series};
 
-/// The series of a body's slow slips.
+/// The power series of a body's slow slips under one law.
 pub(crate) struct BodySlips {
     slips: RecordedSlips,
-    /// The circle on which alone the body slips, and the signs of the motions that its dry losses resist, for which the
-    /// law was recorded.
+    /// The circle of contact if the body slips on one only; `ways` has the signs of the rotations that its dry losses
+    /// resist, for which the law was recorded.
     one: Option<Rim<f64>>,
     ways: Option<Ways>,
-    /// Index of the rate of the lost energy in [`SlowRates::more`].
+    /// Index of the time derivative of the lost energy in [`SlowRates::more`].
     lost: Option<usize>,
 }
 
-/// The slips on a level table, or on one that is tilted or turns, where sine and cosine of phi and the place are numbers
-/// as well.
+/// The recorded law of a slip on a level table, or on one that is tilted or turns, where sine and cosine of phi and
+/// the place belong to the state as well.
 enum RecordedSlips {
     Level(SlowSlips<5>),
     Tilted(SlowSlips<9>),
@@ -38,15 +38,15 @@ impl RecordedSlips {
     }
 }
 
-/// The law of a slip on one rim, or on two rims of which the other already slips, with the tangent of the slope.
+/// The law of a slip on one rim, or on two rims where the other rim already slips.
 pub(crate) enum Slippery {
-    /// Also with the rate at which the table turns.
+    /// A slip on one rim, with the tangent of the slope and the rate at which the table turns.
     One(Slipping<f64>, [f64; 2]),
     Two(Lying<f64>, f64),
 }
 
 impl BodySlips {
-    /// The series for a motion with `count` numbers.
+    /// The power series under a law, for a state vector with `count` components.
     pub fn of(law: &Slippery, tol: f64, count: usize) -> Self {
         match law {
             Slippery::One(law, table) => Self::on_one(law, *table, tol, count),
@@ -54,7 +54,7 @@ impl BodySlips {
         }
     }
 
-    /// Whether these are the slips of this body on one rim under this law.
+    /// Whether these power series are those of a body on one rim under this law.
     pub fn are_under(&self, law: &Slipping<f64>) -> bool {
         self.one == Some(law.shape.rim) && self.ways == law.losses.and_then(|losses| losses.ways)
     }
@@ -87,7 +87,7 @@ impl BodySlips {
         Self { slips, one: None, ways: None, lost }
     }
 
-    /// The rates on two rims, with the index of that of the lost energy.
+    /// The rates of a slip on two rims, and the index of the rate of the lost energy.
     fn rates_on_two<'a>(
         taped: &Lying<Taped<'a>>,
         tape: &'a Tape,
@@ -146,13 +146,13 @@ impl BodySlips {
         Self { slips, one: Some(law.shape.rim), ways: law.losses.and_then(|losses| losses.ways), lost }
     }
 
-    /// The rates of the place of the contact point, from those of [`SlowRates::more`].
+    /// The time derivative of the place (x, y) of the contact point, from the rates of [`SlowRates::more`].
     fn moves<'a>(more: &[Taped<'a>], [sin, cos]: [Taped<'a>; 2]) -> [Taped<'a>; 2] {
         let [_, _, _, out, on, ..] = *more else { unreachable!("a slope needs the pose") };
         [out * cos - on * sin, out * sin + on * cos]
     }
 
-    /// The rates on one rim of a level table, with the index of that of the lost energy.
+    /// The rates of a slip on one rim on a level table, and the index of the rate of the lost energy.
     fn rates_on_one<'a>(
         law: &Slipping<f64>,
         tape: &'a Tape,
@@ -181,7 +181,7 @@ impl BodySlips {
         SlowRates { numbers: [-(c * w2), s * w2, d1, d2, d3], slip: at.u, more }
     }
 
-    /// The series of all numbers of a motion from that of a slow slip.
+    /// The power series of all components of a state vector, from those of a slow slip.
     fn series<const N: usize, const K: usize>(&self, y: &[f64; N], slow: &SlowSlip<K>) -> Box<SlowSeries<N>> {
         let rate = |i: usize| self.slips.more(i);
         let mut numbers: [Series; N] = core::array::from_fn(|i| Series::of(y[i]));
@@ -231,8 +231,8 @@ impl<const N: usize> SlowLaw<N> for BodySlips {
     }
 }
 
-/// The first `terms` coefficients of the sine and the cosine of an angle that grows from
-/// `start` at this rate.
+/// The first `terms` coefficients of the power series of the sine and the cosine of an angle that grows from `start`
+/// at this rate.
 fn circle(start: f64, rate: &Series, terms: usize) -> [Series; 2] {
     let (sin, cos) = start.sin_cos();
     let (mut sine, mut cosine) = (Series::of(sin), Series::of(cos));

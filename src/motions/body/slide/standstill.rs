@@ -1,22 +1,25 @@
-//! The last part of a slip, which is extrapolated to the standstill of the contact point.
+//! The last part of a slip, which is extrapolated to the time at which the contact point comes to rest.
 
 use super::{Own, Slide};
 use crate::methods::flow::{Flow, FlowPlace};
 use crate::motions::dry::creep::rests_below;
 use crate::motions::walk::numbers::{BodyNumbers, SIN, TIME, U2, UH, W2, sum};
 use crate::motions::walk::slip_over;
-/// Error of the end of a slip that is extrapolated, in tolerances. It is far below this bound: with a bound of 1 it was at most
-/// 0.1, and no claim of 432 random motions was too small; with a bound of 100 it was up to 7, and two claims were.
+/// Bound of the error by the extrapolated end of a slip, in tolerances. The true error is far smaller: with a bound
+/// of 1 it was at most 0.1, and none of the error estimates of 432 random motions was too small; with a bound of 100
+/// it was up to 7, and two estimates were too small.
 const AT_ONCE: f64 = 0.01;
-/// Lanes leave a slip to a single flow at this share of the speed that friction takes from it in the time of such a rest, unless
-/// it is less than `MUCH_FASTER` times as fast when it gets a lane.
+/// SIMD code leaves the end of a slip to a single integration at this share of the speed that friction takes from the
+/// slip in the longest extrapolated time, unless the slip starts in SIMD code with less than `MUCH_FASTER` times that
+/// speed.
 #[cfg(feature = "many")]
 const SHARE_OF_LAST: f64 = 0.5;
 #[cfg(feature = "many")]
 const MUCH_FASTER: f64 = 10.0;
-/// Largest angle between the direction of such a slip and its mean.
+/// Largest angle, in radians, between the direction of a slip whose end is extrapolated and its mean direction.
 const STRAIGHT: f64 = 1e-2;
-/// Angle by which a direction beside that of a slip differs from it.
+/// Angle, in radians, between the direction of a slip and the neighbouring ones that give the derivative of its
+/// turning rate.
 const BESIDE: f64 = 1e-3;
 
 impl<L: Own> Slide<L> {
@@ -25,8 +28,8 @@ impl<L: Own> Slide<L> {
         self.law.patch().map_or(slip_over(self.law.dry, self.law.strength), rests_below)
     }
 
-    /// The speed below which the rest of a slip is about that of [`Slide::ends_at_once`], so that a single flow continues a
-    /// slip that SIMD lanes have followed up to there; a slip that begins hardly faster is in lanes to its end.
+    /// The speed at which a slip that SIMD code has followed is left to a single integration, since about there
+    /// [`Slide::ends_at_once`] can end it. A slip that begins hardly faster stays in SIMD code to its end.
     #[cfg(feature = "many")]
     pub fn over_in_lanes<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let time = (AT_ONCE * self.tol).cbrt() * self.calm(y) / 3.0;
@@ -36,15 +39,15 @@ impl<L: Own> Slide<L> {
         if self.law.dry && u_h.hypot(u_2) > MUCH_FASTER * near { near.max(self.over()) } else { self.over() }
     }
 
-    /// The numbers at the end of a slip whose rest is so short that a single step has an error below `AT_ONCE` tolerances:
-    /// the cube of the angle by which the body turns meanwhile, and its product with the square of that by which the slip
-    /// turns. None for a longer rest.
+    /// The state vector at the end of a slip, by a single step if its error is below `AT_ONCE` tolerances; else None.
+    /// The error is the cube of the angle by which the body turns meanwhile, or this angle times the square of that
+    /// by which the slip turns.
     ///
     /// ```text
     /// r alpha' = -k (alpha - a),   r = r0 (1 - t/T),   p = k T/r0:   the mean of alpha is alpha0 + (a - alpha0) p/(1 + p)
     /// ```
-    /// The direction alpha returns to a, which moves with the body, so that it is taken in the middle of the time T. The
-    /// rates in the middle, in the mean direction, are those of the step.
+    /// The direction alpha of the slip approaches the direction a, which changes with the motion and is taken in the
+    /// middle of the remaining time T. The step uses the rates in the middle of T, in the mean direction.
     #[inline(never)]
     pub(super) fn ends_at_once<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let ([u, v], [du, dv]) = (place.y.slip(), place.rate.slip());
@@ -103,7 +106,7 @@ impl<L: Own> Slide<L> {
     }
 }
 
-/// The numbers at the end of a slip that is slower than `over`, extrapolated linearly.
+/// The state vector at the end of a slip that is slower than `over`, extrapolated linearly; None for a faster slip.
 pub(super) fn vanished<const N: usize>(place: &FlowPlace<N>, over: f64) -> Option<[f64; N]> {
     let [u_h, u_2] = place.y.slip();
     let speed = u_h.hypot(u_2);

@@ -1,4 +1,4 @@
-//! The flow of a body on its face: its rates, and the margins at which it ends.
+//! The equations of a body on its face: its rates, and the conditions that end the phase.
 //!
 //! ```text
 //! |v| = r cos k,  a |w| = r sin k,   d t = (r/mu) d tau       under dry friction, of a body that slides and spins
@@ -6,10 +6,10 @@
 //! v' = F + G,   I3 w' = M                                     otherwise, in time;   G   pull of a slope
 //! ln(r)' = V.dv + S ds,   V' = dv - ln(r)' V,   S' = ds - ln(r)' S      V = v/r, S = a w/r, in tau, where a slope pulls at a slide
 //! ```
-//! Slide and spin end together, after infinitely many turns of v in a finite time. In tau all of these rates are bounded and
-//! smooth, and depend on k alone. The flow ends where r has fallen to a rounding; the rest is extrapolated linearly. A slope
-//! lets v pass through zero while the body spins, where its direction alpha is no smooth number: V is.
-//! [`contact::face`](crate::laws::contact) has the law of friction.
+//! Slide and spin end together, after infinitely many turns of v in a finite time. In tau all of these rates are
+//! bounded and smooth, and depend on k alone. The integration ends where r has fallen to a rounding; the rest is
+//! extrapolated linearly. On a slope v may pass through zero while the body spins. There the direction alpha of v is
+//! not smooth, but V is. [`contact::face`](crate::laws::contact) has the law of friction.
 //!
 //! Error: the tolerance of the steps.
 
@@ -31,24 +31,26 @@ use crate::motions::{Ask, Kind};
 use crate::numbers::Dual;
 use core::f64::consts::PI;
 
-/// The numbers of a flow in tau, in place of w1, w2 and w3.
+/// Index of alpha, the direction of v, in the state vector of an integration in tau; the variables of tau replace w1,
+/// w2 and w3.
 const ALPHA: usize = W1;
 const SIZE: usize = W2;
 const SHARE: usize = W3;
 
-/// A slide is over where both speeds are below this share of those at its start.
+/// A slide ends where the speeds of slide and spin are both below this share of those at its start.
 const SLID_OUT: f64 = 1e-14;
-/// At the fold itself there is no centre of the pressure any more.
+/// The integration ends at this share of the fold, where the centre of pressure ceases to exist.
 const SHORT_OF_FOLD: f64 = 1.0 - 1e-9;
-/// Where slide and spin of a tall disc become as fast as each other, the part that presses shrinks to a point, and friction tends
-/// to its last value with the root of what is left: the flow ends before it, and what is left follows from that root.
+/// Where slide and spin of a tall disc become equally fast, the part that presses shrinks to a point, and friction
+/// approaches its last value as the square root of the distance. The integration ends at this share of the ratio 1,
+/// and the rest follows from the square root.
 const SHORT_OF_POINT: f64 = 1.0 - 1e-5;
-/// A spin and a velocity across the slope below this share of the speed are rounding errors.
+/// A spin, and a velocity across the slope, below this share of the speed count as rounding errors.
 const STRAIGHTENED: f64 = 1e-15;
-/// The longest step in tau.
+/// The longest integration step in the variable tau.
 const LONGEST: f64 = 4.0;
 
-/// The margins of the flow.
+/// Indices of the margins: functions of the state whose zeros end the phase.
 const RESTS: usize = 0;
 const SPIN_ENDS: usize = 1;
 const TOPPLES: usize = 2;
@@ -56,47 +58,49 @@ const STRAIGHTENS: usize = 3;
 const ENDS: [Halt; MARGINS] =
     [Halt::Rests, Halt::Turned, Halt::Topples, Halt::Turned, Halt::Time, Halt::Time];
 
-/// How the velocities change.
+/// How slide and spin of a body on its face change, which decides the variables of integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Braking {
-    /// Both slide and spin rub, in tau.
+    /// Dry friction acts on both slide and spin; integrated in tau.
     Rubs,
-    /// Dry friction beside the pull of a slope, in tau.
+    /// Dry friction and the component of gravity along a slope act; integrated in tau.
     Pulled,
-    /// Only one of them does, under dry friction, and none turns.
+    /// Dry friction acts on either a slide along a straight line or a spin; integrated in time.
     Straight,
-    /// A viscous film, or no friction.
+    /// A viscous film, or no friction; integrated in time.
     Soft,
 }
 
-/// A body on its face: its friction, and what its flow starts from.
+/// The equations of a body on its face: its friction and losses, and the start of the integration.
 #[derive(Clone, Copy)]
 pub(crate) struct StandingFlow {
     shape: Shape<f64>,
-    /// Radius a of the ring, height Z of the centre of mass, cos theta, and the sign of w_z.
+    /// Radius a of the ring of contact; `height` is the height Z of the centre of mass, `up` cos(theta), and the last
+    /// one the sign of w_z.
     radius: f64,
     height: f64,
     up: f64,
     way: f64,
     course: Braking,
     face: FaceFriction,
-    /// mu, or c.
+    /// The coefficient mu of dry friction, or c of a viscous film.
     strength: f64,
     dry: bool,
-    /// The coefficient of friction that holds a face at rest.
+    /// The coefficient of static friction, which holds a face at rest.
     holds: f64,
-    /// The pull of a slope on the centre along e_h and e2.
+    /// The component of gravity along a slope, along e_h and e2; 0 on a level table.
     pull: [f64; 2],
-    /// The lengths and coefficients of drilling, and of the air, linear and quadratic.
+    /// The coefficients of the losses against a spin: drilling (a length), linear and quadratic drag of the air.
     losses: [f64; 3],
-    /// Cosine and sine of the direction of v at the start, along e_h and e2, and ln(r) where the flow ends.
+    /// Cosine and sine of the direction of the centre's velocity v at the start, along e_h and e2.
     towards: [f64; 2],
     least: f64,
     pub tol: f64,
 }
 
 impl StandingFlow {
-    /// The flow from these numbers, on a face that friction `face` holds and the table pulls at.
+    /// The equations from the state vector `y` on, with the friction `face` of the face, losses, and a component of
+    /// gravity along the table.
     pub fn new<const N: usize>(
         (shape, face): (Shape<f64>, FaceFriction),
         friction: &Friction,
@@ -147,7 +151,7 @@ impl StandingFlow {
         [y[UH], y[U2] + self.radius * y[W3]]
     }
 
-    /// The pull of a slope on the centre along e_h and e2.
+    /// The component of gravity along a slope, along e_h and e2; 0 on a level table.
     pub fn pull(&self) -> [f64; 2] {
         self.pull
     }
@@ -158,20 +162,22 @@ impl StandingFlow {
         y[W3] == 0.0 && !self.is_across([v_h, v_2])
     }
 
-    /// Whether this velocity is not along the slope.
+    /// Whether a velocity has a component across the slope.
     fn is_across(&self, [v_h, v_2]: [f64; 2]) -> bool {
         let across = v_h * self.pull[1] - v_2 * self.pull[0];
         across.abs() > 2.0 * STRAIGHTENED * v_h.hypot(v_2) * self.pull[0].hypot(self.pull[1])
     }
 
-    /// Spin and velocity across the slope as shares of the speed, of a slide downhill in tau.
+    /// Spin and velocity across the slope as shares of the speed, for a slide downhill that is integrated in tau;
+    /// None for another motion.
     fn aside<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         let slope = self.pull[0].hypot(self.pull[1]);
         let [x, z] = self.pull.map(|of| of / slope);
         (y[UH] * x + y[U2] * z > 0.0).then(|| [y[SHARE], y[UH] * z - y[U2] * x])
     }
 
-    /// The numbers of a slide down a slope without a spin and a velocity across that are rounding errors.
+    /// The state vector of a slide down a slope, with a spin and a velocity across the slope set to zero if they are
+    /// rounding errors.
     pub fn straightened<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
         let (v, slope) = (v_h.hypot(v_2), self.pull[0].hypot(self.pull[1]));
@@ -183,7 +189,7 @@ impl StandingFlow {
         all
     }
 
-    /// The ratio of slide to spin at which the flow ends.
+    /// The ratio of the speeds of slide and spin at which the body topples and the integration ends.
     fn topples_at(&self) -> f64 {
         self.face.fold() * if self.ends_at_point() { SHORT_OF_POINT } else { 1.0 }
     }
@@ -192,8 +198,8 @@ impl StandingFlow {
         self.dry && self.face.shrinks()
     }
 
-    /// The way from these numbers to where slide and spin become as fast as each other, at the shares 0 to 1 of its time; None if
-    /// they do not.
+    /// The state vector on the way from `y` to where slide and spin become equally fast, as a function of the share
+    /// (0 to 1) of the time until then; None if they do not become equally fast.
     pub fn way_to_point<const N: usize>(&self, y: &[f64; N]) -> Option<impl Fn(f64) -> [f64; N] + use<N>> {
         if !self.ends_at_point() {
             return None;
@@ -226,7 +232,7 @@ impl StandingFlow {
         self.strength > 0.0 || self.losses != [0.0; 3]
     }
 
-    /// The numbers from which the flow starts.
+    /// The state vector, in the variables of integration, from which the integration starts.
     pub fn enter<const N: usize>(&self, y: &[f64; N]) -> [f64; N] {
         let (mut all, [v_h, v_2]) = (*y, self.velocity(y));
         let (v, s) = (v_h.hypot(v_2), self.radius * y[W3].abs());
@@ -249,13 +255,15 @@ impl StandingFlow {
         matches!(self.course, Braking::Rubs | Braking::Pulled)
     }
 
-    /// The speeds |v| and a |w| of a flow in tau. Beyond k = 0 the spin, and beyond a right angle the slide, has turned round.
+    /// The speeds |v| and a |w| in an integration in tau; negative where the motion has reversed: the spin for k < 0,
+    /// the slide for k > pi/2.
     fn speeds<const N: usize>(y: &[f64; N]) -> [f64; 2] {
         let (size, (sin, cos)) = (y[SIZE].exp(), y[SHARE].sin_cos());
         [size * cos, size * sin]
     }
 
-    /// Force and couple at the numbers of a flow in time. Dry friction keeps its direction, beyond rest as well.
+    /// Force and couple at the state vector of an integration in time. Dry friction keeps its direction even after
+    /// the velocity has passed zero, so that the zero is found.
     fn along<const N: usize>(&self, y: &[f64; N]) -> [f64; 3] {
         let (v, w) = ([y[UH], y[U2]], self.up * y[W3]);
         if self.course == Braking::Straight {
@@ -265,7 +273,8 @@ impl StandingFlow {
         self.pushed(v, w)
     }
 
-    /// The friction -F/(mu N) along v, across it and about the axis at these speeds, which may have turned round.
+    /// The friction -F/(mu N) along v and across it, and its couple, at these speeds of slide and spin, which may be
+    /// negative.
     fn rubs(&self, [v, s]: [f64; 2]) -> [f64; 3] {
         // Steps may look a little beyond the fold at which they end.
         if !(v + s).is_finite() {
@@ -279,13 +288,13 @@ impl StandingFlow {
         })
     }
 
-    /// The couple of the losses against w.
+    /// The couple with which the losses oppose the spin w.
     fn lost(&self, w: f64) -> f64 {
         let [drilling, linear, square] = self.losses;
         if w == 0.0 { 0.0 } else { drilling * w.signum() + (linear + square * w.abs()) * w }
     }
 
-    /// Force along e_h and e2 and couple about the vertical, at the velocity of the centre and w_z.
+    /// The force along e_h and e2 and the couple about the vertical, for this velocity of the centre and this w_z.
     fn pushed(&self, [v_h, v_2]: [f64; 2], w: f64) -> [f64; 3] {
         let (v, s) = (v_h.hypot(v_2), self.radius * w.abs());
         let [x, z] = if v > 0.0 { [v_h / v, v_2 / v] } else { [1.0, 0.0] };
@@ -301,12 +310,12 @@ impl StandingFlow {
         [along * x - aside * z, along * z + aside * x, if s > 0.0 { about } else { 0.0 }]
     }
 
-    /// Whether the pull of a slope outweighs friction along the way.
+    /// Whether the component of gravity along a slope is larger than friction, so that the slide speeds up.
     fn speeds_up(&self) -> bool {
         self.towards[0] * self.pull[0] + self.towards[1] * self.pull[1] >= self.strength
     }
 
-    /// The margin of toppling under this force: it vanishes where the centre of the pressure reaches the ring.
+    /// How far the centre of pressure is from the ring under this friction force; 0 where the body topples.
     fn stands_under(&self, [f_h, f_2]: [f64; 2]) -> f64 {
         self.radius * self.radius - self.height * self.height * (f_h * f_h + f_2 * f_2)
     }
@@ -322,7 +331,7 @@ impl StandingFlow {
         self.strength > 0.0 && (v > self.topples_at() * s || self.face.at(v, s, None).is_none())
     }
 
-    /// The time in which what is left of slide and spin comes to rest.
+    /// The time in which the remaining slide and spin come to rest.
     pub fn left<const N: usize>(&self, y: &[f64; N]) -> f64 {
         let ([v_h, v_2], w) = (self.velocity(y), self.up * y[W3]);
         let [f_h, f_2, couple] = self.pushed([v_h, v_2], w);
@@ -332,7 +341,7 @@ impl StandingFlow {
         if size > 0.0 && rate > 0.0 { size / rate } else { 0.0 }
     }
 
-    /// The outputs at these numbers of a walk.
+    /// The outputs at the state vector `y`.
     pub fn row<const N: usize>(&self, ask: &Ask, y: &[f64; N]) -> OutputRow<State> {
         let (v, pull) = (self.velocity(y), self.pull[0].hypot(self.pull[1]));
         let [across, along, _] = if pull > 0.0 && v == [0.0; 2] && y[W3] == 0.0 {
@@ -357,7 +366,8 @@ impl StandingFlow {
     }
 }
 
-/// The couple of friction about the vertical on a body on its face, from a state and its slip.
+/// Returns a function that computes the couple of friction about the vertical on a body on its face, from a state and
+/// its slip.
 pub(crate) fn couple_on_face(body: &Body, ask: &Ask) -> impl Fn(&State, [f64; 2]) -> f64 + use<> {
     let friction = ask.table.friction();
     let [first, other] = [(0.0, 1.0), (PI, -1.0)].map(|(theta, up)| {

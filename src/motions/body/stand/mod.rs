@@ -7,10 +7,11 @@
 //! rests         while friction and the ring hold it; on a slope it slides down, or tips over the lowest point of its ring
 //! falls         in a plane: it stays, or rocks over the opposite point; else what turns is lost, and it stays
 //! ```
-//! theta = 0 is reached only by a motion in a plane and by losses: any turn about the vertical keeps a rim from it. `up` is
-//! cos theta, 1, or -1 on the other face of a disk.
+//! A face lands (theta = 0) only in a motion in a vertical plane, or by losses: any rotation about the vertical keeps
+//! theta from 0. `up` is cos(theta): 1, or -1 on the other face of a disk.
 //!
-//! Error: the tolerance of the steps, and the square of the time after which a rising body is followed on its rim.
+//! Error: the tolerance of the steps, and for a body that rises the square of the short time after which its motion
+//! on the rim is computed.
 
 pub(crate) mod flow;
 mod rocks;
@@ -38,42 +39,47 @@ use crate::numbers::larger_or_nan;
 use core::f64::consts::{PI, TAU};
 use flow::StandingFlow;
 
-/// A point of a ring is at rest whose slip is below this share of the velocity of the centre.
+/// A point of the ring of contact counts as at rest if its slip is below this share of the velocity of the centre.
 const SLIPS_OFF: f64 = 1e-4;
-/// Slower velocities are those of a body at rest.
+/// A body on its face that moves more slowly than this counts as at rest.
 const UNMOVED: f64 = 1e-13;
-/// The inclination from which a rising body is followed on its rim. It is above that at which a face has landed.
+/// The inclination from which the motion of a body that rises from its face is computed as that on its rim. It is
+/// larger than that at which a face counts as landed.
 const RISEN: f64 = 4e-12;
-/// A rim that rises more slowly, beside a spin, comes to nothing; so does one that falls, beside what is lost.
+/// A spinning body whose theta grows more slowly than this does not rise from its face; one that falls more slowly
+/// than this does not rock.
 const HARDLY_RISES: f64 = 1e-6;
-/// A film lets a body topple from lam = 1 on: an onset is located to this accuracy.
+/// Relative accuracy with which the beginning of toppling on a viscous film is found: the body topples from lam = mu
+/// z/a = 1 on.
 const ONSET: f64 = 1e-10;
-/// Friction and a ring that both just hold, to this accuracy, let a slow slide go on for ever.
+/// Where friction just holds a body on a slope and the body just does not topple, both to this accuracy, a slow slide
+/// lasts for ever.
 const JUST_HOLDS: f64 = 1e-9;
-/// A face that comes down in less time than this does so with constant rates.
+/// A face that lands within this time is computed with constant rates.
 const SOON_DOWN: f64 = 1e-5;
 
-/// What becomes of a body at rest on its face.
+/// What a body at rest on its face does next.
 enum FromRest {
     Stays,
     Slides,
     Tips,
-    /// Its pressure cannot leave the ring, and rolling resistance, or friction, does not let it rise.
+    /// No motion is consistent: the centre of pressure would leave the ring, and rolling resistance or friction does
+    /// not let the body rise.
     Jams,
 }
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// Whether the body is on its face.
+    /// Whether the current state is that of a body on its face.
     pub(crate) fn is_on_face(&self) -> bool {
         self.at[SIN].abs() <= ALMOST_FLAT && self.of.body.rim() > 0.0
     }
 
-    /// cos theta on a face.
+    /// cos(theta) of a body on its face: 1, or -1 on the other face.
     pub(crate) fn up(&self) -> f64 {
         self.at[COS].signum()
     }
 
-    /// Moves the walk onto its face, at rest but for slide and spin.
+    /// Sets the current state to that of a body on its face, which keeps only slide and spin.
     fn lies_on_face(&mut self) {
         let up = self.up();
         (self.at[SIN], self.at[COS], self.at[W1], self.at[W2]) = (0.0, up, 0.0, 0.0);
@@ -81,13 +87,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
     }
 
-    /// The state of a body on its face.
+    /// Sets the state with theta = 0 or pi for a body on its face.
     fn sees_face(&mut self) {
         let theta = if self.at[COS] > 0.0 { 0.0 } else { PI };
         self.of.state = State { theta, w1: self.at[W1], w2: self.at[W2], w3: self.at[W3] };
     }
 
-    /// The friction of the face; None for a table on which the body rolls, and under laws of the user.
+    /// The friction law of a body on its face; None for a table on which the body only rolls, and under user-defined
+    /// laws.
     fn friction_of_face(&self) -> Option<Friction> {
         match self.ask.table {
             _ if self.of.own.varies() || self.of.own.has_couple() => None,
@@ -97,12 +104,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// The flow of a body that stands with these numbers.
+    /// The equations of a body on its face, from the current state on.
     fn standing(&self, friction: &Friction) -> StandingFlow {
         self.standing_with(friction, (&self.ask.losses, pull(self.of.tilt, &self.at)))
     }
 
-    /// The flow of a body that stands with these numbers, under these losses and this pull.
+    /// The equations of a body on its face, from the current state on, under these losses and this component of
+    /// gravity along the table.
     fn standing_with(&self, friction: &Friction, beside: (&Losses, [f64; 2])) -> StandingFlow {
         let (shape, angle) = (self.of.slide.law.shape, self.at.angle());
         let lam = match friction {
@@ -116,7 +124,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         StandingFlow::new((shape, face), friction, beside, &self.at, self.of.slide.tol)
     }
 
-    /// The phase of a motion that begins on a face: it stands, or a kick lets it rise.
+    /// The first phase of a motion that begins on a face: the body stays on it, or rises if the start has w2 for it.
     pub(super) fn starts_on_face(&mut self) -> Result<Next, Error> {
         let (up, at) = (self.up(), self.of.state);
         (self.at[SIN], self.at[COS]) = (0.0, up);
@@ -136,7 +144,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// Moves the walk on by the time in which its face, which has all but landed, comes down.
+    /// Advances the motion by the time `left` in which the face, which is almost on the table, lands.
     pub(super) fn falls_the_rest(&mut self, left: f64, sticks: bool) {
         if self.of.body.rim() > 0.0 && self.at[W1] == 0.0 && left < SOON_DOWN {
             let up = self.up();
@@ -147,7 +155,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.at[TIME] += left;
     }
 
-    /// The phase of a body that has come down on its face.
+    /// The phase of a body whose face has just landed.
     #[inline(never)]
     pub(super) fn settles_on_face(&mut self) -> Next {
         let (up, w) = (self.up(), self.at.w());
@@ -201,8 +209,9 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::OnItsFace)
     }
 
-    /// What becomes of a body at rest on its face. Its pressure cannot leave the ring, at rest and in a slide. A body that tips
-    /// over the lowest point of its ring turns about it where this needs no more than static friction, else it slips there.
+    /// What a body at rest on its face does next: it stays or slides if the centre of pressure is within the ring,
+    /// else it tips over the lowest point of the ring. It turns about this point if static friction suffices, else it
+    /// slips there.
     fn tips(&self) -> FromRest {
         let (slope, shape) = (self.of.tilt.abs(), self.of.slide.law.shape);
         let [a, z] = [shape.rim.radius(self.at.angle()), shape.rim.height(self.at.angle())];
@@ -226,8 +235,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         if sticks || slips { FromRest::Tips } else { FromRest::Jams }
     }
 
-    /// Whether friction and the ring both just hold the body on a slope. A small spin then lets it slide on for ever, at less than
-    /// the speed of its rim, which is the error of saying that it rests.
+    /// Whether friction just holds the body on a slope, and the body just does not topple. A small spin then lets it
+    /// slide for ever, more slowly than its rim turns; this speed is the error if the body is taken to rest.
     fn creeps(&self) -> bool {
         let Table::Rubs(Friction::Coulomb { mu, fixed, .. }) = self.ask.table else { return false };
         let (slope, rim) = (self.of.tilt.abs(), self.of.slide.law.shape.rim);
@@ -235,12 +244,12 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         mu > 0.0 && slope <= fixed && (slope - mu).abs() <= JUST_HOLDS * mu && needs.abs() <= JUST_HOLDS
     }
 
-    /// The arm of rolling resistance, which acts on the one point of the ring over which a body tips.
+    /// The arm of rolling resistance (a length), which acts at the point of the ring over which a body tips.
     fn resists_tipping(&self) -> f64 {
         self.ask.losses.coefficient(Law::RollingResistance)
     }
 
-    /// The phase of a body at rest that a slope tips over the lowest point of its ring.
+    /// The phase of a body that a slope tips over the lowest point of its ring from rest.
     fn tips_over(&mut self) -> Next {
         let [pull_h, pull_2] = pull(self.of.tilt, &self.at);
         self.tells_from(pull_2.atan2(pull_h));
@@ -253,7 +262,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
     }
 
-    /// Computes a phase on the face, or begins its flow.
+    /// Computes a phase of a body on its face, or begins its integration.
     #[inline(never)]
     pub(crate) fn stands(&mut self) -> Option<WalkStep<N>> {
         let flow = self.of.standing.as_deref()?;
@@ -280,7 +289,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         None
     }
 
-    /// Computes the flow of a phase on the face.
+    /// Integrates a phase of a body on its face.
     #[inline(never)]
     pub(crate) fn stands_on(
         &mut self,
@@ -305,7 +314,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Ok(Pause::No)
     }
 
-    /// Ends a phase on the face at the numbers `y`, and chooses the next one.
+    /// Ends a phase of a body on its face at the state vector `y`, and chooses the next phase.
     #[inline(never)]
     pub(crate) fn stops_standing(&mut self, y: [f64; N], halt: Halt) {
         let Some(flow) = self.of.standing.take() else { return };
@@ -436,7 +445,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.settles_on_face()
     }
 
-    /// Takes what is left of a slow motion near a face.
+    /// Ends a slow motion close to a face: the body lies on the face at rest, and the remaining energy becomes heat.
     fn comes_to_nothing(&mut self) {
         let before = self.of.slide.energy(&self.at);
         self.lies_on_face();
@@ -444,7 +453,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.at[HEAT] += before - self.of.slide.energy(&self.at);
     }
 
-    /// The phase of a body that a kick, or a slope, lets rise on the point from which its state is told.
+    /// The phase of a body that an initial w2, or a slope, lets rise on the contact point of its state.
     fn rises_from_face(&mut self) -> Next {
         let (up, rises) = (self.up(), self.at[W2].abs());
         let planar = self.at[W3] == 0.0 && self.at[U2] == 0.0;
@@ -518,13 +527,14 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.touches_down()
     }
 
-    /// Whether a loss along the contour, whose couple grows beyond all bounds on an almost flat face, stops the contact along
-    /// the rim at once.
+    /// Whether a loss along the contour acts: its couple grows without bound as a face approaches the table, and
+    /// stops the contact point along the rim at once.
     fn holds_contour(&self) -> bool {
         self.ask.losses.iter().any(|(law, _)| law.is_along_contour())
     }
 
-    /// Follows a rising body for the time after which it is followed on its rim; `risen` gives its numbers after a time.
+    /// Advances a body that rises from its face by the short time `lasts`, after which its motion on the rim is
+    /// computed; `risen` returns the state vector after a time.
     fn rises_as(&mut self, lasts: f64, risen: impl Fn(f64) -> [f64; N]) {
         let began = self.at[TIME];
         let at = |t: f64| {
@@ -543,12 +553,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.of.state = write::state(&self.at);
     }
 
-    /// Tells a body on its face from the point of its ring in this direction, an angle from e_h. Slide and spin remain.
+    /// Takes the point of the ring in this direction, an angle from e_h, as the contact point of a body on its face.
+    /// Slide and spin remain.
     fn tells_from(&mut self, direction: f64) {
         self.turns_by(direction + if self.up() > 0.0 { PI } else { 0.0 });
     }
 
-    /// Turns e_h by this angle, and psi back.
+    /// Adds an angle to phi, and subtracts it from psi, so that the body does not move.
     fn turns_by(&mut self, turn: f64) {
         let up = self.up();
         let turn = turn - (turn / TAU).round() * TAU;
@@ -562,13 +573,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         (self.at[PHI], self.at[PSI]) = (to, self.at[PSI] - up * turn);
     }
 
-    /// Writes the current point of a body on its face to the outputs.
+    /// Writes the current state of a body on its face to the outputs.
     pub(super) fn writes_on_face(&mut self) {
         let flow = self.standing(&self.friction());
         self.writes_standing(&flow, &{ self.at });
     }
 
-    /// Writes a body on its face to the outputs.
+    /// Writes the state vector `y` of a body on its face to the outputs.
     fn writes_standing(&mut self, flow: &StandingFlow, y: &[f64; N]) {
         self.made.push(flow.row(&self.ask, y));
     }

@@ -8,7 +8,7 @@
 //! This is a landing of two circles ([`landing`](crate::laws::contact::landing)) whose other one is the opposite point of the same
 //! ring. The model is the block of Housner, Bull. Seismol. Soc. Am. 53, 403 (1963).
 //!
-//! Error: of the sum, the square of the time that is summed.
+//! Error of the sum of the last hops: the square of their total time.
 
 use super::UNMOVED;
 use crate::laws::contact::Table;
@@ -30,19 +30,21 @@ use crate::motions::walk::numbers::{
 use crate::motions::{Ending, Kind, Limit};
 use core::f64::consts::TAU;
 
-/// A rocking beside a slip is summed if the slip lasts longer than it by this factor.
+/// The hops of a body that rocks and slips are summed if the slip lasts this many times as long as a hop.
 const SLIDES_ON: f64 = 10.0;
-/// A rattle in a plane is over where all of its velocities are below this: its next hops are as low as roundings of theta.
+/// Repeated impacts of a face in a vertical plane end where all velocities are below this: the next hops are as low
+/// as roundings of theta.
 const LAST_RATTLE: f64 = 3e-6;
-/// The rest of a rocking with slips that stop in its hops is looked for below this rate.
+/// The end of a rocking whose slips stop in its hops is computed if abs(theta') is below this.
 const SLIPS_SHRINK: f64 = 0.1;
-/// A slower hop is as low as the inclination from which a rising body is followed on its rim.
+/// A hop with a smaller abs(theta') is as low as the inclination from which the motion of a rising body on its rim is
+/// computed.
 const HARDLY_ROCKS: f64 = 5e-6;
-/// Bounces of a flat face that are over in less time than this are summed.
+/// Bounces of a face parallel to the table that last less than this time in all are summed.
 const LAST_BOUNCES: f64 = 1e-7;
 
 impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
-    /// The friction at the points of a face that falls in a plane.
+    /// The friction law in the landing of a face that falls in a vertical plane.
     pub(super) fn friction_in_fall(&self) -> Friction {
         match self.ask.table {
             Table::Rubs(friction) => friction,
@@ -51,7 +53,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// The phase of a body whose face falls in a plane at this rate.
+    /// The phase of a body whose face lands in a vertical plane with this theta' (taken positive).
     pub(super) fn falls_on_face(&mut self, falls: f64) -> Next {
         if falls <= ROCKED_OUT {
             self.claims(falls);
@@ -80,8 +82,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.rises_from_face()
     }
 
-    /// Moves the walk to the numbers after a landing in a plane; both points bounce if both come down. Returns whether the body
-    /// leaves its face; None where there is no unique outcome.
+    /// Sets the current state to that after the landing of a face in a vertical plane; both end points of the face
+    /// bounce if both come down. Returns whether the body leaves its face; None if there is no unique outcome.
     fn lands_flat(&mut self, e: f64, records: bool) -> Option<bool> {
         let (up, friction) = (self.up(), self.friction_in_fall());
         let (body, rim, angle) = (self.of.body, self.of.slide.law.shape.rim, self.at.angle());
@@ -124,7 +126,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(after.leans != 0.0)
     }
 
-    /// The phase after the bounces of a face that falls in a plane: of one point of its ring in turn, or of both at once.
+    /// The phase after the bounces of a face that falls in a vertical plane: its two end points bounce in turn, or
+    /// both at once.
     fn rattles_on_face(&mut self, e: f64) -> Next {
         let (begin, mut turns) = (self.points_come_down(), 0);
         let over = RATTLE_OVER * begin[0].min(begin[1]).abs().min(1.0);
@@ -171,21 +174,22 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::Flying)
     }
 
-    /// The phase of a body that rises from its face on the point that has landed, or that stays.
+    /// The phase of a body after a landing of its face: it rises on the point that has landed, or stays on the face.
     pub(crate) fn leaves_face(&mut self) -> Next {
         self.hops.takeoff = Takeoff::default();
         self.sees_face();
         if self.up() * self.at[W2] < 0.0 { self.rises_from_face() } else { self.comes_to_lie() }
     }
 
-    /// Whether what is left of a rattle in a plane, above a face that has all but landed, is a rounding error.
+    /// Whether the rest of a sequence of impacts in a vertical plane, of a face almost on the table, is as small as
+    /// rounding errors.
     pub(crate) fn hardly_rattles(&self, at: &Aloft) -> bool {
         let [w1, w2, w3] = at.w;
         let flat = at.angle.0.abs().max(at.lift).max(w2.abs()) < LAST_RATTLE && self.of.body.rim() > 0.0;
         flat && w1 == 0.0 && w3 == 0.0 && at.slip[1] == 0.0
     }
 
-    /// The phase of a body on its face after such a rattle.
+    /// The phase of a body on its face after a sequence of impacts, whose small rest is left out.
     pub(crate) fn ends_rattle_on_face(&mut self) -> Next {
         let (up, shape) = (self.up(), self.of.slide.law.shape);
         let [a, z] = [shape.rim.radius((0.0, up)), shape.rim.height((0.0, up))];
@@ -200,13 +204,13 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.comes_to_lie()
     }
 
-    /// The vertical velocities of the point from which the state is told, and of the opposite one.
+    /// The vertical velocities of the contact point of the state, and of the opposite point of the ring.
     fn points_come_down(&self) -> [f64; 2] {
         let at = self.aloft();
         [at.lift, at.opposite(&self.of.slide.law.shape).lift]
     }
 
-    /// The phase at the end of a rocking that is summed.
+    /// The phase at the end of a rocking whose last hops are summed; `end` is the state vector there.
     fn rests_after_rocking(&mut self, end: [f64; N], error: f64) -> Next {
         self.claims(error);
         let energy = |y: &[f64; N]| self.of.slide.energy(y) + y[HEAT];
@@ -219,7 +223,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.stands_on_face()
     }
 
-    /// The phase of a body on its face, whose centre keeps its velocity while the rest of a lean is lost.
+    /// The phase of a body that lies down on its face: the centre keeps its horizontal velocity, and the energy of
+    /// the remaining tilt becomes heat.
     fn comes_to_lie(&mut self) -> Next {
         let [v_h, v_2] = self.of.slide.law.centre(self.at.angle(), self.at.w(), self.at.slip());
         let before = self.of.slide.energy(&self.at);
@@ -229,8 +234,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.stands_on_face()
     }
 
-    /// The phase after the impact of a face that comes down with all of its points at once, or in a plane almost so. None if
-    /// only the point from which the state is told comes down.
+    /// The phase after the impact of a face that lands with all of its points at once, or in a vertical plane almost
+    /// so. None if only the contact point of the state comes down.
     pub(crate) fn strikes_flat(&mut self, e: f64) -> Option<Next> {
         let (up, w) = (self.up(), self.at.w());
         self.claims(self.at[SIN]);
@@ -249,7 +254,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(self.strikes_twice(e))
     }
 
-    /// The phase after an impact of a face whose points both come down.
+    /// The phase after an impact of a face whose two end points in the plane of the motion both come down.
     fn strikes_twice(&mut self, e: f64) -> Next {
         let planar = self.at[W1] == 0.0 && self.at[W3] == 0.0 && self.at[U2] == 0.0;
         if self.up() * self.at[W2] < 0.0 {
@@ -265,7 +270,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         }
     }
 
-    /// The phase after the impact of a face that lies flat: slide and spin go on as on the table, by the impulse in place of time.
+    /// The phase after the impact of a face parallel to the table. Slide and spin change as on the table, with the
+    /// normal impulse in place of time.
     fn bounces_flat(&mut self, e: f64) -> Next {
         let (comes, from) = (-self.hops.takeoff.lift, self.aloft());
         if comes <= 0.0 {
@@ -340,7 +346,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Next::Own(Kind::Flying)
     }
 
-    /// The phase of a body on its face whose last bounces take this time.
+    /// The phase of a body on its face after its last bounces, which take the time `left`.
     fn stands_after(&mut self, left: f64) -> Next {
         let (begin, flow) = (self.at, self.standing(&self.friction()));
         let ([v_h, v_2], [pull_h, pull_2]) = (flow.velocity(&begin), flow.pull());
@@ -362,7 +368,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.stands_on_face()
     }
 
-    /// The phase after an impact in which the body has begun to topple while its centre still comes down at this velocity.
+    /// The phase after an impact in which a body on its face begins to topple while its centre comes down with the
+    /// velocity `comes`.
     fn topples_in_impact(&mut self, comes: f64, e: f64) -> Next {
         if comes <= 0.0 {
             return Next::Ends(Ending::Landing);
@@ -381,8 +388,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.leaves_impact(&after)
     }
 
-    /// Takes what would turn a body on its face about the direction of its lean: the other points of the ring do so. The centre
-    /// keeps its velocity. Returns the energy lost.
+    /// Sets w1 of a body on its face to zero, as the other points of the ring do. The centre keeps its velocity.
+    /// Returns the energy lost.
     pub(crate) fn keeps_upright(&mut self) -> f64 {
         let energy = |y: &[f64; N]| self.of.slide.energy(y);
         let (before, [v_h, v_2]) =
@@ -395,7 +402,7 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         before - self.of.slide.energy(&self.at)
     }
 
-    /// Tells a body on its face from the opposite point of its ring.
+    /// Takes the opposite point of the ring as the contact point of a body on its face.
     pub(crate) fn flips(&mut self) {
         let over = self.aloft().opposite(&self.of.slide.law.shape);
         self.sets(&over);
@@ -405,7 +412,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         self.sees_face();
     }
 
-    /// The phase at the end of a rocking in a plane that is all but over; None if it goes on, as a body does that topples.
+    /// The phase at the end of a rocking in a vertical plane that is almost over; None if the motion continues, as
+    /// that of a body that topples.
     pub(super) fn rocks_to_rest(&mut self) -> Option<Next> {
         let (rises, began) = (self.at[W2].abs(), self.at[TIME]);
         let bounces = self.ask.restitution.is_some_and(|e| e > 0.0);
@@ -426,7 +434,8 @@ impl<G: Own, const N: usize> BodyWalk<'_, N, G> {
         Some(self.comes_to_lie())
     }
 
-    /// The numbers at the end of a rocking that has just begun another hop, and their error; None if it does not end.
+    /// The state vector at the end of a rocking that has just begun another hop, and its error; None if the rocking
+    /// does not end.
     #[inline(never)]
     fn rocks_out_flat(&mut self) -> Option<([f64; N], f64)> {
         let (begin, state, takeoff) = (self.at, self.of.state, self.hops.takeoff);

@@ -27,7 +27,7 @@ impl<G: Own> LossyFlow<G> {
         late + (rounded + erred * (c / s).abs()) / rate.abs()
     }
 
-    /// Error of w1 and w3 while psi' follows its balance: at most s abs(psi').
+    /// Error of w1 and w3 while psi' follows its balance: at most sin(theta) abs(psi').
     pub fn settled_doubt(&self, y: &State) -> f64 {
         y.theta.sin() * y.spin().abs()
     }

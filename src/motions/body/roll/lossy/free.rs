@@ -1,14 +1,14 @@
-//! A body that loses energy while no motion is held: its margins, step errors and longest steps, for single
-//! numbers and for lanes.
+//! A body that loses energy while friction holds none of its rotations: the conditions that end a phase, step errors
+//! and longest steps, for single motions and for SIMD lanes.
 //!
 //! ```text
 //! y = (s, c, p, w2, w3, t), on a tilted table (s, c, p, w2, w3, cos phi, sin phi, x, t)
 //! dt = v/(v + delta/J) dsigma with v^2 = w_h^2 + w2^2 under rolling resistance, else dt = dsigma
 //! margins of a lane    distances from landing and settling, side, N, (mu N)^2 - F^2, |psi'|, |w_z|, v
 //! ```
-//! The direction of the couple of rolling resistance turns with that of rolling and rocking, faster the slower these
-//! are. In sigma the motion is smooth up to the point where both vanish, which is approached as exp(-sigma). Single
-//! motions and lanes of eight share this code.
+//! The couple of rolling resistance is opposite to the rotation by rolling and rocking, whose direction turns faster
+//! the slower it is. In sigma the motion is smooth up to the point where both vanish, which is approached as
+//! exp(-sigma). Single motions and lanes of eight share this code.
 
 use super::{LOSSY_NUMBERS, LossyFlow, REST};
 use crate::laws::body::{Shape, landing_angle};
@@ -23,11 +23,11 @@ use crate::motions::dry::settled::{CLOSE, SLOWER};
 use crate::motions::walk::numbers::{contact_velocity, heading_rates};
 use crate::numbers::{Dual, Real, here};
 
-/// A body that loses energy while no motion is held, with its contact and its losses.
+/// The contact and the losses of a body that loses energy while friction holds none of its rotations.
 #[derive(Clone, Copy)]
 pub(crate) struct LossyUnheld<T> {
     pub law: Lossy<T>,
-    /// Sine and cosine of theta_end, and 1 if theta_end is below pi, else 0.
+    /// Sine and cosine of theta_end, at which the other rim lands, and 1 if theta_end is below pi, else 0.
     pub side: [T; 3],
     /// Coefficient of friction; infinite where no slip can begin.
     pub mu: T,
@@ -42,7 +42,7 @@ pub(crate) fn from_side<T: Real>([sine, cosine, there]: [T; 3], (s, c): (T, T)) 
     one.splat(0.5).select_lt(there, sine * c - cosine * s, one)
 }
 
-/// s, c, p, w2 and w3. In lanes an iterator would call a function.
+/// Returns s, c, p, w2 and w3 of a state vector. Without an iterator, which would call a function in SIMD code.
 #[inline(always)]
 fn first_five<T: Copy, const K: usize>(y: &[T; K]) -> [T; 5] {
     [y[0], y[1], y[2], y[3], y[4]]
@@ -55,7 +55,7 @@ pub(crate) fn pace_of<T: Real>((s, c): (T, T), precession: T, [_, w2, w3]: [T; 3
     rolling.mac(rolling, w2 * w2).sqrt()
 }
 
-/// phi' and w while no motion is held.
+/// The precession phi' and w from the state vector, while friction holds no rotation.
 #[inline(always)]
 pub(crate) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     let per = s.splat(1.0) / s;
@@ -63,15 +63,15 @@ pub(crate) fn turning<T: Real>([s, _, p, w2, w3]: [T; 5]) -> (T, [T; 3]) {
     (w1 * per, [w1, w2, w3])
 }
 
-/// The largest speed in w, at least 1.
+/// The largest component of w by size, at least 1.
 #[inline(always)]
 pub(crate) fn fastest_of<T: Real>(w: [T; 3]) -> T {
     w[0].splat(1.0).max(w[0].abs()).max(w[1].abs()).max(w[2].abs())
 }
 
 /// The error of a step in units of `tol`: relative to s for s, relative to the largest speed for speeds, and for p as
-/// an error of w1. If rolling resistance stops the body, `paced` is its speed of rolling and rocking, and the error of
-/// a speed is at most a thousandth of it, so that it vanishes correctly at any tolerance.
+/// an error of w1. If rolling resistance stops the body, `paced` is its speed of rolling and rocking, and the error
+/// of a speed is at most a thousandth of `paced`, so that the speed vanishes correctly at any tolerance.
 #[inline(always)]
 pub(crate) fn error<T: Real, const N: usize>(
     tol: T,
@@ -107,7 +107,7 @@ pub(crate) fn three_radians<T: Real>(shape: &Shape<T>, precession: T, [w1, w2, w
 }
 
 impl<T: Real> LossyUnheld<T> {
-    /// Writes the rates of the numbers to `all`. Returns the response of the body.
+    /// Writes the derivative of the state vector to `all`. Returns the contact force and the accelerations.
     #[inline(always)]
     pub fn rates<const K: usize>(&self, y: &[T; K], all: &mut [T; K]) -> Acted<T> {
         let [s, c, p, w2, w3] = first_five(y);
@@ -136,10 +136,9 @@ impl<T: Real> LossyUnheld<T> {
         acted
     }
 
-    /// The margins, which are all positive where a lane may take a step without a search for events. They are the
-    /// distances of the face from landing and settling, and of the other rim from landing; N and the margin of
-    /// friction; the margins of the motions that dry losses resist, and of the joint speed that rolling resistance
-    /// brings to rest.
+    /// The margins: if all are positive, SIMD code may take a step without a search for events. They are the
+    /// distances of the face from landing and settling, and of the other rim from landing; N and (mu N)^2 - F^2; the
+    /// rates of the rotations that dry losses resist, and the speed that rolling resistance brings to rest.
     #[inline(always)]
     pub fn margins<const K: usize>(&self, y: &[T; K], acted: &Acted<T>) -> [T; 7] {
         let [s, c, p, w2, w3] = first_five(y);
@@ -225,14 +224,15 @@ impl<T: Real> LossyUnheld<T> {
 }
 
 impl<G: Own> LossyFlow<G> {
-    /// Whether SIMD lanes can compute this flow: no motion is held, all events end it, and the body is not a ball.
+    /// Whether SIMD code can compute this phase: friction holds no rotation, all events end the phase, and the body
+    /// is not a ball.
     pub fn is_free(&self) -> bool {
         let free = self.moves && !self.holds_drilling();
         free && self.watch && !self.ball && !self.is_patch() && !G::IS
     }
 
-    /// The numbers that SIMD lanes need: theta_end, mu, the coefficients of the losses, and the signs
-    /// of psi' and w_z.
+    /// The parameters that SIMD code needs: theta_end, mu, the coefficients of the losses, and the signs of psi' and
+    /// w_z.
     pub fn numbers(&self) -> [f64; LOSSY_NUMBERS] {
         let mut all = [0.0; LOSSY_NUMBERS];
         let (sine, cosine) = landing_angle(self.range[1]);
@@ -251,7 +251,7 @@ impl<G: Own> LossyFlow<G> {
 }
 
 impl<T: Real> LossyUnheld<T> {
-    /// A body from the equations `rates` of its contact and rim, and the numbers of [`LossyFlow::numbers`].
+    /// A body from the equations `rates` of its contact and rim, and the parameters of [`LossyFlow::numbers`].
     #[inline(always)]
     pub fn of(
         rates: crate::laws::contact::reduced::Rates<T>,

@@ -1,15 +1,15 @@
-//! A body that loses energy while it rolls or slides freely, computed to its last turn.
+//! The equations of a body that loses energy while it rolls or slides freely, up to its last turn.
 //!
 //! ```text
 //! y = (s, c, p, w2, w3, 0, 0, t, 0; phi, psi, x, y; lost)       p = w1 s = phi' s^2, in time
 //! held   y = (s, c, q, w2, -, ...),   w1 = s (q - c psi'),   w3 = c q + s^2 psi',   q = w_z
 //! margins   s,  theta_end - theta,  N,  (mu N)^2 - F^2,  |psi'| or its hold,  |w_z| or its hold or |w2|
 //! ```
-//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end with bounded numbers.
-//! Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A couple that grows
-//! with a power of psi' stops the contact of a falling face faster and faster. Where this stop is thousands of times
-//! faster than the fall, psi' follows from the balance of that couple with the couple that turns the contact, the term
-//! of psi'' included (Tikhonov 1952).
+//! Near the table p is almost conserved, while w1 = p/s is not; so a whirr is computed to its end in variables that
+//! stay bounded. Dry friction can hold a motion that it has stopped ([`lossy`](crate::laws::contact::lossy)). A
+//! couple that grows with a power of psi' stops the contact of a falling face faster and faster. Where this stop is
+//! thousands of times faster than the fall, psi' follows from the balance of that couple with the couple that turns
+//! the contact, the term of psi'' included (Tikhonov 1952).
 //!
 //! Error: the tolerance of the steps; `test_losses_reference` has motions to 25 digits from another model.
 
@@ -40,48 +40,50 @@ pub(crate) use steps::at_rest;
 /// If the required friction exceeds mu N by more than this share, it has jumped beyond mu N, as at a reversal of a dry
 /// couple, and has not crossed mu N continuously.
 pub(crate) const JUMP: f64 = 1e-6;
-/// A body with a smaller joint speed of rolling and rocking is at rest for the law of rolling resistance.
+/// A body whose speed of rolling and rocking together is below this counts as at rest for the law of rolling
+/// resistance.
 pub(crate) const REST: f64 = 1e-13;
 
-/// Length of [`LossyFlow::numbers`].
+/// Number of parameters that [`LossyFlow::numbers`] returns.
 pub(crate) const LOSSY_NUMBERS: usize = 4 + COUNT + 2;
 
-/// A body, its contact and its losses, and the motions that are held at rest.
+/// A body with its contact and its losses, and which of its rotations friction holds at rest.
 #[derive(Clone, Copy)]
 pub(crate) struct LossyFlow<G = ()> {
     law: Lossy<f64, G>,
-    /// The law for numbers with a slope, and without the couples along the contour.
+    /// The law for dual numbers (a value and a slope); `bare` is the law without the couples along the contour.
     sloped: Lossy<Dual<f64>, G>,
     bare: Lossy<f64, G>,
-    /// Whether the contact point moves along the rim: nothing holds it, it has not settled, and the body does not only rock,
-    /// since no couple turns it.
+    /// Whether the contact point moves along the rim: not if friction holds it, if it has settled, or if the body
+    /// only rocks, since no couple turns it.
     moves: bool,
-    /// Whether sigma differs from time: under rolling resistance, except for a body that only rocks, or is held.
+    /// Whether the variable of integration, sigma, differs from time: under rolling resistance, except for a body
+    /// that only rocks, or is held at rest.
     paced: bool,
     /// Whether a couple that grows with psi' has almost stopped the contact point (see `settled`).
     settled: bool,
-    /// Whether the flow starts from a state in which w_z vanishes exactly.
+    /// Whether the phase starts from a state in which w_z vanishes exactly.
     starts_still: bool,
     /// The direction of (w_h, w2) in which rolling and rocking begin from rest.
     push: [f64; 2],
-    /// The sign of psi' of a settled contact.
+    /// The sign of psi' of a settled contact, whose psi' almost vanishes.
     settled_way: f64,
     mu: f64,
-    /// The inclinations within which the circle carries.
+    /// The inclinations between which the circle of contact carries the body.
     range: [f64; 2],
     ball: bool,
     pub tol: f64,
-    /// Whether events other than a landing of the face end the flow.
+    /// Whether events other than a landing of the face end the phase.
     watch: bool,
     /// The patch of contact; None for a point.
     patch: Option<RestingPatch>,
-    /// The tangent of the slope, and the rate at which the table turns.
+    /// The tangent of the slope; `om` is the rate at which the table turns.
     tilt: f64,
     om: f64,
 }
 
 impl<G: Own> LossyFlow<G> {
-    /// The flow of a body from a state; the body rolls with friction up to mu N, or slides on a smooth table.
+    /// The equations of a body from the state `y` on. It rolls with friction up to mu N, or slides on a smooth table.
     pub fn new(
         (body, contact): (&Body, Contact),
         mu: f64,
@@ -115,7 +117,8 @@ impl<G: Own> LossyFlow<G> {
         lossy
     }
 
-    /// This flow on a slope with the tangent `tilt`, or on a table that turns at the rate `om`, from the numbers `at`.
+    /// These equations on a slope with the tangent `tilt`, or on a table that turns at the rate `om`, from the state
+    /// vector `at` on.
     pub fn on_table<const N: usize>(mut self, [tilt, om]: [f64; 2], at: &[f64; N], y: &State) -> Self {
         (self.tilt, self.om) = (tilt, om);
         if self.is_pulled() {
@@ -131,13 +134,13 @@ impl<G: Own> LossyFlow<G> {
         self.tilt != 0.0 || self.om != 0.0 || self.is_driven()
     }
 
-    /// Whether a law of the user drives the body.
+    /// Whether a user-defined drive acts on the body.
     #[inline(always)]
     fn is_driven(&self) -> bool {
         G::IS && self.law.losses.given.drives()
     }
 
-    /// Asks the drive for its force and couple at these numbers, with this w.
+    /// Calls the user-defined drive at the state vector `y` and this w.
     #[inline(always)]
     fn asks_drive<const N: usize>(&self, y: &[f64; N], w: [f64; 3]) {
         if self.is_driven() {
@@ -151,7 +154,8 @@ impl<G: Own> LossyFlow<G> {
         [rim.height(angle) * w2, rim.radius(angle) * w3 - rim.depth(angle) * w1]
     }
 
-    /// Sets the pull of the table to that at these numbers, which all flows share, for what depends on a state alone.
+    /// Sets the force of the slope, the turntable and the drive to that at the state vector `at`, for functions that
+    /// depend on a state alone.
     pub fn stands_at<const N: usize>(&mut self, at: &[f64; N]) {
         if self.is_pulled() {
             let [s, c] = [at[SIN], at[COS]];
@@ -162,13 +166,13 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// w_z over the table, from w1 and w3.
+    /// The drilling rate, w_z relative to the table, from w1 and w3.
     #[inline(always)]
     pub fn drills(&self, angle: (f64, f64), w1: f64, w3: f64) -> f64 {
         drilling_of(angle, w1, w3) - self.om
     }
 
-    /// The pull on the centre along e_h and e2, for this w2 and psi'.
+    /// The force of the slope, the turntable and the drive on the centre, along e_h and e2, for this w2 and psi'.
     fn pull_at<const N: usize>(&self, y: &[f64; N], angle: (f64, f64), w2: f64, spin: f64) -> [f64; 2] {
         if !poses(N) {
             return [0.0; 2];
@@ -182,7 +186,8 @@ impl<G: Own> LossyFlow<G> {
         driven(self.om, tilted, contact_velocity(rim, angle, w2, spin, with))
     }
 
-    /// The pull of the table at these numbers of the flow; None on a level table.
+    /// The force of the slope, the turntable and the drive at the state vector `y` of this phase; None if there is
+    /// none of them.
     #[inline(always)]
     fn tilted<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         if !(poses(N) && self.is_pulled()) {
@@ -191,7 +196,7 @@ impl<G: Own> LossyFlow<G> {
         Some(self.pull_along(y, y[PHI].sin_cos()))
     }
 
-    /// The pull of the table at these numbers, from the sine and cosine of phi.
+    /// The force of the slope, the turntable and the drive at the state vector `y`, from the sine and cosine of phi.
     #[inline(always)]
     fn pull_along<const N: usize>(&self, y: &[f64; N], heading: (f64, f64)) -> [f64; 2] {
         if self.om == 0.0 {
@@ -202,14 +207,15 @@ impl<G: Own> LossyFlow<G> {
         self.pull_at(y, (y[SIN], y[COS]), y[W2], spin)
     }
 
-    /// This flow with the pull of the slope at the numbers `y`.
+    /// These equations with the force of the slope at the state vector `y`.
     pub fn here<const N: usize>(&self, y: &[f64; N]) -> Self {
         let mut here = *self;
         here.stands_at(y);
         here
     }
 
-    /// Whether a pull turns a body that only rocks out of its plane, or will do so.
+    /// Whether the force of a slope, a turntable or a drive turns a body that only rocks out of its plane, or will do
+    /// so.
     fn is_pulled_aside(&self) -> bool {
         self.om != 0.0 || self.is_driven() || self.law.losses.pull.is_some_and(|[_, aside]| aside != 0.0)
     }
@@ -222,7 +228,7 @@ impl<G: Own> LossyFlow<G> {
         self.law.losses.ways.unwrap_or_default()
     }
 
-    /// Makes a landing of the face the only event that ends the flow.
+    /// Makes a landing of the face the only event that ends the phase.
     pub fn go_beyond(&mut self) {
         self.watch = false;
     }
@@ -236,7 +242,7 @@ impl<G: Own> LossyFlow<G> {
         self.is_patch() || self.has(Law::Drilling)
     }
 
-    /// Sets which motions are held at a state, and the signs of the others.
+    /// Sets which rotations friction holds at rest in the state `y`, and the signs of the others.
     fn sets_holds(&mut self, y: &State) {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         let (spin, drilling) = (y.spin(), self.drills(angle, y.w1, y.w3));
@@ -295,12 +301,13 @@ impl<G: Own> LossyFlow<G> {
         self.patch.filter(|_| drills).map_or(acted, |patch| self.held_by(&patch, acted))
     }
 
-    /// The response of the body with what is held.
+    /// Contact force and accelerations, with the rotations that friction holds at rest.
     fn responds(&self, angle: (f64, f64), w: [f64; 3]) -> Acted<f64> {
         self.response(angle, w[0] / angle.0, w, self.held(0.0))
     }
 
-    /// Makes dry friction hold a motion that has stopped, or makes the motion begin anew.
+    /// Makes dry friction hold a rotation that has stopped, or makes the rotation begin anew if friction cannot hold
+    /// it.
     fn stop(&mut self, part: Resting, angle: (f64, f64), w: [f64; 3]) {
         self.turn(self.ways().holding(part));
         self.turn(self.ways().stopping(part, self.responds(angle, w).held));
@@ -311,7 +318,7 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// Lets a motion go that dry friction has held.
+    /// Lets a rotation begin that dry friction has held at rest.
     fn let_go_of(&mut self, part: Resting, angle: (f64, f64), w: [f64; 3]) {
         if part == Resting::Rolling {
             return self.leave(angle, drilling_of(angle, w[0], w[2]));
@@ -319,7 +326,7 @@ impl<G: Own> LossyFlow<G> {
         self.turn(self.ways().beginning(part, self.responds(angle, w).held[0]));
     }
 
-    /// Makes the body only rock, since no couple turns it any more.
+    /// Makes the body only rock: no couple turns it out of its plane.
     fn rocks_only(&mut self, angle: (f64, f64), w2: f64) {
         self.settled = false;
         self.turn(Ways::default());
@@ -333,7 +340,7 @@ impl<G: Own> LossyFlow<G> {
         self.force(y).friction_coefficient() > self.mu * (1.0 + JUMP)
     }
 
-    /// The motions that are at rest at this state, or have just begun.
+    /// The rotations that are at rest in the state `y`, or have just begun.
     pub fn hardly_moves(&self, y: &State) -> Holds {
         let little = 4.0 * REST * (1.0 + y.precession().abs());
         let angle = y.theta.sin_cos();
@@ -346,8 +353,9 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// Makes rolling resistance hold a body that neither rolls nor rocks, if its limit suffices; else rolling and rocking
-    /// begin, in the direction of their push. Dry friction along the contour holds the contact point, or lets it go.
+    /// Makes rolling resistance hold a body that neither rolls nor rocks, if its limit suffices; else rolling and
+    /// rocking begin, in the direction of the couple on them. Dry friction along the contour holds the contact point,
+    /// or lets it go.
     fn stop_rolling(&mut self, angle: (f64, f64), drilling: f64) {
         if self.keeps_still(angle, drilling) {
             self.turn(self.ways().holding_rolling());
@@ -359,7 +367,7 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// Lets rolling and rocking begin.
+    /// Lets rolling and rocking begin from rest.
     fn leave(&mut self, angle: (f64, f64), drilling: f64) {
         let (reduced, w) = (self.law.rates.reduced(), [angle.0 * drilling, 0.0, angle.1 * drilling]);
         let rubs = match reduced.contact {
@@ -404,15 +412,16 @@ impl<G: Own> LossyFlow<G> {
         self.ways().holds.rolling && !turns && !(self.is_pulled() && begins())
     }
 
-    /// Lets a body that neither rolls nor rocks, and turns with the table, drill if friction does not hold it.
+    /// Lets the drilling begin of a body that turns with the table without rolling or rocking, if friction cannot
+    /// hold it.
     fn drills_away(&mut self, angle: (f64, f64)) {
         let [couple, limit] = self.carries(angle);
         let begins = if couple.abs() > limit { -sign_or_zero(couple) } else { 0.0 };
         self.turn(Ways { drilling: begins, ..self.ways() });
     }
 
-    /// The couple about the vertical that turns a body which neither rolls nor rocks with the table, and the largest
-    /// that friction can exert.
+    /// The couple about the vertical that a body needs to turn with the table without rolling or rocking, and the
+    /// largest couple that friction can exert.
     fn carries(&self, (s, c): (f64, f64)) -> [f64; 2] {
         let Shape { rim, i1, i3 } = &self.law.rates.reduced().shape;
         let (far, mut still) = (rim.lever((s, c)), *self);
@@ -425,14 +434,14 @@ impl<G: Own> LossyFlow<G> {
         [-turn * (i1 * s * s + i3 * c * c + far * far), limit]
     }
 
-    /// w, with a small speed in the direction in which rolling and rocking begin from rest.
+    /// Returns w, with a small speed in the direction in which rolling and rocking begin from rest.
     fn pushed(&self, y: &State) -> [f64; 3] {
         let mut numbers = [y.theta.sin(), y.theta.cos(), y.w1, y.w2, y.w3];
         self.pushed_off(&mut numbers);
         [numbers[P], numbers[W2], numbers[W3]]
     }
 
-    /// Applies the changes of a halt. Returns whether the body is at rest.
+    /// Changes which rotations are held after a halt of the integration. Returns whether the body is at rest.
     pub fn after(&mut self, halt: Halt, y: &State) -> bool {
         let (angle, w) = (y.theta.sin_cos(), [y.w1, y.w2, y.w3]);
         self.starts_still = halt == Halt::Drilling;
@@ -470,18 +479,19 @@ impl<G: Own> LossyFlow<G> {
         false
     }
 
-    /// Whether a body that only rocks, and has come to rest, rocks back; otherwise rolling resistance holds the body.
+    /// Whether a body that only rocks, and has come to rest, rocks back; if not, rolling resistance holds it.
     fn rocks_back(&mut self, angle: (f64, f64)) -> bool {
         self.rocks_only(angle, 0.0);
         !self.keeps_still(angle, 0.0)
     }
 
-    /// The same flow after its start, where w_z no longer vanishes exactly.
+    /// The same equations after the start, where w_z does not vanish exactly.
     pub fn on_the_way(&self) -> Self {
         Self { starts_still: false, ..*self }
     }
 
-    /// Gives a body that neither rolls nor rocks, but is not held, a small speed in the direction of the push.
+    /// Gives a body at rest that friction does not hold a small speed in the direction in which rolling and rocking
+    /// begin.
     fn pushed_off<const N: usize>(&self, y: &mut [f64; N]) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| y[i]);
         if !self.paced || pace_of((s, c), w1 / s, [w1, w2, w3]) >= REST {
@@ -492,7 +502,8 @@ impl<G: Own> LossyFlow<G> {
         (y[P], y[W2], y[W3]) = (s * drilling + c * rolling, rocking, c * drilling - s * rolling);
     }
 
-    /// The numbers of this flow, from the numbers `shown` that are common to all flows.
+    /// The state vector in the variables of this phase, from the state vector `shown` in the variables that all
+    /// phases share.
     pub fn enter<const N: usize>(&self, shown: &[f64; N]) -> [f64; N] {
         let mut y = *shown;
         self.pushed_off(&mut y);
@@ -528,14 +539,14 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// phi' and w from the numbers; psi' of a held or settled contact point counts as zero.
+    /// The precession phi' and w from a state vector; psi' of a held or settled contact point counts as zero.
     #[inline(always)]
     fn turning<T: Real>(&self, y: [T; 5]) -> (T, [T; 3]) {
         let [s, c, p, w2, _] = y;
         if self.moves { free::turning(y) } else { (p, [s * p, w2, c * p]) }
     }
 
-    /// The halt by the first margin that fails at the start of a flow; None if all margins hold.
+    /// The halt by the first condition of the phase that fails at its start; None if all conditions hold.
     pub fn at_start(&self, y: &State) -> Option<Halt> {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let acted = self.responds(angle, w);
@@ -551,14 +562,14 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// The contact force at a state of the flow.
+    /// The contact force in the state `y` of this phase.
     pub fn force(&self, y: &State) -> Force {
         let (angle, w) = (y.theta.sin_cos(), self.pushed(y));
         let [normal, along, across] = self.responds(angle, w).force;
         Force { normal, along, across }
     }
 
-    /// The time that an almost flat face still needs to land, and the error of that time.
+    /// The time that a face which is almost on the table needs to land, and the error of that time.
     pub fn rest_of<const N: usize>(&self, shown: &[f64; N]) -> (f64, f64) {
         let [s, c, w1, w2, w3] = core::array::from_fn(|i| shown[i]);
         let (falls, i1) = (if c * w2 > 0.0 { s / (c * w2) } else { 0.0 }, self.law.rates.reduced().shape.i1);

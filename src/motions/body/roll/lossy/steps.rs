@@ -1,4 +1,5 @@
-//! The flow of a body that loses energy: its rates, its margins, and the settling of its contact.
+//! Integration of a body that loses energy: its rates, the conditions that end a phase, and the settling of its
+//! contact.
 
 use super::free::{error, fastest_of, from_side, pace_of, three_radians};
 use super::{LossyFlow, REST};
@@ -25,8 +26,8 @@ use core::f64::consts::PI;
 const ROLLING_ENDS: [Halt; MARGINS] =
     [Halt::Face, Halt::Side, Halt::LiftOff, Halt::Slips, Halt::Contour, Halt::Drilling];
 
-/// The numbers where the body only drills, extrapolated linearly by `left` in sigma; `drills` computes its drilling from
-/// the extrapolated numbers.
+/// The state vector where rolling and rocking have stopped, extrapolated linearly by `left` in the variable sigma;
+/// `drills` computes the drilling rate from the extrapolated state vector.
 pub(crate) fn at_rest<const N: usize>(
     place: &FlowPlace<N>,
     left: f64,
@@ -39,7 +40,7 @@ pub(crate) fn at_rest<const N: usize>(
 }
 
 impl<G: Own> LossyFlow<G> {
-    /// phi', w, the response of the body, and psi' of a settled contact.
+    /// The precession phi', w, the contact force and accelerations, and psi' of a settled contact.
     fn settled(
         &self,
         angle: (f64, f64),
@@ -59,7 +60,7 @@ impl<G: Own> LossyFlow<G> {
         (precession, w, Acted { power: acted.power + push * spin, ..acted }, spin)
     }
 
-    /// The pull of the table with its slope.
+    /// The force of the slope, the turntable and the drive, with its derivative in the variable of integration.
     fn sloped_pull<const N: usize>(&self, place: &FlowPlace<N>) -> [Dual<f64>; 2] {
         let dual = |value: f64, slope: f64| Dual { value, slope };
         let ((sin, cos), turn) = (place.y[PHI].sin_cos(), place.rate[PHI]);
@@ -77,12 +78,14 @@ impl<G: Own> LossyFlow<G> {
         [tilted[0] + om * on, tilted[1] - om * out]
     }
 
-    /// The pull of the table on a body whose contact has settled, so that psi' hardly moves it; None on a level table.
+    /// The force of the slope, the turntable and the drive on a body whose contact has settled, so that psi' hardly
+    /// moves it; None if there is none of them.
     fn settled_pull<const N: usize>(&self, y: &[f64; N]) -> Option<[f64; 2]> {
         self.is_pulled().then(|| self.pull_at(y, y.angle(), y[W2], 0.0))
     }
 
-    /// The error of s psi' due to steps where the contact point stops so fast that stability limits the steps.
+    /// The error of sin(theta) psi' due to steps where the contact point stops so fast that stability limits the
+    /// steps.
     fn noise(&self, w: [f64; 3]) -> f64 {
         100.0 * self.tol * w.iter().fold(1.0, |most: f64, x| most.max(x.abs()))
     }
@@ -112,7 +115,8 @@ impl<G: Own> LossyFlow<G> {
         Some(rest)
     }
 
-    /// The numbers after a passage of the pole, nearer than steps resolve.
+    /// The state vector after the axis of a ball has passed the vertical more closely than steps resolve; None if it
+    /// does not.
     fn passes_pole<const N: usize>(&self, place: &FlowPlace<N>) -> Option<[f64; N]> {
         let (angle, y) = (place.y.angle(), &place.y);
         let (precession, w) = self.turning([y[SIN], y[COS], y[P], y[W2], y[W3]]);
@@ -125,7 +129,8 @@ impl<G: Own> LossyFlow<G> {
         Some(there)
     }
 
-    /// The margins; `grips` is the couple per normal force that holds the drilling on a patch, whose derivative is left out.
+    /// The margins (functions whose zeros end the phase); `grips` is the couple per normal force that holds the
+    /// drilling on a patch, whose derivative is left out.
     fn margins_of<T: Real, H: OwnCouple<T>>(
         &self,
         law: &Lossy<T, H>,
@@ -178,13 +183,13 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// The margins of these numbers.
+    /// The margins (functions whose zeros end the phase) at the state vector `y`.
     fn all_margins<const N: usize>(&self, y: &[f64; N]) -> [f64; MARGINS] {
         self.stands(y);
         self.margins_of(&self.law, self.tilted(y), core::array::from_fn(|k| y[k]), self.grips(y))
     }
 
-    /// Asks the drive at these numbers of the flow.
+    /// Calls the user-defined drive at the state vector `y` of this phase.
     #[inline(always)]
     fn stands<const N: usize>(&self, y: &[f64; N]) {
         if self.is_driven() {
@@ -192,7 +197,7 @@ impl<G: Own> LossyFlow<G> {
         }
     }
 
-    /// Writes the rates of the numbers. Returns w and the contact force.
+    /// Writes the derivative of the state vector to `all`. Returns w and the contact force.
     #[inline(always)]
     pub(super) fn rates<const N: usize>(&self, y: &[f64; N], all: &mut [f64; N]) -> ([f64; 3], [f64; 3]) {
         let [s, c, w2] = [y[SIN], y[COS], y[W2]];
@@ -247,7 +252,7 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
     const OVER: Halt = Halt::Time;
     const PAUSE: Halt = Halt::Pause;
     const ENDLESS: Halt = Halt::Endless;
-    /// Each call of a law of the user may be slow.
+    /// Number of steps between two calls of `go_on`; 1 with user-defined laws, each call of which may be slow.
     const BREATH: u64 = if G::IS { 1 } else { 256 };
     const CALLS: bool = G::IS;
 
@@ -391,7 +396,8 @@ impl<G: Own> Flow<MARGINS> for LossyFlow<G> {
         (self.moves && slow && soft && !self.is_driven()).then_some(Halt::Settles)
     }
 
-    /// A drilling that is held stays zero. The errors of the steps would let it begin on a patch of contact.
+    /// Sets a drilling rate that friction holds to zero after a step, whose errors would let it begin on a patch of
+    /// contact.
     fn kept<const N: usize>(&self, mut y: [f64; N]) -> [f64; N] {
         if self.moves && self.holds_drilling() {
             let drilling = y[P] + y[COS] * y[W3] - self.om;
