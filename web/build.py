@@ -1,7 +1,7 @@
 """Build and pack the cores of the live page, with a record of the sources that they were built from.
 
 core.lzma has what every page needs; core.friction.lzma also has friction and losses. The code of a page has
-to be short, so each is built from a copy of the sources in which few functions have to be inlined, and is split.
+to be short, so each is built from a copy of the sources in which few functions have to be inlined, and split.
 
     python web/build.py            builds both if rustup has the target, else says how to install it
     python web/build.py FOLDER     writes them there, for a comparison; the committed ones stay
@@ -40,8 +40,8 @@ READ = [
     "benches/*.rs",
     "benches/Cargo.toml",
 ]
-#: What the library inlines everywhere for its speed, a page inlines where the compiler finds that it pays; except for
-#: stones, whose motion takes a page longest.
+#: What the library inlines everywhere for its speed, a page inlines where the compiler finds that it pays;
+#: except for stones, whose motion takes a page longest.
 INLINED = "inline(always)", "inline"
 STONES = HOME / "src/laws/stone", HOME / "src/motions/stone"
 #: A loop has its variables as they are written, since variables made for addressing compress worse.
