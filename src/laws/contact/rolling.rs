@@ -48,8 +48,8 @@ pub(crate) fn centre_velocity<T: Real>(shape: &Shape<T>, angle: (T, T), [w1, w2,
     [depth * w2, radius * w3 - depth * w1, -(radius * w2)]
 }
 
-/// The force F2 from w, w' and the couple m3. On a tip, where A = 0, F2 follows from the motion of the centre: F2 = V'
-/// + cot theta L w1 w2.
+/// The force F2 from w, w' and the couple m3. On a tip, where A = 0, F2 follows from the motion of the centre:
+/// F2 = V' + cot theta L w1 w2.
 #[inline(always)]
 pub(crate) fn force_along<T: Real>(
     shape: &Shape<T>,

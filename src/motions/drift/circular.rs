@@ -165,8 +165,8 @@ impl<T: Real> Circular<T> {
 }
 
 impl Circular<f64> {
-    /// Whether a body lies nearly flat on a face and spins so fast that only the terms of S in Omega count: w1/w3 = A L/(I1
-    /// + L^2).
+    /// Whether a body lies nearly flat on a face and spins so fast that only the terms of S in Omega count:
+    /// w1/w3 = A L/(I1 + L^2).
     pub fn is_flat_and_fast(&self, [theta, rate, w3, _]: &Numbers<f64>, far: f64) -> bool {
         const FLAT_SPIN_RATIO: f64 = 1e12;
         let (rim, (s, c)) = (&self.of.shape.rim, theta.sin_cos());

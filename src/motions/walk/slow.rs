@@ -6,8 +6,8 @@
 //! order n:   (n r1 - f_alpha) a_n = [f - r alpha']_n of known terms
 //! ```
 //! In time these equations are singular: alpha follows the zero of f at the rate f_alpha/r, and an integrator would
-//! need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the other. With r0
-//! > 0 the coefficients are computed several times, in sweeps: the term r0 (n + 1) a_(n+1) is taken from the previous
+//! need tiny steps. The law of friction, recorded on a [`Tape`], gives the coefficients one after the other. If r0
+//! is positive, the coefficients are computed several times, in sweeps: the term r0 (n + 1) a_(n+1) is taken from the previous
 //! sweep, in the first sweep from the series before this one. The sweeps converge to the slow manifold of singular
 //! perturbation theory (Fenichel 1979), on which the direction has settled, as in every slip that began from rest.
 //! With r0 or r1 = 0 (static friction that was just enough) the series is only asymptotic; its last terms show how
