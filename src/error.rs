@@ -62,13 +62,13 @@ pub enum Error {
         "step = {step:?} is too large at t = {time:?}, theta = {theta:?}: use a step of {advice:.2e}, or tol="
     )]
     Step {
-        /// The given step.
+        /// The given length of a fixed step.
         step: f64,
         /// The time at which the step is too long.
         time: f64,
         /// The inclination at that time, in radians.
         theta: f64,
-        /// A step that is short enough.
+        /// The length of a step that is short enough.
         advice: f64,
     },
     /// The motion cannot be computed from this state on: rounding errors outweigh the terms of the equations.
@@ -76,7 +76,7 @@ pub enum Error {
         "theta = {theta:?}: rounding errors outweigh the motion here, so it cannot be continued: give earlier times or another state"
     )]
     Lost {
-        /// The inclination, in radians.
+        /// The inclination from which the motion cannot be continued, in radians.
         theta: f64,
     },
     /// No contact force, or more than one, obeys Coulomb's law in this state.

@@ -35,7 +35,8 @@
 //! | | [`ensemble`] | many motions at once, on SIMD lanes and threads | |
 //! | `scene` | [`scene`] | scenes with a known answer for contact engines | |
 //!
-//! All layers may use `error`, and `python` uses all of them. The equations of rolling and of a smooth table share `contact::reduced`:
+//! All layers may use `error`, and `python` uses all of them. The equations of rolling and of a smooth table share
+//! `contact::reduced`:
 //! J w2' = w1 (ct (k w3 - al w1) + b w3 - k w1) - g + (J'/2) w2^2.
 
 // Without the modules for many bodies or for Python, without lanes, or with only one width of lanes, some items are not used.
@@ -83,10 +84,10 @@ pub mod drift {
     //! centre is at rest, and nothing brings it back; a ridge has no effect. The drift ends where rolling becomes
     //! unstable, at kappa = 0 ([`stability`](crate::stability)). Both drifts are of first order in the losses.
     //!
-    //! Relative error of a time: 1e-12 for `at_rest`, 1e-10 for `rolling`. Up to 0.99 of the time to the end the same bounds hold for the
-    //! relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these numbers vary as a
-    //! high power of the remaining time, the rounding of the time adds to their errors. Tests of `drift` and
-    //! `test_late_drifts` check these bounds.
+    //! Relative error of a time: 1e-12 for `at_rest`, 1e-10 for `rolling`. Up to 0.99 of the time to the end the same
+    //! bounds hold for the relative errors of theta, w1 and Omega, and for the error of w3 relative to |w|. Where these
+    //! numbers vary as a high power of the remaining time, the rounding of the time adds to their errors. Tests of
+    //! `drift` and `test_late_drifts` check these bounds.
     //!
     //! ```
     //! use spincyl::Body;

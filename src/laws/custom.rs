@@ -148,19 +148,19 @@ pub struct Custom<'a> {
 }
 
 impl<'a> Custom<'a> {
-    /// Returns these laws with this couple.
+    /// Returns these laws with this couple, which takes energy.
     #[must_use]
     pub fn with_couple(self, couple: &'a dyn CoupleLaw) -> Self {
         Self { couple: Some(couple), ..self }
     }
 
-    /// Returns these laws with this friction.
+    /// Returns these laws with this law for the coefficient of sliding friction.
     #[must_use]
     pub fn with_friction(self, friction: &'a dyn FrictionLaw) -> Self {
         Self { friction: Some(friction), ..self }
     }
 
-    /// Returns these laws with this drive.
+    /// Returns these laws with this force and couple that drive the body.
     #[must_use]
     pub fn with_drive(self, drive: &'a dyn DriveLaw) -> Self {
         Self { drive: Some(drive), ..self }
@@ -184,7 +184,7 @@ impl<'a> Custom<'a> {
         self.check_friction(fixed)
     }
 
-    /// The check of the law of friction alone.
+    /// Checks the law of friction alone, as [`check`](Self::check) does; `fixed` is the coefficient of static friction.
     pub(crate) fn check_friction(&self, fixed: f64) -> Result<(), Error> {
         self.friction.map_or(Ok(()), |law| check_friction(law, fixed))
     }

@@ -35,7 +35,7 @@ pub struct MomentInSi {
     pub theta: f64,
     /// The angular velocity along e1, e2, e3, in rad/s.
     pub w: Vector3<f64>,
-    /// The slip in m/s.
+    /// The slip of the contact point in m/s.
     pub slip: Slip,
     /// The direction phi to which the axis leans, in radians from x to y.
     pub phi: f64,
@@ -45,7 +45,7 @@ pub struct MomentInSi {
     pub contact_point: Point2<f64>,
     /// The height of the lowest point in metres; 0 on the table.
     pub height: f64,
-    /// The velocity of the centre along x and y, in m/s.
+    /// The velocity of the centre of mass along x and y, in m/s.
     pub velocity: Vector2<f64>,
     /// The axes e1, e2, e3 as columns ([`Moment::axes`]).
     pub axes: Matrix3<f64>,
@@ -80,7 +80,7 @@ pub struct InSi<L> {
 }
 
 impl<L> InSi<L> {
-    /// The law for a body of this scale.
+    /// A law in SI for a body with this scale.
     pub fn new(scale: &Scale, law: L) -> Self {
         Self { scale: *scale, law }
     }

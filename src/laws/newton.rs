@@ -38,7 +38,7 @@ use nalgebra::Vector3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
 pub struct Force {
-    /// The vertical component N.
+    /// The vertical component N, positive where the table presses on the body.
     pub normal: f64,
     /// The horizontal component F2 along e2, the direction in which the contact point runs.
     pub along: f64,
@@ -47,7 +47,7 @@ pub struct Force {
 }
 
 impl Force {
-    /// The force with these components.
+    /// The contact force with the components N, F2 and Fh, in units of the weight.
     pub fn new(normal: f64, along: f64, across: f64) -> Self {
         Self { normal, along, across }
     }

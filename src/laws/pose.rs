@@ -104,7 +104,7 @@ pub fn euler_angles(orientation: &UnitQuaternion<f64>) -> EulerAngles {
     EulerAngles { phi: near(phi), theta: 2.0 * lean.atan2(upright), psi: near(psi) }
 }
 
-/// Orientation and position of a body in a state.
+/// Orientation and position of a body at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 #[non_exhaustive]
@@ -148,7 +148,7 @@ impl Pose {
         axes(self.phi.rest, y.theta) * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.psi.rest)
     }
 
-    /// The centre of mass, in R.
+    /// The position of the centre of mass, in R.
     pub fn centre(&self, body: &Body, y: &State) -> Point3<f64> {
         let (s, c) = y.theta.sin_cos();
         let (sin, cos) = self.phi.rest.sin_cos();

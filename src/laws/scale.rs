@@ -35,7 +35,7 @@ pub struct Scale {
     gravity: f64,
 }
 
-/// The numbers of a scale in a file.
+/// The three numbers of a scale in a file.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -137,12 +137,12 @@ impl Scale {
         self.mass * self.gravity * self.radius
     }
 
-    /// The radius of the rim, in metres.
+    /// The unit of length R, the outer radius of the rim, in metres.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The mass, in kilograms.
+    /// The unit of mass M, the mass of the body, in kilograms.
     pub fn mass(&self) -> f64 {
         self.mass
     }

@@ -46,9 +46,9 @@ use nalgebra::Vector3;
 )]
 #[non_exhaustive]
 pub struct Slip {
-    /// The component along e_h; of a stone along x.
+    /// The component along e_h; for a stone along x.
     pub u_h: f64,
-    /// The component along e2; of a stone along y.
+    /// The component along e2; for a stone along y.
     pub u_2: f64,
 }
 
@@ -58,7 +58,7 @@ impl Slip {
         Self { u_h, u_2 }
     }
 
-    /// The speed |u|.
+    /// The speed |u| of the slip.
     pub fn speed(self) -> f64 {
         self.u_h.hypot(self.u_2)
     }
@@ -84,7 +84,7 @@ impl From<[f64; 2]> for Slip {
 }
 
 impl From<Slip> for [f64; 2] {
-    /// The components along e_h and e2.
+    /// The components of the slip along e_h and e2.
     #[inline(always)]
     fn from(u: Slip) -> Self {
         u.pair()

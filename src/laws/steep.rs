@@ -40,7 +40,7 @@ use crate::methods::search::crossing;
 use crate::numbers::codes::coded;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Couples and forces below this are rounding errors.
+/// Couples and forces up to this, in natural units, count as rounding errors.
 const NO_COUPLE: f64 = 1e-14;
 
 coded! {
@@ -171,7 +171,7 @@ pub struct Incline {
 }
 
 impl Incline {
-    /// This slope and this direction, in radians.
+    /// An incline with this slope and this direction phi, both in radians.
     pub const fn new(slope: f64, phi: f64) -> Self {
         Self { slope, phi }
     }

@@ -13,7 +13,7 @@ pub(crate) fn fit<'a>(mut columns: impl Iterator<Item = &'a [f64]>, count: usize
     columns.all(|x| x.len() == 1 || x.len() == count)
 }
 
-/// The number in a row of a column.
+/// The number of a column in the row with this index.
 pub(crate) fn at(column: &[f64], row: usize) -> f64 {
     column[if column.len() == 1 { 0 } else { row }]
 }
@@ -32,10 +32,10 @@ pub(crate) fn at(column: &[f64], row: usize) -> f64 {
 pub struct LossColumns<'a>(pub(crate) [&'a [f64]; COUNT]);
 
 impl<'a> LossColumns<'a> {
-    /// No losses.
+    /// Columns of coefficients that are all 0: no losses.
     pub const NONE: Self = Self([&[0.0]; COUNT]);
 
-    /// Returns these columns with a column for a law.
+    /// Returns these columns with a column of coefficients for this law.
     #[must_use]
     pub fn with(mut self, law: Law, column: &'a [f64]) -> Self {
         self.0[law as usize] = column;
@@ -103,13 +103,13 @@ impl<'a> BodyColumns<'a> {
 /// Columns of the four numbers of a [`State`](crate::State), as an input or an output.
 #[derive(Debug, Clone, Copy)]
 pub struct StateColumns<C> {
-    /// Inclination, in radians.
+    /// Inclinations, in radians.
     pub theta: C,
-    /// Angular velocity along e1, in sqrt(g/R).
+    /// Angular velocities along e1, in sqrt(g/R).
     pub w1: C,
-    /// Angular velocity along e2, in sqrt(g/R).
+    /// Angular velocities along e2, in sqrt(g/R).
     pub w2: C,
-    /// Angular velocity along the symmetry axis, in sqrt(g/R).
+    /// Angular velocities along the symmetry axis, in sqrt(g/R).
     pub w3: C,
 }
 
@@ -166,7 +166,7 @@ pub(crate) struct RowBlock<C> {
     pub out: C,
 }
 
-/// The columns in blocks of `size` rows.
+/// Divides the columns into blocks of `size` rows.
 pub(crate) fn blocks<C: Split>(out: C, count: usize, size: usize) -> Result<Vec<RowBlock<C>>, Error> {
     let (mut rest, mut blocks) = (Some(out), room(count.div_ceil(size))?);
     for first in (0..count).step_by(size) {

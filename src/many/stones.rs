@@ -94,10 +94,10 @@ impl StoneRow {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Turns {
-    /// Reversals are not counted.
+    /// Reversals of the spin are not counted.
     #[default]
     Uncounted,
-    /// Reversals are counted.
+    /// Reversals of the spin are counted.
     Counted,
 }
 

@@ -36,7 +36,7 @@ struct Piece<const M: usize> {
 pub(crate) struct Antiderivative<const M: usize> {
     pieces: Vec<Piece<M>>,
     pub total: [f64; M],
-    /// Absolute uncertainty of each integral from 0 to the end.
+    /// Absolute uncertainty of each integral from 0 to the end of the last piece.
     pub doubt: [f64; M],
 }
 
@@ -77,7 +77,7 @@ pub(crate) struct Sampled<const M: usize> {
     pub value: [f64; M],
     /// The largest of the terms whose sum each function is, as the scale of its rounding error.
     pub scale: [f64; M],
-    /// The relative uncertainty of the functions.
+    /// The relative uncertainty of the values.
     pub noise: f64,
 }
 
@@ -177,7 +177,7 @@ impl<const M: usize> Antiderivative<M> {
         (piece.left, piece.before)
     }
 
-    /// The integrals from 0 to `u`.
+    /// The M integrals from 0 to `u`.
     pub fn at(&self, u: f64) -> [f64; M] {
         let piece = self.piece(u);
         core::array::from_fn(|i| piece.at(i, u))

@@ -16,7 +16,7 @@ pub(crate) struct Beat {
 
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
 impl Beat {
-    /// A beat whose first interval begins now.
+    /// A timer whose first interval begins at this call.
     pub fn new() -> Self {
         Self { asked: Instant::now() }
     }

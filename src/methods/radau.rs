@@ -22,7 +22,7 @@ use nalgebra::{Complex, Const, DimMin, SMatrix, SVector, ToTypenum};
 /// The cost of a step that converges fast, in evaluations of the rates; and the cost of J and its factors.
 pub(crate) const COST: u64 = 36;
 const JACOBIAN_COST: u64 = 20;
-/// The number of stages of a step.
+/// The number of stages of a step of Radau's method.
 pub(crate) const RADAU_STAGES: usize = 5;
 #[rustfmt::skip]
 pub(crate) const PLACES: [f64; RADAU_STAGES] = [0.05710419611451768, 0.2768430136381238, 0.5835904323689168, 0.8602401356562195, 1.0];

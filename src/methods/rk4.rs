@@ -63,7 +63,7 @@ pub(crate) fn change<T: Real, const N: usize>(
 /// The variables of an integration, with the rounding errors of the sums that led to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compensated<const N: usize> {
-    /// The rounded sums.
+    /// The variables, as rounded sums.
     pub y: [f64; N],
     /// The part, less than an ulp, that is still to be added to `y`.
     pub carry: [f64; N],

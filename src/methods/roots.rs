@@ -16,7 +16,7 @@ use core::ops::{Add, Mul, Sub};
 /// The highest degree, which the polynomial of the boundary of stability of a rounded rim has.
 const HIGHEST_DEGREE: usize = 16;
 
-/// A few numbers in ascending order.
+/// The roots of a polynomial in ascending order.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SortedRoots {
     items: [f64; HIGHEST_DEGREE],
@@ -134,7 +134,7 @@ fn middle_of(low: f64, high: f64) -> f64 {
 /// A type of number for the coefficients of a [`Cubic`].
 pub(crate) trait Coefficient: Copy + From<Sum<f64>> {
     fn plus(self, other: Self) -> Self;
-    /// `self + a b`.
+    /// The sum `self + a b`, with the product.
     fn plus_product(self, a: Self, b: Self) -> Self;
 }
 
@@ -209,7 +209,7 @@ impl Trig {
         Self { degree, ..product }
     }
 
-    /// The derivative with respect to theta.
+    /// The derivative of the polynomial with respect to theta.
     pub fn slope(&self) -> Self {
         let k = self.degree as f64;
         let mut p = vec![ZERO; self.p.len() + 1];

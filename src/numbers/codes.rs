@@ -14,7 +14,7 @@ macro_rules! coded {
         }
 
         impl $Name {
-            /// All values, in the order of their codes.
+            /// All values of the enumeration, in the order of their codes.
             pub const ALL: &'static [Self] = &[$(Self::$Value),+];
 
             /// The value with this code, the number in an array; None for any other number.

@@ -35,7 +35,7 @@ pub(crate) trait Real:
 {
     /// The constant `x` in as many SIMD lanes as `self` has.
     fn splat(self, x: f64) -> Self;
-    /// Square root; NaN below zero.
+    /// The square root; NaN below zero.
     fn sqrt(self) -> Self;
     /// The nearest whole number; of two that are equally near, the even one.
     fn round(self) -> Self;

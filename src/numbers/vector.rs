@@ -23,7 +23,7 @@ pub(crate) fn plus<T: Real>(a: [T; 3], k: T, b: [T; 3]) -> [T; 3] {
 pub(crate) struct Symmetric<T>(pub [T; 6]);
 
 impl<T: Real> Symmetric<T> {
-    /// The product with a vector.
+    /// The product of the matrix with a vector.
     #[inline(always)]
     pub fn times(&self, v: [T; 3]) -> [T; 3] {
         let [a, b, c, d, e, f] = self.0;

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 /// Number of inputs of `power`: coefficients, normal force, state and body.
 pub const INPUTS: usize = COUNT + 1 + 4 + super::BODY;
 
-/// The power of the losses; NaN if a coefficient is invalid.
+/// The power that the losses take, in M g sqrt(g R); NaN if a coefficient is invalid.
 pub fn power(x: &[f64]) -> f64 {
     let (losses, normal) = losses_of(x);
     or_nan(losses.check().map(|()| of_state(&x[COUNT + 1..], |y, body| losses.power(body, y, normal))))
@@ -38,7 +38,7 @@ pub struct LossRow {
     natural: &'static str,
     si: &'static str,
     printed: &'static str,
-    /// The exponents of metre, second and joule in the unit.
+    /// The exponents of metre, second and joule in the unit of the coefficient.
     exponents: [f64; 3],
     /// Whether the law also acts on a body in the air.
     in_air: bool,

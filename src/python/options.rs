@@ -128,12 +128,12 @@ impl MotionAsked {
         self.drive.is_some() || given.into_iter().any(|law| law.function().is_some())
     }
 
-    /// The user-defined laws that are C functions.
+    /// The user-defined laws that are C functions, as laws of the core.
     pub fn pointed(&self) -> PointedLaws {
         PointedLaws::of(self.couple.as_ref(), self.friction.as_ref())
     }
 
-    /// The options that are not user-defined laws.
+    /// The options of the core, from those that are not user-defined laws.
     pub fn ask(&self) -> PyResult<Ask> {
         Ok(Ask {
             table: table_of(self.table)?.with(self.coefficients),

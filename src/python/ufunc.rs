@@ -98,7 +98,7 @@ impl Loop {
         }
     }
 
-    /// The elements from `first` on, at most `most` of them.
+    /// The part of the loop with the elements from `first` on, at most `most` of them.
     fn part(&self, first: isize, most: isize) -> Self {
         let mut part = *self;
         part.count = most.min(self.count - first);

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-/// The time between two checks.
+/// The time between two checks for Ctrl-C.
 pub(super) const CHECK_PERIOD: Duration = Duration::from_millis(20);
 
 /// Checks for Ctrl-C, and reports the finished share of the work to `progress`.

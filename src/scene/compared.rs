@@ -27,7 +27,7 @@ const FARTHEST: f64 = 30.0;
 pub struct TrajectoryRow {
     /// The time since the initial state, in seconds.
     pub time: f64,
-    /// The centre of mass in metres.
+    /// The position of the centre of mass in metres.
     pub position: Point3<f64>,
     /// The rotation from the axes of the body to those of the table.
     pub orientation: UnitQuaternion<f64>,
@@ -45,7 +45,7 @@ impl TrajectoryRow {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Deviation {
-    /// The time in seconds.
+    /// The time since the initial state, in seconds.
     pub time: f64,
     /// The distance from the known centre of mass, in metres.
     pub position: f64,

@@ -16,17 +16,17 @@ pub struct Contents {
     pub version: u32,
     pub(super) units: String,
     pub(super) axes: String,
-    /// The natural units.
+    /// The natural units of the scene, in SI.
     pub scale: NaturalUnits,
     /// The acceleration of gravity as a vector along the axes of the table, in m/s^2.
     pub gravity: Vector3<f64>,
-    /// The body.
+    /// The body: mass, inertia and shape.
     pub body: SceneBody,
-    /// The table.
+    /// The table: plane, friction, restitution and losses.
     pub table: SceneTable,
-    /// The initial state.
+    /// The initial state of the body.
     pub start: SceneStart,
-    /// The known answer.
+    /// The known answer: the motion at given times.
     pub expected: Expected,
     /// Bounds of the errors of the known answer at any time.
     pub error: SceneErrors,
@@ -78,7 +78,7 @@ pub struct SceneBody {
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum SceneShape {
-    /// The shape is an ellipsoid.
+    /// The shape of an ellipsoid.
     Ellipsoid(EllipsoidShape),
     /// The shape is the hull of circles about axis 3, swollen by a distance.
     Circles(CirclesShape),
@@ -133,19 +133,19 @@ pub struct CirclesShape {
 pub enum ShapeKind {
     /// A cylinder or tube, sharp or rounded.
     Cylinder,
-    /// A single circle.
+    /// A body with a single circle, such as a thin disk or a hoop.
     Rim,
     /// A cylinder with hemispheres at its ends.
     Capsule,
-    /// Two equal balls.
+    /// Two equal balls on a common axis.
     Balls,
-    /// One ball.
+    /// A ball, with its centre of mass at any point of axis 3.
     Ball,
     /// Circles of any other arrangement.
     Circles,
 }
 
-/// A circle about axis 3, in metres.
+/// A circle about axis 3 with which a body touches the table, in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct SceneCircle {
@@ -191,7 +191,7 @@ pub enum SceneFriction {
         /// The formula of the friction, as text.
         force: String,
     },
-    /// A frictionless table.
+    /// A smooth table, without friction.
     #[non_exhaustive]
     Smooth {
         /// The coefficient of friction, which is 0.
@@ -199,7 +199,7 @@ pub enum SceneFriction {
         /// The formula of the friction, as text.
         force: String,
     },
-    /// Coulomb's dry friction.
+    /// Coulomb's law of dry friction.
     #[non_exhaustive]
     Coulomb {
         /// The coefficient of sliding friction.
@@ -212,7 +212,7 @@ pub enum SceneFriction {
         /// The formula of the friction, as text.
         force: String,
     },
-    /// A viscous film.
+    /// A viscous film, whose friction grows with the velocity of the slip.
     #[non_exhaustive]
     Viscous {
         /// The coefficient: the force over normal force and velocity, in s/m.
@@ -232,9 +232,9 @@ pub struct SceneLoss {
     pub law: String,
     /// The name of the coefficient of the law.
     pub coefficient: String,
-    /// The coefficient in SI.
+    /// The value of the coefficient of the law, in SI.
     pub value: f64,
-    /// The unit of the coefficient.
+    /// The SI unit of the coefficient of the law.
     pub unit: String,
     /// The formula of the couple on the body, as text.
     pub couple: String,
@@ -318,11 +318,11 @@ pub struct SceneImpact {
     pub kind: String,
     /// The normal impulse in N s.
     pub normal_impulse: f64,
-    /// The energy lost in joules.
+    /// The energy lost in the impact, in joules.
     pub energy_lost: f64,
 }
 
-/// A phase of the motion.
+/// A phase of the known motion, such as rolling or slipping.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct ScenePhase {

@@ -28,24 +28,24 @@ const HEIGHT_ROUNDINGS: f64 = 16.0;
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum Natural {
-    /// A body of revolution.
+    /// A body of revolution with its start and options.
     #[non_exhaustive]
     Body {
-        /// The body.
+        /// The body, in natural units.
         body: Body,
         /// The initial state, at time 0.
         start: Start,
-        /// The options of its motion.
+        /// The options of the motion of the body.
         ask: Ask,
     },
-    /// A stone.
+    /// A stone with its start and options.
     #[non_exhaustive]
     Stone {
-        /// The stone.
+        /// The stone, in natural units.
         stone: Ellipsoid,
         /// The initial state, at time 0.
         start: Start<StoneState>,
-        /// The options of its motion.
+        /// The options of the motion of the stone.
         ask: Ask,
     },
 }
@@ -163,7 +163,7 @@ impl Natural {
     }
 }
 
-/// The answer from a motion and its rows.
+/// The answer of a scene from a computed motion, with one row for each time.
 fn told<S: Moving>(
     m: Motion<S>,
     rows: Vec<Known>,

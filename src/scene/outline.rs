@@ -98,7 +98,7 @@ fn arc([r, z]: [f64; 2], radius: f64, [start, stop]: [f64; 2], pieces: usize) ->
     (0..=pieces).map(corner).collect()
 }
 
-/// Every n-th of these points, and the last one.
+/// Every n-th of these points of an outline, and the last point.
 fn thinned(points: &[[f64; 2]], n: usize) -> Vec<[f64; 2]> {
     points.iter().step_by(n).chain(points.last()).copied().collect()
 }

@@ -45,11 +45,11 @@ pub enum Form {
     /// A cylinder, a cone or a frustum: outer and inner radii at the lower and the upper end, the heights of both ends, and
     /// the radius by which both outer edges of a cylinder are rounded. The mass is that of the sharp body.
     Solid {
-        /// Outer radii.
+        /// Outer radii at the lower and the upper end.
         radii: [f64; 2],
-        /// Inner radii.
+        /// Inner radii at the lower and the upper end.
         bores: [f64; 2],
-        /// Heights of the ends.
+        /// Heights of the lower and the upper end.
         ends: [f64; 2],
         /// Radius of the fillets of both outer edges; 0 unless the solid is a cylinder.
         fillet: f64,
@@ -57,20 +57,20 @@ pub enum Form {
     /// A ball, solid or hollow, or its part between two heights: outer and inner radius, height of the centre, both
     /// heights.
     Ball {
-        /// Outer radius.
+        /// Outer radius of the ball.
         radius: f64,
-        /// Inner radius.
+        /// Inner radius of the ball; 0 if it is solid.
         hollow: f64,
-        /// Height of the centre.
+        /// Height of the centre of the ball.
         centre: f64,
         /// Heights between which the part lies.
         ends: [f64; 2],
     },
     /// A thin wall in the form of a cylinder, a cone, a frustum or a disk.
     Wall {
-        /// Radii at the ends.
+        /// Radii at the lower and the upper end.
         radii: [f64; 2],
-        /// Heights of the ends.
+        /// Heights of the lower and the upper end.
         ends: [f64; 2],
     },
     /// A thin spherical wall between two heights.
@@ -129,12 +129,12 @@ pub struct Assembled {
 pub(super) struct Mass {
     whole: f64,
     height: f64,
-    /// Sum of (z - height)^2 dm.
+    /// Sum of (z - height)^2 dm, the second moment along the axis.
     along: f64,
     axial: f64,
 }
 
-/// Nodes and weights of Gauss's rule on [0, 1].
+/// Nodes and weights of Gauss's rule of quadrature on [0, 1].
 const NODES: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
     [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
@@ -146,7 +146,7 @@ const LEAST_END: f64 = 1e-6;
 /// Largest distance of an edge from the origin of the heights, over the largest outer radius: for a body farther away
 /// rounding would spoil the heights.
 const FARTHEST: f64 = 1e5;
-/// Allowed lengths, masses and densities.
+/// Least and largest length, mass and density that are accepted.
 const SIZE: (f64, f64) = (0.0, 1e100);
 
 impl Form {
@@ -210,7 +210,7 @@ impl Form {
         })
     }
 
-    /// The mass at density 1, with its moments.
+    /// The mass of the part at density 1, its centre and its second moments.
     pub(super) fn mass(&self) -> Mass {
         let of = |ends: [f64; 2], slice: &dyn Fn(f64) -> [f64; 2]| Mass::between(ends, slice);
         match *self {
@@ -431,7 +431,7 @@ pub(super) fn of_masses(
     Ok(Assembled { body, mass: whole, radius, centre })
 }
 
-/// The largest outer radius.
+/// The largest outer radius of these edges.
 pub(super) fn widest(circles: &[Edge]) -> f64 {
     circles.iter().map(Edge::outer).fold(0.0, f64::max)
 }

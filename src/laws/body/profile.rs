@@ -67,7 +67,7 @@ pub(crate) struct Landings {
     /// The indices of the first and the last circle of each group that smooth joints connect; the first group holds the
     /// circle on which the body stands.
     groups: [[u8; 2]; MOST_CIRCLES],
-    /// The number of groups, and the number of circles.
+    /// The number of groups, and the number of circles, of the body.
     pub count: usize,
     pub circles: usize,
     /// Cosines of the inclinations up to which each circle touches the table.
@@ -210,7 +210,7 @@ impl CircleRow {
         if self.over { [back(high), if low == 0.0 { PI } else { back(low) }] } else { [low, high] }
     }
 
-    /// All circles.
+    /// All circles of the row, from the end at which it begins.
     pub fn circles(&self) -> &[Circle] {
         &self.circles[..self.count]
     }

@@ -94,9 +94,9 @@ pub(crate) struct CircleDown<T> {
 /// Two neighbouring circles of a body at the inclination at which both touch the table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Border<T> {
-    /// Sine and cosine of that inclination.
+    /// Sine and cosine of the inclination at which both circles touch the table.
     pub angle: (T, T),
-    /// Height Z of the centre of mass.
+    /// Height Z of the centre of mass above the table.
     pub height: T,
     /// The circle that touches the table at smaller inclinations, and the circle that touches it at larger inclinations.
     pub circles: [CircleDown<T>; 2],
@@ -118,7 +118,7 @@ impl Border<f64> {
 }
 
 impl<T: Real> Border<T> {
-    /// The distance D of the two contact points.
+    /// The distance D between the two contact points.
     pub fn span(&self) -> T {
         self.circles[0].lever - self.circles[1].lever
     }
@@ -141,7 +141,7 @@ pub(crate) struct Shape<T> {
 }
 
 impl<T: Real> Shape<T> {
-    /// The shape with these ell, I1, I3 and fillet.
+    /// The shape of a body with these ell, I1, I3 and fillet.
     #[inline(always)]
     pub fn of([ell, i1, i3, rho]: [T; 4]) -> Self {
         Self { rim: Rim { ell, a: ell.splat(1.0) - rho, rho }, i1, i3 }

@@ -28,10 +28,10 @@ pub(crate) fn tube<T: Real>(ell: T, bore: T) -> ([T; 2], Sum<T>) {
 /// Functions of the bore q alone, shared by all uniform tubes of one bore.
 #[derive(Clone, Copy)]
 pub(crate) struct Wall<T> {
-    /// 1 + q^2 (`size`) and 3 (1 + q^2) (`three`).
+    /// Powers of the bore q: 1 + q^2 (`size`) and 3 (1 + q^2) (`three`).
     size: T,
     three: Sum<T>,
-    /// 1/(6 (1 + q^2)).
+    /// The factor 1/(6 (1 + q^2)), with the bore q.
     per_six: Sum<T>,
 }
 

@@ -52,7 +52,7 @@ impl Delassus {
         solved(self.level, velocity)
     }
 
-    /// The principal values of A, and its principal axes.
+    /// The principal values of A, the horizontal part of the inverse inertia, and its principal axes.
     pub fn principal(&self) -> ([f64; 2], [[f64; 2]; 2]) {
         let [[a, ab], [_, b]] = self.level;
         if ab == 0.0 {
@@ -112,7 +112,7 @@ impl Delassus {
     }
 }
 
-/// The solution x of A x = v.
+/// The solution x of A x = v for a symmetric matrix A of two rows.
 fn solved([[a, ab], [_, b]]: [[f64; 2]; 2], [u, v]: [f64; 2]) -> [f64; 2] {
     let y = (v - ab / a * u) / (b - ab / a * ab);
     [(u - ab * y) / a, y]

@@ -44,7 +44,7 @@ coded! {
         Sticks = 1,
         /// The slip stops and then begins in another direction, since friction cannot hold the contact point.
         SlipsOn = 2,
-        /// There is no friction.
+        /// The contact point slips without friction.
         Smooth = 3,
         /// Both rims land at once, or the other rim lands without a bounce; the impulse is the sum over both rims.
         BothRims = 4,
@@ -64,7 +64,7 @@ pub(crate) struct PointImpact {
     pub light: Delassus,
     /// The patch of contact at this point; None for a point.
     pub patch: Option<PatchedPoint>,
-    /// The law of restitution.
+    /// The law of restitution, which says where the impact ends.
     pub law: ImpactLaw,
     /// Tolerance of a step along an impact whose slip turns, at least 3e-14; and the factor by which the first step is
     /// longer than usual.
@@ -81,7 +81,7 @@ pub(crate) struct Struck {
     pub slip: [f64; 2],
     pub lift: f64,
     pub hit: Hit,
-    /// Energy lost, in M g R.
+    /// Energy lost in the impact, in M g R.
     pub lost: f64,
 }
 
@@ -115,7 +115,7 @@ pub(crate) fn turned(shape: &Shape<f64>, angle: (f64, f64), w: [f64; 3], struck:
     ]
 }
 
-/// Largest number of steps along an impact.
+/// Largest number of steps of the integration along an impact.
 const IMPACT_STEPS: u64 = 5_000;
 
 /// The state along an impact, with all velocities in units of the first normal velocity, or of the slip where that is zero.
@@ -432,7 +432,7 @@ enum Along {
     Held,
     /// Slip and drilling of the patch have stopped, and friction cannot hold both.
     Off,
-    /// The slip of a ball that is gripped turns back.
+    /// The slip of a ball turns back, since friction grips it.
     Back,
     /// The contact point slips on along this direction after its slip had stopped.
     On([f64; 2]),
@@ -511,7 +511,7 @@ mod tests {
         assert!(hits[..3].iter().all(|&n| n > 10), "{hits:?}");
     }
 
-    /// The patch of that ellipsoid.
+    /// The patch of contact of the skew ellipsoid `SKEW`.
     const SKEW_PATCH: PatchedPoint = PatchedPoint {
         radius: 0.05,
         drilling: 3.0,

@@ -71,7 +71,7 @@ pub struct Landed {
     pub state: State,
     /// The slip of the rim to which `state` refers, in sqrt(g R).
     pub slip: Slip,
-    /// Energy lost to the impact, in M g R.
+    /// Energy lost in the landing, in M g R.
     pub lost: f64,
 }
 
@@ -427,7 +427,7 @@ impl<L: SpeedLaw> Landing<'_, L> {
         1.0 + at.depth * by.depth / self.body.i1() + at.radius * by.radius / self.body.i3()
     }
 
-    /// The slips of both circles after the impact.
+    /// The slips of both circles after the impact, each along e_h and e2.
     fn slips(&self, [low, up]: Impulses, w2: f64) -> [[f64; 2]; 2] {
         let along = self.slip[0] + low[0] + up[0] - self.border.height * (w2 - self.y.w2);
         let turning = self.border.span() * drilling_of(self.border.angle, self.y.w1, self.y.w3);

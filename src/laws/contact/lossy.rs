@@ -61,7 +61,7 @@ pub(crate) struct Lossy<T, G = ()> {
 pub(crate) struct Acted<T> {
     /// The time derivatives of w1, w2 and w3.
     pub w: [T; 3],
-    /// The contact force N, F2, Fh.
+    /// The contact force [N, F2, Fh].
     pub force: [T; 3],
     pub power: T,
     /// The magnitude of the couple lambda or nu that holds a motion, and the largest one that friction can exert.

@@ -30,7 +30,7 @@ use crate::numbers::Real;
 /// A body that lies on two circles, on a table with friction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lying<T> {
-    /// The circle to which the state refers.
+    /// The shape of the body, with the circle to which the state refers.
     pub shape: Shape<T>,
     /// Both circles at the inclination at which both touch, that of the state first.
     pub border: Border<T>,

@@ -55,7 +55,7 @@ pub use table::{Table, TableKind};
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Contact {
-    /// Rolling without slipping.
+    /// Rolling without slipping, with any friction that this needs.
     #[default]
     Rolling = 0,
     /// Sliding on a frictionless table, which is the contact in the criterion of Jackson et al.

@@ -118,9 +118,9 @@ impl Rubbing<Dual<f64>> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PatchShares {
-    /// The force f against the slip, in mu N.
+    /// The force f of friction against the slip, in mu N.
     pub force: f64,
-    /// The couple g against drilling, in mu N eps.
+    /// The couple g of friction against the drilling, in mu N eps, with the radius eps of the patch.
     pub couple: f64,
 }
 

@@ -72,7 +72,7 @@ impl<T: Real> Reduced<T> {
         Self { contact, shape, round: round && contact == Contact::Rolling, fixed, inertia }
     }
 
-    /// The coefficients at an inclination.
+    /// The coefficients of the equations at one inclination.
     #[inline(always)]
     pub fn at(&self, angle: (T, T)) -> Coefficients<T> {
         if !self.round {

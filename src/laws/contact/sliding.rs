@@ -125,7 +125,7 @@ impl Roughness<'_> {
     }
 }
 
-/// The slip of a contact point along an impact.
+/// The equations of the slip of a contact point during an impact.
 #[derive(Clone, Copy)]
 pub(super) struct ImpactSlip<'a> {
     pub light: Delassus,

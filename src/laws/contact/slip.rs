@@ -164,7 +164,7 @@ pub(crate) struct SlipResponse<T> {
     pub free: T,
     /// (1 - eps - [`JAMMED`]) (I1 + g^2), with the eps of the equations above; where it vanishes no unique force exists.
     pub room: T,
-    /// The contact force N, F2, Fh.
+    /// The contact force [N, F2, Fh].
     pub force: [T; 3],
     /// The couple about the vertical that holds the drilling at rest, and the largest one that friction can exert.
     pub held: [T; 2],
@@ -228,7 +228,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         &self.varies
     }
 
-    /// Returns this body with losses.
+    /// Returns this body with these losses in addition to friction.
     #[must_use]
     pub fn with_losses<H>(self, losses: Option<Couples<T, H>>) -> Slipping<T, H, L> {
         let Self { shape, per_i1, per_i3, strength, soft, dry, radius, om, varies, .. } = self;
@@ -425,7 +425,7 @@ impl<T: Real, G: OwnCouple<T>, L: FollowsSpeed<T>> Slipping<T, G, L> {
         [rim.height(angle).mac(w2, u_h), u_2 - rim.depth(angle) * w1 + rim.radius(angle) * w3]
     }
 
-    /// The coefficient of friction at this slip.
+    /// The coefficient of friction at the slip `u`.
     #[inline(always)]
     pub fn strength_at(&self, u: [T; 2]) -> T {
         self.varies.strength(
@@ -529,7 +529,7 @@ impl<G: OwnCouple<f64>, L: FollowsSpeed<f64>> Slipping<f64, G, L> {
         }
     }
 
-    /// The contact force N, F2 and Fh in a state.
+    /// The contact force N, F2 and Fh of a body with the state `y` and the slip `u`.
     pub fn force(&self, y: &State, u: [f64; 2]) -> Force {
         let [normal, along, across] = self.answers(y.theta.sin_cos(), [y.w1, y.w2, y.w3], u).0.force;
         Force { normal, along, across }

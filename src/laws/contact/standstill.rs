@@ -40,7 +40,7 @@ const GROWTH_ROUNDING_AT_RELEASE: f64 = 1e-8;
 
 /// The forces at a contact point at rest, and the rates of a slip from rest, which decide whether the point sticks.
 pub(crate) struct HeldContact<F: Fn(f64) -> Option<f64>> {
-    /// The coefficients of sliding and of static friction.
+    /// The coefficient of sliding friction and that of static friction.
     pub mu: [f64; 2],
     /// The normal force if there were no friction.
     pub free: f64,
@@ -225,7 +225,7 @@ pub(crate) struct Onset {
     pub eps: [f64; 2],
     /// The rate of the slip if the table exerted no force.
     pub bare: [f64; 2],
-    /// The rate of the slip per normal force.
+    /// The rate of the slip per normal force, which is added to `bare`.
     pub pressed: [Sum<f64>; 2],
     /// The rate of the slip per horizontal force: the elements 11, 22 and 12 of a symmetric matrix.
     pub pulled: [f64; 3],

@@ -12,11 +12,11 @@ use crate::numbers::codes::coded;
 pub enum Table {
     /// The contact point is at rest. The motion ends where rolling needs more friction than mu N; mu may be infinite.
     Rolling {
-        /// Coefficient of friction.
+        /// Coefficient of friction that rolling may need at most.
         #[cfg_attr(feature = "serde", serde(with = "crate::numbers::file"))]
         mu: f64,
     },
-    /// The table is frictionless.
+    /// The table is frictionless, so that the contact force is vertical.
     Smooth,
     /// A law of friction, which decides whether the contact point slips.
     Rubs(Friction),

@@ -19,7 +19,7 @@ use crate::laws::state::{drilling_of, rolling_of, spin_of};
 use crate::numbers::larger_or_nan;
 use nalgebra::{SMatrix, SVector};
 
-/// Number of components of the reactions.
+/// Number of components of the reactions: two each of slip and rolling, one each along the rim and of the drilling.
 const REACTIONS: usize = 6;
 type Reactions = SVector<f64, REACTIONS>;
 
@@ -36,7 +36,7 @@ pub(crate) enum Standstill {
     Undefined,
 }
 
-/// A motion at rest.
+/// A kind of motion that is at rest and that dry friction may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Resting {
     Slip = 0,
@@ -48,7 +48,7 @@ pub(crate) enum Resting {
 const ALL_RESTING: [Resting; 4] = [Resting::Slip, Resting::Rolling, Resting::Contour, Resting::Drilling];
 
 impl Resting {
-    /// The first of its components, and their number.
+    /// The index of the first component of this motion in the reactions, and the number of its components.
     fn place(self) -> (usize, usize) {
         [(0, 2), (2, 2), (4, 1), (5, 1)][self as usize]
     }
@@ -57,7 +57,7 @@ impl Resting {
 /// The result for one motion at rest: its reaction, and the direction and rate at which it begins if friction does not hold it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Fate {
-    /// The reaction per normal force.
+    /// The reaction of friction per normal force, as components of this motion.
     pub reaction: [f64; 2],
     /// The direction in which the motion begins, a unit vector; zero if the motion is held, or is not at rest.
     pub way: [f64; 2],

@@ -14,7 +14,7 @@ use super::lying::{Lain, Lying};
 use crate::laws::body::{Border, Shape};
 use crate::numbers::larger_or_nan;
 
-/// The largest number of steps of the search.
+/// The largest number of steps of the search for the friction at both circles.
 const SEARCH_STEPS: usize = 100_000;
 
 /// The beginning of the motion of a body whose two circles were at rest: forces, accelerations, and the circles that slip.
@@ -24,7 +24,7 @@ pub(crate) struct Begun {
     pub lain: Lain<f64>,
     /// The accelerations of the slips of both circles, each along e_h and e2.
     pub slips: [[f64; 2]; 2],
-    /// Whether each circle begins to slip.
+    /// Whether each of the two circles begins to slip.
     pub moves: [bool; 2],
 }
 

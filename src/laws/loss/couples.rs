@@ -17,9 +17,9 @@ pub(crate) struct Kinematics<T> {
     /// Sine and cosine of theta.
     pub angle: (T, T),
     pub w: [T; 3],
-    /// The spin psi'.
+    /// The spin psi', the rate of turning about the symmetry axis relative to e1, e2, e3.
     pub spin: T,
-    /// A, the radius of the circle of contact.
+    /// The radius A of the circle of contact.
     pub radius: T,
     /// The signs -1, 0 or 1 of the spin psi' and of the drilling w_z.
     pub signs: [T; 2],
@@ -157,7 +157,7 @@ impl<T: Real> OwnCouple<T> for Option<Couple<T>> {
     }
 }
 
-/// The motions that dry friction keeps at rest.
+/// The kinds of motion that dry friction keeps at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Holds {
     /// The rolling of the contact along the rim: psi' = 0 is held by a couple h/s.
@@ -363,7 +363,7 @@ impl<T: Real, G: Copy> Couples<T, G> {
         Self { om: turns.then_some(om), ..self }
     }
 
-    /// Converts the losses to another type of number.
+    /// Converts the coefficients and couples to another type of number.
     #[inline(always)]
     pub fn map<U: Real>(&self, number: impl Fn(T) -> U) -> Couples<U, G> {
         let ways = self.ways.map(|ways| Ways {
@@ -489,7 +489,7 @@ impl<T: Real, G: OwnCouple<T>> Couples<T, G> {
         has
     }
 
-    /// The motions that dry friction holds at rest.
+    /// The kinds of motion that dry friction holds at rest.
     #[inline(always)]
     pub fn holds(&self) -> Holds {
         self.ways.as_ref().map_or(Holds::default(), |ways| ways.holds)

@@ -15,26 +15,26 @@ use crate::numbers::Real;
 pub(crate) enum Resists {
     /// The speed A |psi'| of the contact along the rim. The couple is a multiple of h/s.
     Contour,
-    /// The rolling and the rocking together.
+    /// The rolling w_h and the rocking w2 together.
     Rolling,
-    /// The drilling w_z. The couple is vertical.
+    /// The drilling w_z; the couple of the law is vertical.
     Drilling,
-    /// All rotation.
+    /// All rotation, by the air.
     All,
 }
 
 /// The unit of the coefficient of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Unit {
-    /// A length.
+    /// A length, such as a lever arm.
     Length,
-    /// A couple over an angular velocity.
+    /// A damping constant: a couple over an angular velocity.
     Damping,
-    /// A couple over the square of an angular velocity.
+    /// A drag constant: a couple over the square of an angular velocity.
     Drag,
-    /// A viscosity.
+    /// A dynamic viscosity.
     Viscosity,
-    /// A couple over an angular velocity to the power 3/2.
+    /// A couple over an angular velocity to the power 3/2, for boundary layers.
     Layer,
 }
 
@@ -90,20 +90,20 @@ pub(crate) struct EndPowers {
 
 /// A loss law. Every law is linear in its one coefficient.
 pub(crate) trait LossLaw {
-    /// The name of the coefficient.
+    /// The name of the coefficient of the law.
     const PARAMETER: &'static str;
     /// The formula of the couple in the symbols of a scene file, with the coefficient in SI.
     const COUPLE: &'static str;
-    /// The unit of the coefficient.
+    /// The unit of the coefficient of the law.
     const UNIT: Unit;
     /// The motion that the law resists.
     const RESISTS: Resists;
-    /// The exponents of the power near the ends of a drift.
+    /// The exponents of the power that the law takes near the ends of a drift.
     const POWERS: EndPowers;
     /// Whether the law is dry: proportional to the normal force and to the sign of a motion. Where that motion comes to
     /// rest, dry friction may hold it: `dry::held` decides this from the couple that acts at rest.
     const PRESSES: bool = false;
-    /// Whether the law needs a flat face above the table.
+    /// Whether the law needs a flat face of the body above the table.
     const NEEDS_FACE: bool = false;
     /// The speed at whose zero the law is not smooth, if there is one; near it steps are short.
     const ROOT: Option<Speed> = None;

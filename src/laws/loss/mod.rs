@@ -101,7 +101,7 @@ macro_rules! laws {
                 match self { $(Self::$Law => $file::$Law::PRESSES,)+ }
             }
 
-            /// Whether this law needs a flat face above the table.
+            /// Whether this law needs a flat face of the body above the table.
             const fn needs_face(self) -> bool {
                 match self { $(Self::$Law => $file::$Law::NEEDS_FACE,)+ }
             }
@@ -157,7 +157,7 @@ macro_rules! laws {
                 Couple { free, pressed }
             }
 
-            /// The power that all laws take under a normal force.
+            /// The power that the couples of all laws take under this normal force.
             #[inline(always)]
             pub fn power(&self, seen: &Kinematics<T>, normal: T) -> T {
                 let mut power = normal.splat(0.0);
@@ -275,7 +275,7 @@ impl Law {
     serde(try_from = "std::collections::BTreeMap<Law, f64>", into = "std::collections::BTreeMap<Law, f64>")
 )]
 pub struct Losses {
-    /// The coefficients, in the order of [`Law::ALL`].
+    /// The coefficients in natural units, in the order of [`Law::ALL`].
     pub(crate) coefficients: [f64; COUNT],
 }
 
@@ -292,7 +292,7 @@ pub enum Resistance {
 }
 
 impl Losses {
-    /// All coefficients are 0, and nothing is lost.
+    /// Losses whose coefficients are all 0: no energy is lost.
     pub const NONE: Self = Self { coefficients: [0.0; COUNT] };
 
     /// The losses of a single law with this coefficient, in natural units.

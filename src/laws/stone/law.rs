@@ -31,7 +31,7 @@ use crate::methods::SHORT_CODE;
 use crate::numbers::Real;
 use crate::numbers::vector::{Symmetric, cross, dot, plus};
 
-/// An ellipsoid on a table with friction.
+/// The equations of motion of an ellipsoid on a table with friction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StoneLaw<T> {
     /// The squares of the semi-axes.
@@ -71,7 +71,7 @@ pub(crate) struct Touching<T> {
 #[derive(Clone, Copy)]
 pub(crate) struct StoneResponse<T> {
     pub w: [T; 3],
-    /// The contact force along the axes of the body.
+    /// The contact force along the axes of the body, in units of the weight.
     pub force: [T; 3],
     /// The normal force N without friction, times a positive factor; the stone lifts off when this number
     /// becomes zero.
@@ -130,7 +130,7 @@ impl<T: Real> StoneLaw<T> {
         Self { tilt, ..self }
     }
 
-    /// Returns this law with losses.
+    /// Returns this law with losses in addition to friction.
     #[must_use]
     pub fn with_losses(self, losses: Option<Couples<T>>) -> Self {
         Self { losses, ..self }

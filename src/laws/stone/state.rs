@@ -7,7 +7,7 @@ use nalgebra::{Point2, Quaternion, UnitQuaternion};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct StoneState {
-    /// The vertical: the unit vector that points upward.
+    /// The vertical: the unit vector that points upward, along the axes of the ellipsoid.
     pub vertical: [f64; 3],
     /// The angular velocity along the axes of the ellipsoid, in sqrt(g/a).
     pub w: [f64; 3],
@@ -22,7 +22,7 @@ impl StoneState {
         Self { vertical, w: vertical.map(|x| spin * x) }
     }
 
-    /// The angular velocity about the vertical.
+    /// The spin: the angular velocity about the vertical, in sqrt(g/a).
     pub fn spin(&self) -> f64 {
         dot(self.vertical, self.w)
     }

@@ -60,7 +60,7 @@ pub struct DriftOutput<'a> {
     pub stops_at: &'a mut [f64],
     /// The inclination at the end, in radians.
     pub ends_at_theta: &'a mut [f64],
-    /// Code of the [`End`], or [`NO_DRIFT`].
+    /// Code of the [`End`] of each drift, or [`NO_DRIFT`].
     pub ended: &'a mut [u8],
 }
 

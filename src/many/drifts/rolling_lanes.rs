@@ -130,11 +130,11 @@ struct DriftTask {
     left: u64,
 }
 
-/// The drifts of a block that are of one kind.
+/// The drifts of a block that are of one kind, with their results.
 struct Drifts<'a, 'b, 'c> {
     starts: &'a DriftStarts<'b>,
     rows: core::slice::Iter<'a, usize>,
-    /// The index of the first start of the block.
+    /// The index of the first drift of the block.
     first: usize,
     out: &'a mut DriftOutput<'c>,
     unfinished: Vec<DriftTask>,

@@ -12,7 +12,7 @@ pub enum MapQuantity {
     KappaRolling,
     /// Squared nutation frequency on a smooth table, in g/R.
     KappaSmooth,
-    /// Energy, in M g R.
+    /// Energy of the steady state, in M g R.
     Energy,
 }
 
@@ -22,9 +22,9 @@ pub enum MapQuantity {
 pub struct MapPoint {
     /// The value of the quantity at the point.
     pub value: f64,
-    /// Index of the inclination.
+    /// Index of the inclination of the point.
     pub theta: usize,
-    /// Index of the body.
+    /// Index of the body of the point.
     pub body: usize,
 }
 
@@ -32,9 +32,9 @@ pub struct MapPoint {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Extrema {
-    /// The least value.
+    /// The least value of the quantity, with its place.
     pub least: MapPoint,
-    /// The greatest value.
+    /// The greatest value of the quantity, with its place.
     pub greatest: MapPoint,
 }
 

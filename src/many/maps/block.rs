@@ -7,7 +7,7 @@ use crate::numbers::Narrow;
 use crate::numbers::side_by_side::MOST;
 use crate::states::stability::{SteadyPoint, Wanted};
 
-/// An array in double or in single precision.
+/// An output array in double or in single precision.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Slot<'a> {

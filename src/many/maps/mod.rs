@@ -75,15 +75,15 @@ mod sealed {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Portrait<'a, F = f64> {
-    /// Reduced rotation rate, NaN without a steady state.
+    /// Reduced rotation rate; NaN where no steady state exists.
     pub rate: Option<&'a mut [F]>,
     /// Squared nutation frequency in rolling, in g/R, negative where unstable.
     pub kappa_rolling: Option<&'a mut [F]>,
     /// Squared nutation frequency on a smooth table, in g/R, negative where unstable.
     pub kappa_smooth: Option<&'a mut [F]>,
-    /// Energy, in M g R.
+    /// Energy of the steady state, in M g R.
     pub energy: Option<&'a mut [F]>,
-    /// Code of the [`Region`](crate::states::stability::Region).
+    /// Code of the [`Region`](crate::states::stability::Region) of each point.
     pub region: Option<&'a mut [u8]>,
 }
 
@@ -130,11 +130,11 @@ impl<'a, F> Portrait<'a, F> {
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct TubePoints<'a> {
-    /// Inclination, in radians.
+    /// Inclinations of the points, in radians.
     pub theta: &'a [f64],
-    /// Half length of the tube, in R.
+    /// Half lengths of the tubes, in R.
     pub half_length: &'a [f64],
-    /// Inner radius of the tube, in R.
+    /// Inner radii of the tubes, in R.
     pub bore: &'a [f64],
     /// Radius of the fillets of the outer edges of the tube, in R.
     pub fillet: &'a [f64],
@@ -189,7 +189,7 @@ pub fn portrait<F: Cell>(
     portrait_of(theta, bodies, out, threads, &mut go_on)
 }
 
-/// The work of [`portrait`], compiled once for all callers.
+/// Computes a map as [`portrait`] does; compiled once for all callers.
 fn portrait_of(
     theta: &[f64],
     bodies: &[Option<Body>],
@@ -363,7 +363,7 @@ pub fn points<F: Cell>(
     points_of(columns, count, out, threads, &mut go_on)
 }
 
-/// The work of [`points`], compiled once for all callers.
+/// Computes scattered points as [`points`] does; compiled once for all callers.
 fn points_of(
     columns: [&[f64]; 4],
     count: usize,

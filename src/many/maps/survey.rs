@@ -43,7 +43,7 @@ pub fn extrema(
     Ok(extrema_compiled_once(theta, bodies, asked, threads, &mut go_on)?.map(MapExtrema))
 }
 
-/// The work of [`extrema`], compiled once for all callers.
+/// Computes extrema as [`extrema`] does; compiled once for all callers.
 pub(crate) fn extrema_compiled_once(
     theta: &[f64],
     bodies: &[Option<Body>],

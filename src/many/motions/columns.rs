@@ -253,11 +253,11 @@ impl<'a> MotionStarts<'a> {
 coded! {
     /// One number about a motion from time 0 to its end or to the last time.
     pub enum Summary {
-        /// Least inclination, in radians.
+        /// Least inclination during the motion, in radians.
         ThetaMin = 0,
-        /// Greatest inclination, in radians.
+        /// Greatest inclination during the motion, in radians.
         ThetaMax = 1,
-        /// Least normal force, per weight.
+        /// Least normal force during the motion, in units of the weight.
         NormalMin = 2,
         /// Greatest coefficient of friction that rolling needs; infinite where the normal force vanishes.
         FrictionCoefficientMax = 3,
@@ -271,20 +271,20 @@ coded! {
         SlipTime = 7,
         /// The heat made by friction, in M g R.
         Dissipated = 8,
-        /// The energy lost to the losses, in M g R.
+        /// The energy taken by the loss laws, in M g R.
         WorkLost = 9,
         /// Number of phases of slipping, rolling, flying and lying.
         Phases = 10,
         /// Time at which the last phase of rolling begins, in sqrt(R/g); this and the next four numbers are NaN if the
         /// body never rolls.
         RollingTime = 11,
-        /// The inclination at the time `RollingTime`.
+        /// The inclination at the time `RollingTime`, in radians.
         RollingTheta = 12,
-        /// The angular velocity w1 at the time `RollingTime`.
+        /// The angular velocity w1 at the time `RollingTime`, in sqrt(g/R).
         RollingW1 = 13,
-        /// The angular velocity w2 at the time `RollingTime`.
+        /// The angular velocity w2 at the time `RollingTime`, in sqrt(g/R).
         RollingW2 = 14,
-        /// The angular velocity w3 at the time `RollingTime`.
+        /// The angular velocity w3 at the time `RollingTime`, in sqrt(g/R).
         RollingW3 = 15,
         /// Number of impacts on the table.
         Impacts = 16,
@@ -397,7 +397,7 @@ pub struct MotionOutput<'a> {
     pub(crate) last_slip: Option<[&'a mut [f64]; 2]>,
     /// The rims, 0 or 1, to which the last states refer.
     pub(crate) last_rim: Option<&'a mut [f64]>,
-    /// The summaries, indexed by [`Summary`].
+    /// The arrays of the summaries, indexed by [`Summary`]; None for one that is not requested.
     pub(crate) summary: [Option<&'a mut [f64]>; SUMMARIES],
     /// Estimated error of the states of a motion, the largest over all its numbers and times; also over the period and
     /// the precession in a period, if these are requested and exist; with friction or losses also over the slips, the

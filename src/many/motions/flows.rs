@@ -32,7 +32,7 @@ use crate::numbers::in_lanes;
 use crate::numbers::side_by_side::{SideBySide, zero};
 use fearless_simd::Level;
 
-/// Writes the results of motion `i` of a body.
+/// Writes the results of motion `i`, of the given body, into `out`.
 fn put(out: &mut MotionOutput<'_>, i: usize, (body, found): (&Body, &Followed), times: &[f64]) {
     if let Some(event) = found.motion.event.filter(|event| event.ending == Ending::Bounded) {
         out.blank(i, times.len(), Ending::Bounded);

@@ -14,7 +14,7 @@ use core::f64::consts::PI;
 use fearless_simd::Level;
 use std::sync::LazyLock;
 
-/// The midpoints that the series need.
+/// The midpoints, of each number of terms, at which the series are evaluated.
 struct SeriesMidpoints {
     short: (Midpoints<6>, Midpoints<8>, Midpoints<16>),
     long: [Midpoints<MOST_PARTS>; 3],
@@ -389,7 +389,7 @@ mod tests {
     use crate::laws::contact::Table;
     use crate::motions::{Ask, Method};
 
-    /// All results of some motions, as bits.
+    /// All results of some motions, as bits, for a comparison of two computations.
     fn bits(
         run: impl Fn(&MotionBlock<'_>, usize, &mut MotionOutput<'_>) -> Vec<usize>,
         (table, fillet): (Contact, f64),

@@ -108,7 +108,7 @@ impl<'a> Job<'a> {
         self.ask.table.contact()
     }
 
-    /// The fixed step, if the job has one.
+    /// The fixed step of RK4; None if the job has none.
     fn step(&self) -> Option<f64> {
         if let Method::Step(step) = self.ask.method { Some(step) } else { None }
     }

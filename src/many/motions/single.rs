@@ -13,7 +13,7 @@ use crate::numbers::larger_or_nan;
 /// Number of times at which the extremes of a motion without an exact solution are sampled.
 const EXTREME_SAMPLES: usize = 4000;
 
-/// A motion up to its end or to the last time.
+/// The result of a single motion up to its end or to the last time.
 struct SingleMotion {
     states: Vec<State>,
     last: State,
@@ -57,7 +57,7 @@ fn exact_without_events(
     }))
 }
 
-/// The motion with a search for all events that can end it.
+/// The motion by the first integrals, with a search for all events that can end it.
 fn exact_with_events(
     body: &Body,
     start: &State,

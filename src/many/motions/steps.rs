@@ -12,7 +12,7 @@ use crate::laws::contact::reduced::Rates;
 use crate::methods::rk4::change;
 use crate::numbers::{Real, arctan2, here, sin_cos};
 
-/// Number of steps between two calls of `go_on`.
+/// Number of RK4 steps between two calls of `go_on`.
 const STEPS_PER_BREATH: u64 = 4096;
 
 /// The time derivatives of (s, c, w1, w2, w3), with the sine s and the cosine c of theta.

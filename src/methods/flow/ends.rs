@@ -35,7 +35,7 @@ const LEAST_RISE: f64 = 1e-15;
 
 /// The behaviour of the margins within a step.
 enum Outlook {
-    /// All margins stay positive.
+    /// All margins stay positive within the step.
     Clear,
     /// Each margin stays positive or falls through zero once.
     Falls,

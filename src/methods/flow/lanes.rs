@@ -46,7 +46,7 @@ pub(crate) trait Flows<T: SideBySide, const N: usize, const M: usize>: Copy {
     fn shortest(&self, y: &[T; N]) -> T {
         (y[0].splat(SOON) + y[N - 1]) * y[0].splat(SHORTEST)
     }
-    /// The longest step that is allowed from a place.
+    /// The longest time step that is allowed from a place.
     fn longest(&self, y: &[T; N], rate: &[T; N]) -> T;
 }
 
@@ -187,7 +187,7 @@ pub(crate) struct Set<T, L, const N: usize, const M: usize> {
 }
 
 impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L, N, M> {
-    /// A set with the same initial data in all SIMD lanes.
+    /// A set with the initial data `entry` in all SIMD lanes.
     pub fn new(zero: T, law: L, entry: &Entry<N, M>) -> Self {
         let (y, before) = ([zero; N], [zero; M]);
         let way = LaneProgress {
@@ -240,7 +240,7 @@ impl<T: SideBySide, L: Flows<T, N, M>, const N: usize, const M: usize> Set<T, L,
         });
     }
 
-    /// Loads all SIMD lanes from the rows.
+    /// Loads the data of all SIMD lanes from the rows, after some lanes were filled.
     pub fn load_rows(&mut self, zero: T) {
         let (mut row, rows) = (0, &self.rows);
         let mut next = || {

@@ -76,13 +76,13 @@ pub(crate) fn steps_to_stuck_test(patience: u64) -> u64 {
 pub(crate) trait Flow<const M: usize>: Copy {
     /// The reasons for which this flow halts.
     type Halt: Copy + PartialEq;
-    /// The index of the time among the variables.
+    /// The index of the time among the variables of the flow.
     const TIME: usize;
     /// The halt at the last of the requested times.
     const OVER: Self::Halt;
     /// The halt after the allowed number of steps, from which the flow can continue.
     const PAUSE: Self::Halt;
-    /// Number of steps between two calls of `go_on`.
+    /// Number of steps between two calls of `go_on`, with which a caller can stop the flow.
     const BREATH: u64 = 256;
     /// The halt of a flow that is [`Exhausted`].
     const ENDLESS: Self::Halt = Self::PAUSE;

@@ -13,7 +13,7 @@ pub(crate) struct FlowPlace<const N: usize> {
 /// A step that is taken from a point: its length in sigma, and the rates at its stages.
 pub(crate) type TakenStep<'a, const N: usize> = (&'a FlowPlace<N>, f64, &'a rk8::Stages<f64, N>);
 
-/// The result of a flow.
+/// The result of a flow: its halt, and the variables and steps at its end.
 pub(crate) struct Flown<H, const N: usize> {
     pub halt: H,
     /// The variables at the end of the flow.
@@ -55,7 +55,7 @@ pub(crate) struct Spent {
 pub(crate) struct Steps {
     /// The length of the first step, if it is known.
     pub first: Option<f64>,
-    /// Largest number of steps.
+    /// Largest number of steps before the flow pauses.
     pub most: u64,
     /// Largest number of crawling steps, which hardly advance the time.
     pub patience: u64,

@@ -4,7 +4,7 @@ use super::at_rest::{AtRest, Moments, Rounded, SteadyPoint, Wanted};
 use crate::laws::body::Body;
 use crate::numbers::{LANES, Narrow, Real};
 
-/// Eight bodies, stored as arrays of numbers.
+/// Eight bodies, whose numbers are stored in arrays of eight.
 pub(crate) trait Stored: Sync {
     /// The form in which as many of these bodies as a number has SIMD lanes are computed.
     type Of<T: Narrow>: AtRest<T>;

@@ -65,7 +65,7 @@ impl<T: Real> QuickTerms<T> {
         self.n.hi.abs().select_lt(self.limit, careful, first)
     }
 
-    /// n and m, each rounded to one number.
+    /// The terms n and m of the squared rate, each rounded to one number.
     #[inline(always)]
     pub fn rounded(&self) -> [T; 2] {
         [self.n.hi + self.n.lo, self.m.hi + self.m.lo]

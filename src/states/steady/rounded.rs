@@ -86,7 +86,7 @@ fn select<T: Real>(x: T, limit: T, yes: Sum<T>, no: Sum<T>) -> Sum<T> {
 }
 
 impl<T: Real> RoundedParts<T> {
-    /// Returns `yes` for a ball, `no` for other bodies.
+    /// Returns `yes` in SIMD lanes with a ball, `no` in lanes with other bodies.
     #[inline(always)]
     fn ball(&self, yes: T, no: T) -> T {
         yes.splat(0.0).select_lt(self.a.hi, no, yes)

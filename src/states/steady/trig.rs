@@ -10,7 +10,7 @@ use crate::laws::body::Body;
 use crate::methods::roots::Trig;
 use crate::numbers::Sum;
 
-/// The polynomials of a body.
+/// The quantities of a body as polynomials in sine and cosine of theta; see the top of this file.
 pub(crate) struct BodyPolynomials {
     pub s: Trig,
     pub c: Trig,
@@ -21,7 +21,7 @@ pub(crate) struct BodyPolynomials {
     pub lever: Trig,
     pub n: Trig,
     pub m: Trig,
-    /// Numerator and denominator of sigma.
+    /// Numerator and denominator of sigma = s/A.
     pub sigma: [Trig; 2],
 }
 

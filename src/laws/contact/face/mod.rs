@@ -415,7 +415,7 @@ mod tests {
         FaceFriction { form, lam, fold: f64::INFINITY, near: None }
     }
 
-    /// G and gg in the frame of X for given parts, and |X|.
+    /// Means of G and gg in the frame of X, and |X|, for a part with this width and direction.
     fn means(form: Face, k: f64, width: f64, angle: f64) -> [f64; 4] {
         let (v, s) = (k, 1.0);
         if width < 1.5 {

@@ -51,7 +51,7 @@ impl PressedPart {
 const INTEGRALS: usize = 11;
 /// Numbers that are summed side by side: always eight, so that sums are added in the same order on every machine.
 pub(super) type ArcSides = Pair<Pair<Pair<f64>>>;
-/// Eight zeros.
+/// Eight zeros, at which sums side by side begin.
 pub(super) const ZEROS: ArcSides =
     Pair(Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)), Pair(Pair(0.0, 0.0), Pair(0.0, 0.0)));
 

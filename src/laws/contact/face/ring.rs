@@ -98,7 +98,7 @@ impl WholeMeans {
 
 /// Terms of the speeds and of the pressed part that all nodes of the quadrature share.
 struct RubsAlong<T> {
-    /// v cos c, s, and s - v sin c.
+    /// v cos c (`forward`), s (`spin`), and s - v sin c (`base`), with the angle c of X from v.
     forward: T,
     spin: T,
     base: T,

@@ -55,7 +55,7 @@ fn sin_cos_of_theta_end(theta_end: f64) -> [f64; 2] {
     if theta_end == FRAC_PI_2 { [1.0, RIGHT_ANGLE_COSINE] } else { theta_end.sin_cos().into() }
 }
 
-/// A motion of a block after its march, with its end if any.
+/// A motion of a block after its march, with the event that ends it, if any.
 struct SolvedRun {
     task: MarchTask,
     free: FreeMotion,

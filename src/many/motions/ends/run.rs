@@ -23,14 +23,14 @@ const MOST_PANELS: u32 = 48;
 pub(super) struct MarchTask {
     /// The index of the motion in the block.
     pub index: usize,
-    /// The body: ell, I1, I3 and fillet.
+    /// The numbers of the body: ell, I1, I3 and fillet.
     pub shape: [f64; 4],
     /// Sine and cosine of the inclination at which a part other than the rim lands, or of a limit of the march.
     pub side: [f64; 2],
     /// The inclination at which a part other than the rim lands, in radians.
     pub theta_end: f64,
     pub start: Knot<f64>,
-    /// 1 if the inclination grows, -1 if it falls.
+    /// The direction of the march: 1 if the inclination grows, -1 if it falls.
     pub way: f64,
     /// Square of the coefficient of friction.
     pub mu_square: f64,
@@ -57,7 +57,7 @@ pub(super) struct Run {
     pub knot: Knot<f64>,
     pub way: f64,
     pub target: Target,
-    /// The time since the start, in the current direction.
+    /// The time since the start of the march, in the current direction.
     pub time: f64,
     /// The uncertainty of `time` and of the time to the first turning point.
     late: f64,
@@ -89,7 +89,7 @@ pub(super) enum RunOutcome {
     There(EventState),
     /// The motion does not end before the time up to which the march goes.
     Free(FreeMotion),
-    /// This march gives no result.
+    /// The march gives no result: it is not precise enough, or takes too many panels.
     Unknown,
 }
 
@@ -100,7 +100,7 @@ pub(super) struct EventState {
     pub time: f64,
     pub state: State,
     pub error: f64,
-    /// The march up to this end.
+    /// The march up to this event.
     pub before: FreeMotion,
 }
 
@@ -109,7 +109,7 @@ pub(super) struct EventState {
 pub(super) struct FreeMotion {
     pub first: Option<f64>,
     pub second: Option<f64>,
-    /// The uncertainty of `first` and `second` together.
+    /// The uncertainty of the times `first` and `second` together.
     pub late: f64,
     /// Inclinations of the first and of the second turning point; NaN for a turning point that has not been reached.
     pub turning_inclinations: [f64; 2],

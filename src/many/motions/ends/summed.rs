@@ -14,7 +14,7 @@ use crate::motions::exact::lanes::march::{PanelEvent, Sought};
 use crate::numbers::larger_or_nan;
 use crate::numbers::side_by_side::SideBySide;
 
-/// The solved motions of a block.
+/// The motions of a block that marches have solved, with the arrays for their summaries.
 pub(super) struct SolvedBlock<'a, 'b, 'c> {
     pub marches: &'a Marches<'b, 'c>,
     pub known: &'a [SolvedRun],
