@@ -94,7 +94,11 @@ def simulated(data, rate, box):
 
 
 def table():
-    yield ["scene", "limit of the friction", *(f"error of the centre with {rate:g} steps per second" for rate in RATES)]
+    yield [
+        "scene",
+        "limit of the friction",
+        *(f"error of the centre with {rate:g} steps per second" for rate in RATES),
+    ]
     yield ["---"] * (2 + len(RATES))
     for name, scene in scenes():
         for box in (False, True):
