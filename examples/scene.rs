@@ -2,9 +2,9 @@
 //!
 //!     cargo run --release --features scene --example scene -- [scene.json]
 //!
-//! A tube is dropped onto a table with dry friction, which it strikes and leaves; its start, its place, orientation,
-//! velocities, contact point and force at 401 times of a second. With a file the scene is written to it, and the model for
-//! MuJoCo beside it.
+//! A tube is dropped onto a table with dry friction, from which it bounces. The scene has its start, and its place,
+//! orientation, velocities, contact point and force at 401 times in one second. If a file is named, the scene is
+//! written to it, and the model for MuJoCo to a file in the same folder.
 
 use spincyl::contact::Friction;
 use spincyl::measured::{Measured, Tube};
@@ -12,10 +12,10 @@ use spincyl::motion::{AboveTable, Ask, Start};
 use spincyl::scene::{Scene, SceneError};
 use spincyl::{Slip, State};
 
-/// The scene of a tube that is thrown.
+/// The scene of a thrown tube with its computed motion.
 ///
 /// # Errors
-/// None: its numbers are in range.
+/// None, since all numbers of the scene are in range.
 pub fn thrown() -> Result<Scene, SceneError> {
     let tube = Tube::solid(15.875e-3, 95.25e-3, 20e-3).with_inner_diameter(12.7e-3);
     let pipe = Measured::tube(&tube)?;

@@ -10,7 +10,7 @@ pub struct Big([u64; LIMBS]);
 impl Big {
     pub const ZERO: Self = Self([0; LIMBS]);
 
-    /// x 2^shift, which must be an integer.
+    /// The product x 2^shift, which has to be an integer.
     pub fn scaled(x: f64, shift: u32) -> Self {
         let bits = x.to_bits();
         let (exponent, fraction) = ((bits >> 52 & 0x7FF) as i64, bits & ((1 << 52) - 1));
@@ -64,7 +64,7 @@ impl Big {
         product
     }
 
-    /// Times 2^by.
+    /// Returns this integer times 2^by.
     pub fn up(&self, by: usize) -> Self {
         let (limbs, bits) = (by / 64, by % 64);
         let mut up = Self::ZERO;
@@ -77,7 +77,7 @@ impl Big {
         up
     }
 
-    /// -1, 0 or 1.
+    /// The sign of this integer: -1, 0 or 1.
     pub fn sign(&self) -> i32 {
         if *self == Self::ZERO {
             0
@@ -89,7 +89,7 @@ impl Big {
     }
 }
 
-/// A polynomial, lowest power first.
+/// The coefficients of a polynomial, lowest power first.
 pub type Polynomial = Vec<Big>;
 
 pub fn sum(a: &[Big], b: &[Big]) -> Polynomial {
@@ -111,7 +111,7 @@ pub fn negative(a: &[Big]) -> Polynomial {
     a.iter().map(Big::negative).collect()
 }
 
-/// p(t + 1).
+/// The coefficients of p(t + 1).
 fn shifted(p: &[Big]) -> Polynomial {
     let mut p = p.to_vec();
     for i in 0..p.len() {
@@ -135,8 +135,8 @@ fn changes(p: &[Big]) -> usize {
 /// The number of zeros of a polynomial in (0, 1) if they are simple; None if two of them agree to more than
 /// 200 bits.
 ///
-/// Descartes: it is the number of changes of sign of (t + 1)^n p(1/(t + 1)), or less by an even number. So 0
-/// or 1 change decides; otherwise the interval is halved (Vincent, Collins and Akritas).
+/// By the rule of Descartes it is the number of changes of sign of (t + 1)^n p(1/(t + 1)), or less by an even number.
+/// Therefore 0 or 1 change decides; otherwise the interval is halved (Vincent, Collins and Akritas).
 pub fn zeros_in_unit_interval(p: &[Big]) -> Option<usize> {
     // zeros at 0 are outside
     let low = p.iter().position(|x| x.sign() != 0)?;
@@ -161,7 +161,8 @@ fn count(p: &[Big], depth: u32) -> Option<usize> {
     }
 }
 
-/// The number of zeros in (1, infinity), under the same conditions.
+/// The number of zeros of a polynomial in (1, infinity) if they are simple; None if two of them agree to more than
+/// 200 bits.
 pub fn zeros_beyond_one(p: &[Big]) -> Option<usize> {
     let top = p.iter().rposition(|x| x.sign() != 0)?;
     zeros_in_unit_interval(&reversed(&p[..=top]))

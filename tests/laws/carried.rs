@@ -1,5 +1,5 @@
-//! What a motion of a body of several circles tells: its axis, centre, velocity and energy, whichever circle carries it,
-//! and what it rests on.
+//! Results of motions of a body of several circles: its axis, centre, velocity and energy, whichever circle carries
+//! it, and on which part it rests.
 
 use crate::common::{larger, wander};
 use spincyl::body::Circle;
@@ -8,7 +8,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::{AboveTable, Ask, Ending, Motion, RestsOn, Start, roll_with};
 use spincyl::{Body, Slip, State};
 
-/// A cup, a cone, a bottle, the same upside down, unequal balls, and a hemisphere, whose joint is smooth.
+/// A cup, a cone and a bottle, each also upside down, unequal balls, and a hemisphere, whose joint is smooth.
 fn bodies() -> Vec<Body> {
     let bottle = [[1.0, 0.0], [1.0, 3.0], [0.35, 4.2], [0.35, 5.0]];
     let over: Vec<_> = bottle.iter().rev().map(|[radius, height]| [*radius, 5.0 - height]).collect();
@@ -29,7 +29,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> Start {
     Start::from(State { theta: 0.2 + 2.7 * next(), w1, w2, w3 }).with_slip(Slip::new(along, across))
 }
 
-/// Motions on all kinds of tables, at times a little apart in threes.
+/// Motions on all kinds of tables, at groups of three times close together, for numerical derivatives.
 fn motions(body: &Body, next: &mut impl FnMut() -> f64) -> Vec<Motion> {
     let times: Vec<_> = (0..20).flat_map(|k| [0.0, 1e-5, 2e-5].map(|by| 0.2 * f64::from(k) + by)).collect();
     let loss = Losses::NONE.with(Law::DryContour, 0.02);

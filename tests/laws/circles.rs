@@ -1,4 +1,5 @@
-//! Bodies with several circles of contact: the unit of length, the view from either end, and what lies on two circles.
+//! Bodies with several circles of contact: change of the unit of length, states counted from either end, and bodies
+//! that lie on two circles.
 
 use crate::common::{larger, wander};
 use spincyl::body::Circle;

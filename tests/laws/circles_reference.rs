@@ -1,5 +1,5 @@
-//! Motions of bodies with several circles of contact beside the references of tests/reference/rims.py, told from either
-//! end of the body.
+//! Motions of bodies with several circles of contact, compared with the references of tests/reference/rims.py, with
+//! states counted from either end of the body.
 
 use serde_json::{Value, from_str};
 use spincyl::body::Circle;
@@ -10,7 +10,7 @@ use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::{PI, TAU};
 
-/// A motion of the table.
+/// A motion of the reference table.
 struct Case {
     name: String,
     circles: Vec<Circle>,
@@ -22,7 +22,7 @@ struct Case {
     rows: Vec<Row>,
 }
 
-/// A place of a motion, with what is there.
+/// A row of the reference table: a time of a motion, with state, slip and forces.
 struct Row {
     kind: String,
     time: f64,
@@ -31,15 +31,15 @@ struct Row {
     work: f64,
 }
 
-/// A body as told from one of its circles, and from one of its ends.
+/// A state that is counted from one of the body's circles, and from one of its ends.
 #[derive(Debug, Clone, Copy)]
 struct Told {
     circle: usize,
-    /// The other circle, if two are down, and its slip.
+    /// The index and the slip of the other circle, if two circles touch the table.
     other: Option<(usize, [f64; 2])>,
     state: State,
     slip: [f64; 2],
-    /// phi, psi, and the place where the circle touches.
+    /// The pose: phi, psi, and the contact point (x, y) of the circle.
     pose: [f64; 4],
 }
 
@@ -54,7 +54,7 @@ fn touching(circle: &Circle, theta: f64) -> [f64; 4] {
 }
 
 impl Told {
-    /// The same body told from another circle, which is at the same height.
+    /// The same body with its state counted from the circle `k`, which is at the same height.
     fn told_from_circle(self, k: usize, circles: &[Circle]) -> Self {
         if k == self.circle {
             return self;
@@ -74,7 +74,7 @@ impl Told {
         }
     }
 
-    /// The same body told from its other end.
+    /// The same body with its state counted from its other end.
     fn told_from_other_end(self, count: usize) -> Self {
         let back = |slip: [f64; 2]| slip.map(|u| 0.0 - u);
         let State { theta, w1, w2, w3 } = self.state;
@@ -88,8 +88,8 @@ impl Told {
         }
     }
 
-    /// How far this is from a row of the table, over the size of each number if that is above 1. The same for the pose, in
-    /// which a whole turn of phi does not count.
+    /// The largest difference from a row of the table, over the size of each number if that is above 1; and the same
+    /// for the pose, up to whole turns of phi.
     fn off(&self, row: &Self, circles: &[Circle]) -> [f64; 2] {
         let row = if self.other.is_some() { row.told_from_circle(self.circle, circles) } else { *row };
         assert_eq!((self.circle, self.other.map(|x| x.0)), (row.circle, row.other.map(|x| x.0)));
@@ -112,7 +112,7 @@ fn numbers(of: &Value) -> Vec<f64> {
     of.as_array().unwrap().iter().map(number).collect()
 }
 
-/// A number of the table; those that are exact have no quotes.
+/// Converts a number of the reference table, where exact numbers have no quotes.
 fn number(of: &Value) -> f64 {
     of.as_str().map_or_else(|| of.as_f64().unwrap(), |text| text.parse().unwrap())
 }
@@ -170,7 +170,7 @@ fn case(of: &Value) -> Case {
 }
 
 impl Case {
-    /// The same motion told from the other end.
+    /// The same motion with its states counted from the other end.
     fn turned(self) -> Self {
         let count = self.circles.len();
         let turn = |circle: Circle| Circle { depth: 0.0 - circle.depth, ..circle };
@@ -217,7 +217,7 @@ impl Case {
         roll_with(&body, start, &self.times(), &self.ask, || true).unwrap().unwrap()
     }
 
-    /// How far from the place of the circle that is told at the start the first one touches.
+    /// The distance of the first circle's contact point from that of the circle to which the initial state refers.
     fn first_at(&self) -> f64 {
         if self.start.other.is_some() {
             self.start.told_from_circle(self.lower(), &self.circles).pose[2]
@@ -233,7 +233,7 @@ impl Case {
         down.unwrap_or(0)
     }
 
-    /// A row of the library as told by the body.
+    /// The outputs of the library at the index `i`.
     fn told(&self, m: &Motion, i: usize) -> Told {
         let (path, pose) = (m.path.as_ref().unwrap(), m.poses.as_ref().unwrap()[i]);
         let Slip { u_h: u, u_2: v, .. } = path.other_rim[i].slip;
@@ -253,8 +253,8 @@ impl Case {
         self.circles.windows(2).all(|of| of[0].radius == of[1].radius && of[0].fillet == of[1].fillet)
     }
 
-    /// Where the table says that a phase begins, and its kind as the library has it. The last one of several at one time is a
-    /// phase.
+    /// The rows of the table at which a phase begins, with the library's kind of phase. Of several changes at one
+    /// time the last one counts.
     fn phases(&self) -> Vec<(&Row, Kind)> {
         let mut found: Vec<(&Row, Kind)> = Vec::new();
         for row in &self.rows {
@@ -278,14 +278,14 @@ impl Case {
 }
 
 impl Row {
-    /// This row of a motion that starts with phi = 0 where it starts with phi = pi.
+    /// This row of a motion that starts with phi = pi, converted to a start with phi = 0.
     fn with_phi_from_zero(self) -> Self {
         let [phi, psi, x, y] = self.told.pose;
         Self { told: Told { pose: [phi - PI, psi, 0.0 - x, 0.0 - y], ..self.told }, ..self }
     }
 }
 
-/// All cases, told from both ends of the body; for two equal rims these are not two ends but two rims.
+/// Runs a check on all cases, with states counted from both ends of the body, or from both rims if these are equal.
 fn each_case(mut check: impl FnMut(&Case, &Motion)) -> usize {
     let mut count = 0;
     let turned = table().into_iter().filter(|case| case.name != "cylinder falls and lies").map(Case::turned);

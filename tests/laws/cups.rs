@@ -11,15 +11,15 @@ use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::{PI, TAU};
 
-/// A body on its two circles, and their numbers at the border.
+/// A body that lies on two circles, and the dimensions of both at that inclination.
 struct OnTwo {
     body: Body,
     s: f64,
     c: f64,
-    /// Height of the centre, and for each circle radius, depth and lever.
+    /// Height of the centre of mass; the next field has radius, depth and lever of each circle.
     height: f64,
     touching: [[f64; 3]; 2],
-    /// The moment of inertia about the line of both contacts.
+    /// The moment of inertia about the line through both contact points.
     inertia: f64,
 }
 
@@ -58,7 +58,7 @@ impl OnTwo {
         self.start([drilling, rolling], [along, across + depth * w1 - radius * w3])
     }
 
-    /// w_z and w_h of a state.
+    /// The rates w_z and w_h of a state.
     fn turning(&self, y: &State) -> [f64; 2] {
         [self.s * y.w1 + self.c * y.w3, self.c * y.w1 - self.s * y.w3]
     }
@@ -88,7 +88,8 @@ pub fn balls(radii: [f64; 2]) -> Body {
     Body::profile(&[circle(0), circle(1)], i1, i3).unwrap()
 }
 
-/// Cups of either way up, cones on both sides of their tip, frusta with rounded rims, and unequal balls.
+/// A random body that lies on two circles: a cup either way up, a cone, a frustum with rounded rims, or unequal
+/// balls.
 fn any(next: &mut impl FnMut() -> f64) -> OnTwo {
     let (r, height) = (0.3 + 0.6 * next(), 0.4 + 2.0 * next());
     OnTwo::of(match (5.0 * next()) as usize {
@@ -107,7 +108,7 @@ fn any(next: &mut impl FnMut() -> f64) -> OnTwo {
     })
 }
 
-/// The body told from its other end.
+/// The same body counted from its other end.
 fn turned(body: &Body) -> Body {
     let turn = |circle: Circle| Circle { depth: 0.0 - circle.depth, ..circle };
     let circles: Vec<Circle> = body.circles().into_iter().rev().map(turn).collect();

@@ -1,4 +1,4 @@
-//! Laws of the user's own: the same motions as under the library's laws, the balance of energy, and what is refused.
+//! User-defined laws: the same motions as under the library's laws, the balance of energy, and errors.
 
 use crate::common::{drawn, wander};
 use spincyl::contact::{Contact, Table, lossy, slip::Friction};
@@ -9,7 +9,7 @@ use spincyl::{Body, Error, Slip, State, newton, steady};
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
-/// A body, a start that may slip, and a table, at random.
+/// A random body, start (which may slip) and table.
 fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
     let body = match (5.0 * r()) as u8 {
         4 => Body::ball(0.1, 0.4, 0.42).and_then(|ball| ball.with_theta_end(1.2 + r())),
@@ -31,7 +31,7 @@ fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
     (body.unwrap(), Start::from(state).with_slip(if slips { slip.into() } else { Slip::default() }), table)
 }
 
-/// The largest difference of states and slips, and of the ends, beside the sum of the two claims.
+/// The largest difference of states, slips and ends of two motions, and the sum of their estimated errors.
 fn apart(a: &Motion, b: &Motion) -> [f64; 2] {
     assert_eq!(a.ending(), b.ending());
     let mut off = a.event.zip(b.event).map_or(0.0, |(a, b)| (a.time - b.time).abs());
@@ -217,7 +217,8 @@ fn a_law_that_gives_energy_or_has_a_step_is_refused_by_name() {
     assert_eq!(refused(Custom::default(), Ask::default().with_beyond()).0, "beyond");
 }
 
-/// The couple of a law that counts its calls after the check, which is over at the first call with the state at the start.
+/// A user-defined couple that counts its calls after the library's check, which ends at the first call with the
+/// initial state.
 fn counted<'a>(
     calls: &'a Cell<u64>,
     start: State,
@@ -302,7 +303,7 @@ fn a_stiff_law_is_named_as_the_limit_of_its_motion_and_a_soft_one_is_not() {
     assert_eq!((m.ending(), m.limit), (Ending::Bounded, Some(Limit::Evaluations)));
 }
 
-/// A law that fails at one of its calls; it counts the calls after that.
+/// A user-defined law that fails at one of its calls, and counts the calls after that.
 struct Failing {
     calls: Cell<u64>,
     fails_at: u64,

@@ -1,5 +1,5 @@
-//! A law of friction of the user's own under stones: the same motions as under the library's laws and as those of a body
-//! of revolution, the balance of energy, and what is refused.
+//! Stones under a user-defined law of friction: the same motions as under the library's laws and as those of a body
+//! of revolution, the balance of energy, and errors.
 
 use crate::common::{drawn, wander};
 use crate::stone::apart;
@@ -13,7 +13,7 @@ use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Error, Slip, State};
 use std::cell::Cell;
 
-/// A stone and a start, at random; half of the starts have no slip.
+/// A random stone and start; half of the starts have no slip.
 fn any(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let axes = [1.0, 0.4 + 0.6 * r(), 0.4 + 0.6 * r()];
     let squares = axes.map(|a| a * a);

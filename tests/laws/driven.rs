@@ -1,4 +1,5 @@
-//! Bodies that a force and a couple of the user drive: closed forms, a slope as a constant force, air as a couple, balances.
+//! Bodies with a user-defined force and couple: closed forms, a slope as a constant force, air as a couple, and
+//! balances of energy.
 
 use crate::common::wander;
 use nalgebra::{Vector2, Vector3};
@@ -25,7 +26,7 @@ fn driven(
     custom::roll_with(body, start, times, ask, laws, || true).map(|found| found.expect("not interrupted"))
 }
 
-/// A body, a start that may slip, and a table with friction, at random.
+/// A random body, start (which may slip) and table with friction.
 fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, Table) {
     let body = match (5.0 * r()) as u8 {
         0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),
@@ -53,7 +54,8 @@ fn tossed(r: &mut impl FnMut() -> f64, start: Start, ask: Ask) -> (Start, Ask) {
     (start.with_aloft(Some(aloft)), ask.with_restitution(0.7 * r()))
 }
 
-/// Whether a driven motion ends where another one goes on: where a second circle or a face lands.
+/// Whether a driven motion ends where a motion without a drive would continue: at the landing of a second circle or a
+/// face.
 fn lands_on_more(m: &Motion) -> bool {
     matches!(m.ending(), Ending::Face | Ending::Side)
 }
@@ -63,7 +65,7 @@ fn states_apart(a: &State, b: &State) -> f64 {
     by.iter().fold(0.0, |most: f64, x| if x.abs() <= most { most } else { x.abs() })
 }
 
-/// The largest difference of states, slips and ends, beside the sum of the two claims.
+/// The largest difference of states, slips and ends of two motions, and the sum of their estimated errors.
 fn apart(a: &Motion, b: &Motion) -> [f64; 2] {
     assert!(a.ending() == b.ending() || lands_on_more(a));
     let both = a.event.zip(b.event).filter(|_| !lands_on_more(a));
@@ -240,7 +242,7 @@ fn a_drive_that_resists_as_the_air_does_moves_a_body_as_the_air_does() {
     assert!(struck > 50, "{struck}");
 }
 
-/// A force that turns and grows, and a couple that turns with time about a direction of the table.
+/// A user-defined drive: a force that turns and grows, and a couple whose axis turns with time along the table.
 fn stirs(_: &Body, now: &Moment) -> Push {
     let (sin, cos) = (0.7 * now.time).sin_cos();
     let force = Vector2::new(0.2 * cos, 0.1 * sin) - 0.05 * now.velocity

@@ -1,4 +1,4 @@
-//! How motions end, and starts that are refused: rows D8, D9, D10, D12 of docs/hard-cases.md.
+//! How motions end, and starts that raise an error: rows D8, D9, D10, D12 of docs/hard-cases.md.
 
 use crate::common::{by, distance, larger, motions, moved, numbers, state, wander, wild};
 use spincyl::contact::Table;

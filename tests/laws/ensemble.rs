@@ -1,4 +1,4 @@
-//! Many motions at once, against motions one at a time and against the independent references.
+//! Many motions at once, compared with motions one at a time and with independent references.
 
 use crate::common::many::Many;
 use crate::common::rim::sharp;
@@ -400,7 +400,7 @@ fn starts_at_rest_or_almost_go_the_way_of_an_integrator_by_every_route() {
     assert!(by_lanes.iter().all(|n| *n > 120), "{by_lanes:?} by lanes");
 }
 
-/// Whether a steady state is unchanged at a time, within its claim.
+/// Whether a steady state is unchanged at a time, within the estimated error.
 fn stays(body: &Body, y: &State, t: f64) -> bool {
     let many = Many::of(&[(*body, *y)]).run(&Job::new(&[t]).with_ask(Ask::default().with_beyond()), 1);
     distance(&many.last(0), &numbers(y)) <= many.error[0]

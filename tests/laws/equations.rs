@@ -47,7 +47,7 @@ fn sizes(contact: Contact, body: &Body, y: &State) -> Sizes {
     }
 }
 
-/// The same sizes by Newton's and Euler's equations under that force.
+/// The sizes of w1', w2' and w3' by Newton's and Euler's equations under the contact force.
 fn newtonian(contact: Contact, body: &Body, y: &State) -> [f64; 3] {
     let Place { s, c, radius, depth, height, lever, .. } = place(body, y.theta);
     let ([normal, along, across], turn) = (sizes(contact, body, y).force, (c / s * y.w1).abs());
@@ -63,7 +63,7 @@ fn rates(dy: &State) -> [f64; 3] {
     [dy.w1, dy.w2, dy.w3]
 }
 
-/// The force along e1, e2, e3.
+/// The components of the contact force along e1, e2, e3.
 fn along_axes(f: &contact::Force, s: f64, c: f64) -> Vector3<f64> {
     Vector3::new(s * f.normal + c * f.across, f.along, c * f.normal - s * f.across)
 }

@@ -13,8 +13,8 @@ fn followed(body: &Body, start: Start, until: f64, ask: Ask, tol: f64) -> Motion
     roll_with(body, start, &[until], &ask, || true).unwrap().unwrap()
 }
 
-/// Checks that Euler's disk from 0.3 rad, with a nutation, to its end or to t = 60, costs at most so many
-/// evaluations at each tolerance.
+/// Checks that the motion of Euler's disk from 0.3 rad, with a nutation, to its end or to t = 60, needs at most
+/// `most` evaluations at each of three tolerances.
 fn whirrs(losses: Losses, ending: Ending, most: [u64; 3]) {
     let body = Body::solid(0.0128 / 0.0751).unwrap();
     let start = steady::state(&body, 0.3).unwrap().kicked(0.05);
@@ -85,7 +85,7 @@ fn a_slow_slip_ends_at_the_cost_of_its_series() {
     }
 }
 
-/// A dropped coin, up to a time.
+/// The motion of a dropped coin, up to the time `until`.
 fn dropped_coin(ell: f64, numbers: [f64; 8], (mu, losses): (f64, Losses), until: f64, tol: f64) -> Motion {
     let [theta, w1, w2, w3, u_h, u_2, height, lift] = numbers;
     let start = Start::from(State { theta, w1, w2, w3 })
@@ -159,8 +159,8 @@ fn a_coin_in_air_that_slips_in_each_nod_comes_down_to_its_face() {
     lands_within_claims(&rough, &fine, 0.06);
 }
 
-/// Checks that a motion and a finer one end with the face on the table, at rest, at times that differ by at most the
-/// estimated errors.
+/// Checks that a motion and one with a smaller tolerance end at rest with the face on the table, at times that differ
+/// by at most the estimated errors.
 fn lands_within_claims(rough: &Motion, fine: &Motion, most: f64) {
     let [a, b] = [rough, fine].map(|m| m.event.unwrap());
     assert!(a.ending == Ending::Stops && b.ending == Ending::Stops, "{:?} {:?}", a.ending, b.ending);
@@ -213,7 +213,7 @@ fn a_uniform_ball_is_never_integrated() {
     }
 }
 
-/// A uniform ball on a patch of contact that slips, spins, and drills for long.
+/// The motion of a uniform ball on a patch of contact that slips, spins, and drills for a long time.
 fn ball_on_a_patch(resistance: f64, until: f64, tol: f64) -> Motion {
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
     let state = State { theta: 1.0, w1: -2.0, w2: 1.0, w3: 3.0 };

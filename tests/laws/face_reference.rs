@@ -1,4 +1,5 @@
-//! Motions of a body on its face, to it and from it, beside the references of tests/reference/face.json.
+//! Motions of a body on its face, landings on it and rises from it, compared with the references of
+//! tests/reference/face.json.
 
 use serde_json::{Value, from_str};
 use spincyl::contact::Face;
@@ -9,7 +10,7 @@ use spincyl::motion::{Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::TAU;
 
-/// A motion of the table.
+/// A motion of the reference table.
 struct Case {
     name: String,
     body: Body,
@@ -18,7 +19,7 @@ struct Case {
     rows: Vec<Row>,
 }
 
-/// A place of a motion, with what is there.
+/// A row of the reference table: a time of a motion, with state, pose and friction.
 struct Row {
     kind: String,
     time: f64,
@@ -27,16 +28,16 @@ struct Row {
     height: f64,
     heat: f64,
     work: f64,
-    /// phi, psi, and how far the centre has come.
+    /// The pose: phi, psi, and the displacement of the centre of mass.
     pose: [f64; 4],
-    /// Along the lean and across it; NaN but on the face.
+    /// The friction along the lean and across it; NaN unless the body is on its face.
     friction: [f64; 2],
 }
 
 /// The size below which a difference is that of double precision.
 const TIGHT: f64 = 1e-11;
 
-/// A number of the table; those that are exact have no quotes.
+/// Converts a number of the reference table, where exact numbers have no quotes.
 fn number(of: &Value) -> f64 {
     of.as_str().map_or_else(|| of.as_f64().unwrap(), |text| text.parse().unwrap())
 }
@@ -98,7 +99,8 @@ impl Case {
         self.rows.iter().filter(|row| row.kind == "sample" || row.kind == "end")
     }
 
-    /// The first time, those of the samples, and a time after the end of a motion that comes to rest.
+    /// Computes the motion at the first time, the times of the table, and a time after the end of a motion that comes
+    /// to rest.
     fn rolled(&self) -> Motion {
         let mut times: Vec<f64> = [0.0].into_iter().chain(self.samples().map(|row| row.time)).collect();
         if self.rows.last().unwrap().kind == "rests" {
@@ -109,7 +111,7 @@ impl Case {
     }
 }
 
-/// The largest difference, over the size of each number if that is above 1.
+/// The largest difference of two lists of numbers, over the size of each number if that is above 1.
 fn most(found: &[f64], known: &[f64]) -> f64 {
     let each = found.iter().zip(known).map(|(a, b)| (a - b).abs() / b.abs().max(1.0));
     each.fold(0.0, |most: f64, x| if x <= most { most } else { x })

@@ -1,4 +1,4 @@
-//! Bodies, states, options and motions that go into a file and come back.
+//! Bodies, states, options and motions that are written to a file and read back.
 
 use crate::common::{any_rim, any_state, drawn, starts, state, wander};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn comes_back<T: Serialize + DeserializeOwned + PartialEq + Debug>(x: T) {
     assert_eq!(again(&x), x);
 }
 
-/// What a file with these numbers is refused for.
+/// The error message for a file with these contents, which cannot be read.
 fn refused<T: DeserializeOwned + Debug>(file: Value) -> String {
     from_str::<T>(&file.to_string()).unwrap_err().to_string()
 }
@@ -130,7 +130,8 @@ fn options_and_starts_come_back_and_may_be_short() {
     }
 }
 
-/// A file with one more name in an object, for each object of a file at any depth; losses are objects whose names are laws.
+/// For each object of a file, at any depth, a copy of the file with an unknown name added to this object; losses are
+/// objects whose names are laws.
 fn misspelt(file: &Value) -> Vec<Value> {
     let mut all = Vec::new();
     match file {
@@ -160,7 +161,7 @@ fn misspelt(file: &Value) -> Vec<Value> {
     all
 }
 
-/// Asserts that a name too many is refused in every object of the file of `x`; returns the number of objects.
+/// Asserts that an unknown name raises an error in every object of the file of `x`; returns the number of objects.
 fn every_name_counts<T: Serialize + DeserializeOwned + Debug>(x: &T) -> usize {
     let wrong = misspelt(&serde_json::to_value(x).unwrap());
     for file in &wrong {
@@ -211,7 +212,8 @@ fn a_misspelt_name_is_an_error_in_every_object_of_every_file() {
     assert!(objects > 60, "{objects}");
 }
 
-/// A motion as a whole; NaN is no number that equals itself, so that texts are compared.
+/// Asserts that a motion is the same after it is written and read. Texts are compared, since NaN does not equal
+/// itself.
 fn same<T: Serialize + DeserializeOwned>(motion: &T) {
     assert_eq!(to_string(&again(motion)).unwrap(), to_string(motion).unwrap());
 }

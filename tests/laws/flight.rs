@@ -9,7 +9,8 @@ use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The motion of a body that starts in the air, or on the table where `aloft` is none, with poses.
+/// The motion, with poses and the restitution `e`, of a body that starts in the air, or on the table if `start.aloft`
+/// is None.
 pub(crate) fn hops(body: &Body, start: &Start, table: Table, e: f64, times: &[f64]) -> Motion {
     let ask = Ask::on(table).with_restitution(e).with_pose();
     roll_with(body, *start, times, &ask, || true).unwrap().unwrap()
@@ -34,12 +35,12 @@ pub(crate) fn rim(body: &Body, theta: f64) -> [f64; 4] {
     [a + rho * s, ell + rho * c, ell * c + a * s + rho, ell * s - a * c]
 }
 
-/// Every second time Stronge's law of restitution, else Newton's or Poisson's.
+/// The law of restitution of case `k`: Stronge's in every second case, else Newton's or Poisson's.
 pub(crate) fn other_law(k: usize) -> ImpactLaw {
     [ImpactLaw::Stronge, ImpactLaw::Newton, ImpactLaw::Stronge, ImpactLaw::Poisson][k % 4]
 }
 
-/// The velocity of the centre along e_h, e2 and upwards, from that of the lowest point.
+/// The velocity of the centre of mass along e_h, e2 and upwards, from that of the lowest point.
 pub(crate) fn centre(body: &Body, y: &State, [u, v, lift]: [f64; 3]) -> [f64; 3] {
     let [radius, depth, height, lever] = rim(body, y.theta);
     [u + height * y.w2, v - depth * y.w1 + radius * y.w3, lift + lever * y.w2]
@@ -52,7 +53,7 @@ pub(crate) fn energy(body: &Body, y: &State, u: [f64; 3], height: f64) -> f64 {
     0.5 * (v.iter().map(|v| v * v).sum::<f64>() + turning) + rim(body, y.theta)[2] + height
 }
 
-/// Energy, heat, what losses have taken and what the impacts before have taken, at one of the times.
+/// The sum, at the time with the index `i`, of energy, heat, and the energy that losses and impacts have taken.
 pub(crate) fn account(body: &Body, m: &Motion, i: usize) -> f64 {
     let path = m.path.as_ref().unwrap();
     let (Slip { u_h: u, u_2: v, .. }, AboveTable { height, lift, .. }) = (path.slip[i], path.aloft[i]);
@@ -63,7 +64,7 @@ pub(crate) fn account(body: &Body, m: &Motion, i: usize) -> f64 {
         + before.map(|hit| hit.lost).sum::<f64>()
 }
 
-/// Body, start in the air, friction and restitution, at random.
+/// A random body, start in the air, coefficient of friction and restitution.
 pub(crate) fn any_drop(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let body = match (5.0 * r()) as u8 {
         0 => Body::solid(0.05 + 3.0 * r()),
@@ -221,7 +222,7 @@ fn in_the_air_angular_momentum_and_spin_stay_and_the_axis_turns_as_eulers_equati
     }
 }
 
-/// The angular velocity in the laboratory.
+/// The angular velocity along the axes of the laboratory.
 fn lab(y: &State, pose: &spincyl::pose::Pose) -> Vector3<f64> {
     let ((s, c), (sin, cos)) = (y.theta.sin_cos(), pose.phi.rest.sin_cos());
     let h = Vector3::new(cos, sin, 0.0);

@@ -1,5 +1,5 @@
-//! Motions that are too much work, or that their caller interrupts: one ending for bodies and stones, the motion so far, and
-//! the limit that it has reached.
+//! Motions that need too many evaluations, or that their caller interrupts: bodies and stones have the same ending,
+//! the motion up to it, and the limit.
 
 use crate::common::many::body_columns;
 use crate::common::{path_of, state};
@@ -10,7 +10,7 @@ use spincyl::motion::{AboveTable, Ask, Ending, Limit, Method, Motion, Moving, St
 use spincyl::stone::{self, Ellipsoid};
 use spincyl::{Body, Slip, State, steady};
 
-/// A ball that slips and rolls under friction and air, and a stone that rattles; neither has an end.
+/// A ball that slips and rolls under friction and air; like the stone of `stone` it has no end.
 fn ball() -> (Body, Start, Ask) {
     let start = Start::from(state(1.0, 0.3, 0.1, 4.0)).with_slip(Slip::new(0.5, 1.0));
     let ask = Ask::on(Friction::coulomb(0.1)).with_losses(Losses::of(Law::AirLinear, 1e-4));
@@ -25,8 +25,8 @@ fn times(count: u32) -> Vec<f64> {
     (0..count).map(|i| 0.05 * f64::from(i)).collect()
 }
 
-/// The motion that is given up after `most` evaluations has the outputs of the whole one up to there, and its event lies
-/// on the whole one, as a motion to the time of that event shows.
+/// Checks that the motion that stops after `most` evaluations has the outputs of the whole motion up to there, and
+/// that its event is a state of the whole motion, which a motion to the time of the event shows.
 fn is_the_beginning<S: Moving>(
     whole: &Motion<S>,
     part: &Motion<S>,

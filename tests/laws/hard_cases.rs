@@ -11,7 +11,7 @@ struct Reference {
     row: String,
     theta: f64,
     body: Body,
-    /// The rate to 106 bits, as a sum of two doubles.
+    /// The reference rate with 106 bits, as a sum of two doubles.
     rate: [f64; 2],
     kappa_c: f64,
     kappa: [(Contact, f64); 2],

@@ -20,7 +20,7 @@ fn two_rims(body: &Body) -> bool {
     body.ell() > 0.0 && body.theta_end() == FRAC_PI_2
 }
 
-/// A body of any profile: sharp, rounded, two equal balls, and one ball whose centre of mass may lie outside.
+/// A random body: with a sharp or rounded rim, two equal balls, or one ball whose centre of mass may lie outside it.
 fn any_profile(r: &mut impl FnMut() -> f64) -> Body {
     let body = match (8.0 * r()) as u8 {
         0 => Body::solid(0.03 + 3.0 * r()),
@@ -35,7 +35,7 @@ fn any_profile(r: &mut impl FnMut() -> f64) -> Body {
     body.unwrap()
 }
 
-/// A start on the table or in the air; a body with two rims also starts on its side, or close to it.
+/// A random start on the table or in the air; for a body with two rims also on its side, or close to it.
 fn any_start(body: &Body, r: &mut impl FnMut() -> f64) -> Start {
     let theta = match (5.0 * r()) as u8 {
         0 if two_rims(body) => FRAC_PI_2,
@@ -325,7 +325,7 @@ fn a_can_that_falls_flat_while_it_slides_across_grips_as_a_hoop_does() {
     }
 }
 
-/// Both rims come down at once, at these velocities.
+/// A random body and start in which both rims land at once.
 fn both_come_down(r: &mut impl FnMut() -> f64) -> (Body, Start) {
     let body = Body::solid(0.1 + 2.0 * r()).unwrap();
     let (here, there) = (-2.0 * r() - 1e-3, -2.0 * r() - 1e-3);
@@ -421,8 +421,8 @@ fn the_mirror_image_of_a_landing_of_both_rims_is_its_landing_along_the_axis_and_
     assert!(met > drawn(500), "{met}");
 }
 
-/// The largest difference of two motions of one start at the times that both reach and at their end, as seen from the
-/// same rim.
+/// The largest difference between two motions from one start, at the times that both reach and at their end, counted
+/// from the same rim.
 fn apart(a: &Motion, b: &Motion) -> f64 {
     let far = |x: [f64; 4], y: [f64; 4]| x.iter().zip(y).map(|(x, y)| (x - y).abs()).fold(0.0, larger);
     let of = |x: &State, y: &State| {
@@ -433,7 +433,8 @@ fn apart(a: &Motion, b: &Motion) -> f64 {
     a.states.iter().zip(&b.states).map(|(x, y)| of(x, y)).fold(ends.unwrap_or(0.0), larger)
 }
 
-/// A start at theta, w1, w2, w3 with a slip, moved within two tolerances; the motions, and their difference.
+/// Computes the motion from theta, w1, w2, w3 and a slip with two tolerances. Returns both motions, and their
+/// difference.
 fn within_both(body: &Body, y: [f64; 6], ask: &Ask, times: &[f64]) -> ([Motion; 2], f64) {
     let start = Start::from(State::from([y[0], y[1], y[2], y[3]])).with_slip(Slip::new(y[4], y[5]));
     let both = [1e-14, 1e-10].map(|tol| moved(body, &start, &ask.with_method(Method::Tolerance(tol)), times));

@@ -1,4 +1,4 @@
-//! Random motions that leave the model end with an event, and others do not.
+//! Random motions that leave the range of the model end with an event, and others do not.
 
 use crate::common::{by, drawn, moved, wander, wild};
 use spincyl::contact::Table;

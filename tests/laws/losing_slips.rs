@@ -157,7 +157,7 @@ fn a_held_drilling_is_held_in_the_rougher_run_as_well_where_a_slip_begins() {
     }
 }
 
-/// A solid coin, twelve times as wide as it is thick, with rolling resistance.
+/// The motion of a solid coin, twelve times as wide as thick, with rolling resistance of this arm.
 fn coin(start: &State, arm: f64, mu: f64, times: &[f64]) -> Motion {
     let losses = Losses::of(Law::RollingResistance, arm / 12.0);
     follow(&Body::solid(1.0 / 12.0).unwrap(), start, losses, times, Friction::coulomb(mu))

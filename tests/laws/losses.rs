@@ -11,14 +11,14 @@ fn bodies() -> impl Strategy<Value = Body> {
     prop_oneof![2 => ordinary_tube(), 1 => any_rounded()]
 }
 
-/// Some of the laws, each with a coefficient that a table could have, and more.
+/// Random losses: some of the laws, with coefficients from those of real tables up to larger ones.
 fn losses() -> impl Strategy<Value = Losses> {
     let one = || prop_oneof![Just(0.0), (-4.0..-1.0f64).prop_map(|x| 10f64.powf(x))];
     let all: Vec<_> = Law::ALL.iter().map(|_| one()).collect();
     all.prop_map(|all| Law::ALL.iter().zip(all).fold(Losses::NONE, |sum, (law, x)| sum.with(*law, x)))
 }
 
-/// The losses that a body can have: a ball has no face that could press out air.
+/// The given losses that a body can have: a ball has no face, and no film of air below it.
 fn possible(body: &Body, losses: Losses) -> Losses {
     let all = losses.iter().map(|(law, x)| Losses::of(law, x));
     all.filter(|one| one.check_for(body).is_ok()).fold(Losses::NONE, |a, b| a + b)
@@ -29,14 +29,14 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(1.0, |most, x| most.max(x.abs()))
 }
 
-/// A motion at these times on this table.
+/// The motion of a body with these losses on this table, at these times.
 pub fn follow(body: &Body, start: &State, losses: Losses, times: &[f64], on: impl Into<Table>) -> Motion {
     let ask = Ask::on(on).with_losses(losses);
     roll_with(body, start, times, &ask, || true).unwrap().unwrap()
 }
 
-/// The time at which dry friction stops the contact of a falling face, and the state there, to a share of 1e-6 of the
-/// time from there to the landing.
+/// The time at which dry friction stops the contact point of a falling face, and the state then, within 1e-6 of the
+/// time from the stop to the landing.
 pub(crate) fn stop_of(body: &Body, start: &State, losses: Losses) -> (f64, State) {
     let end = follow(body, start, losses, &[0.0, 1e5], ROLLS).event.unwrap();
     assert_eq!(end.ending, Ending::Face);
@@ -53,7 +53,7 @@ pub(crate) fn stop_of(body: &Body, start: &State, losses: Losses) -> (f64, State
     (to, follow(body, start, losses, &[0.0, to], ROLLS).states[1])
 }
 
-/// The sum of energy, work lost and heat of slip at the i-th time.
+/// The sum of energy, work lost and heat of slip at the time with the index `i`.
 pub(crate) fn total(body: &Body, motion: &Motion, i: usize) -> f64 {
     let path = path_of(motion);
     slip::energy(body, &motion.states[i], path.slip[i]) + path.work_lost[i] + path.dissipated[i]
@@ -251,7 +251,7 @@ fn contact_energy(contact: Contact, body: &Body, y: &State) -> f64 {
     }
 }
 
-/// Every hundredth of a span.
+/// A hundred equally spaced times of a span.
 fn hundred(span: f64) -> Vec<f64> {
     (0..=100).map(|i| span * f64::from(i) / 100.0).collect()
 }

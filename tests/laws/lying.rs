@@ -1,4 +1,4 @@
-//! A body on both rims: what slides, spins down, pivots, rises again, rocks and rolls straight, with known answers.
+//! A body on both rims that slides, spins down, pivots, rises, rocks or rolls straight, with known answers.
 
 use crate::common::{drawn, larger, wander};
 use spincyl::contact::slip::Friction;
@@ -8,7 +8,7 @@ use spincyl::motion::{AboveTable, Ask, Ending, Motion, Start, roll_with};
 use spincyl::{Body, Error, Slip, State};
 use std::f64::consts::FRAC_PI_2;
 
-/// A body on its side, whose centre moves with the velocity v along the axis and across it.
+/// A start on the side, with this velocity of the centre along the axis and across it.
 fn lying(body: &Body, w1: f64, w3: f64, [along, across]: [f64; 2]) -> Start {
     let state = State { theta: FRAC_PI_2, w1, w2: 0.0, w3 };
     Start::from(state).with_slip(Slip::new(along, across + body.ell() * w1 - w3))
@@ -30,7 +30,7 @@ fn kinds(m: &Motion) -> Vec<Kind> {
     m.path.as_ref().unwrap().phases.iter().map(|phase| phase.kind).collect()
 }
 
-/// The time at which the last phase begins.
+/// The time at which the last phase of a motion begins.
 fn settles(m: &Motion) -> f64 {
     m.path.as_ref().unwrap().phases.last().unwrap().time
 }
@@ -157,7 +157,7 @@ fn what_lies_on_ice_keeps_its_velocities_and_both_rims_share_the_weight_with_the
     assert_eq!(kinds(&rises), [Kind::Slipping]);
 }
 
-/// A body that lies, with velocities at random.
+/// A random body on its side, with random velocities and a coefficient of friction.
 fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64) {
     let body = Body::tube(0.4 + 3.0 * r(), r()).unwrap();
     let mut speed = || 3.0 * r() - 1.5;

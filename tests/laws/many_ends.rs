@@ -1,4 +1,4 @@
-//! The ends of many motions at once: in lanes they are those of single motions.
+//! The ends of many motions at once, which SIMD lanes compute, compared with those of single motions.
 
 use crate::common::many::Many;
 use crate::common::{distance, moved, numbers, wander, wild};
@@ -26,7 +26,7 @@ fn pressing(count: usize, slower: f64) -> Vec<(Body, State)> {
     all
 }
 
-/// Compares every motion with the single motion from its start; returns the share that lanes computed.
+/// Compares every motion with the single motion from its start; returns the share that SIMD lanes have computed.
 fn as_alone(all: &[(Body, State)], job: &Job<'_>) -> f64 {
     let many = Many::of(all).run(job, 2);
     let ask = job.ask;

@@ -11,7 +11,7 @@ use spincyl::exact::Swing;
 use spincyl::motion::Ask;
 use spincyl::{Body, Contact, State};
 
-/// The difference of a motion in lanes and the single one, over the sum of their claimed errors; None if no
+/// The difference of a motion in SIMD lanes and the single one, over the sum of their estimated errors; None if no
 /// lane computed it.
 fn share(body: &Body, y: &State, contact: Contact, t: f64) -> Option<f64> {
     let swing = Swing::new(body, y, contact).ok()?;

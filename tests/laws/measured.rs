@@ -1,4 +1,4 @@
-//! Bodies that know their size, and their motions in metres, kilograms and seconds.
+//! Measured bodies, and their motions in metres, kilograms and seconds.
 
 use spincyl::contact::Friction;
 use spincyl::loss::{Law, Losses};

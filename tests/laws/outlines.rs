@@ -8,8 +8,9 @@ use spincyl::motion::{Ask, Method, Start, roll_with};
 use spincyl::{Body, State, stability, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// The body, its theta_k and D, height Z and levers g of both contacts there, and the moment J about the line through
-/// the apex: rounded to ten digits from another program.
+/// Bodies, each with the inclination theta_k at which two circles touch, the distance D of the apex, the height Z,
+/// the levers g of both contacts, and the moment J about the line through the apex: from another program, to ten
+/// digits.
 fn known() -> Vec<(Body, [f64; 6])> {
     vec![
         (

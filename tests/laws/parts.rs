@@ -218,7 +218,7 @@ proptest! {
     }
 }
 
-/// Random numbers from a fixed seed.
+/// A generator of random numbers from a fixed seed.
 struct Drawn(u64);
 
 impl Drawn {
@@ -234,7 +234,7 @@ impl Drawn {
         if self.of(2) == 0 { [0.3, 0.5, 0.7, 1.1][self.of(4)] } else { 0.05 + 1.5 * self.number() }
     }
 
-    /// A part of any form, with its lowest point at a height; and its upper end.
+    /// A random part with its lowest point at the height `low`, and the height of its upper end.
     fn part(&mut self, low: f64) -> (Form, f64) {
         let (r, q, long, bore) = (self.length(), self.length(), self.length(), 0.9 * self.number());
         let share = if self.of(4) == 0 { [0.0, 0.5, 1.0][self.of(3)] } else { self.number() };
@@ -264,7 +264,7 @@ impl Drawn {
         }
     }
 
-    /// Parts that stand on each other or overlap, with either end up.
+    /// Random parts that stand on each other or overlap, with either end up.
     fn parts(&mut self) -> Vec<BodyPart> {
         let (mut z, mut forms) = (0.0, Vec::new());
         for _ in 0..=self.of(5) {

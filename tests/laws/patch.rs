@@ -23,14 +23,14 @@ fn drilling(y: &State) -> f64 {
     y.theta.sin() * y.w1 + y.theta.cos() * y.w3
 }
 
-/// Energy and heat at the outputs of a motion.
+/// The sum of energy and heat at each output of a motion.
 fn sums(body: &Body, m: &Motion) -> Vec<f64> {
     let path = m.path.as_ref().unwrap();
     let each = m.states.iter().zip(&path.slip).zip(&path.dissipated);
     each.map(|((y, slip), heat)| spincyl::contact::slip::energy(body, y, *slip) + heat).collect()
 }
 
-/// A body, a state that slips, and a patch, at random.
+/// A random body, a start that slips, a coefficient of friction and the radius of a patch.
 fn any(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let body = match (3.0 * r()) as u8 {
         0 => Body::ball(0.4 * r() - 0.2, 0.4, 0.42),

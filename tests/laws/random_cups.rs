@@ -1,4 +1,4 @@
-//! Random bodies of two circles: whatever the start, they are followed to the end, and keep their energy.
+//! Random bodies of two circles: from any start their motion is computed to its end, and the energy balance holds.
 
 use crate::circles::frustum;
 use crate::common::{drawn, larger, wander};
@@ -10,7 +10,7 @@ use spincyl::{Body, Error, State};
 use std::collections::BTreeMap;
 use std::panic::catch_unwind;
 
-/// A cup or a cone, either way up, or two unequal balls, from a start of any kind.
+/// A random case: a cup or a cone, either way up, or two unequal balls, with a random start.
 struct Scene {
     body: Body,
     start: Start,
@@ -64,7 +64,7 @@ impl Scene {
         0.5 * (v.into_iter().map(|v| v * v).sum::<f64>() + turning) + above + height
     }
 
-    /// The largest change of the energy together with all that friction and impacts have taken, over the energy.
+    /// The largest change of the energy plus all energy that friction and impacts have taken, over the energy.
     fn energy_lost(&self, m: &Motion) -> f64 {
         let (path, Start { state, slip, .. }) = (m.path.as_ref().unwrap(), self.start);
         let whole = self.energy(&state, slip.into(), [0.0; 2], u8::from(state.theta > self.body.theta_end()));
@@ -76,7 +76,8 @@ impl Scene {
         (0..m.states.len()).map(at).fold(0.0, larger)
     }
 
-    /// Whether friction is near that with which no contact force is unique, on one circle or on both.
+    /// Whether friction is near that of the paradox of Painleve, where no contact force is unique, on one circle or
+    /// on both.
     fn jams(&self, theta: f64) -> bool {
         self.body.circles().iter().any(|circle| {
             let [_, lever, height, _] = touching(circle, theta);
@@ -84,7 +85,7 @@ impl Scene {
         })
     }
 
-    /// What is wrong with this motion up to the time 50, if anything is.
+    /// A description of what is wrong with this motion up to the time 50; None if nothing is.
     fn fault(&self) -> Option<String> {
         let ask = Ask::on(Friction::coulomb(self.mu)).with_restitution(self.e);
         let times: Vec<f64> = (1..=50).map(f64::from).collect();
@@ -108,7 +109,7 @@ impl Scene {
     }
 }
 
-/// More than a motion of this length needs.
+/// A number of evaluations that is more than a motion up to the time 50 needs.
 const MOST_EVALUATIONS: u64 = 1_000_000;
 
 fn faults(seeds: impl Iterator<Item = u64>) -> BTreeMap<u64, String> {

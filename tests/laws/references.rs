@@ -5,7 +5,7 @@ use crate::{ULP, place};
 use spincyl::stability::at_rest;
 use spincyl::{Body, Contact, steady};
 
-/// The numbers of a row, without the words that it begins with.
+/// The rows of a reference table: the words with which each begins, and its numbers.
 fn rows(table: &str, words: usize) -> Vec<(String, Vec<f64>)> {
     let row = |line: &str| {
         let all: Vec<&str> = line.split(',').collect();

@@ -1,4 +1,4 @@
-//! Bodies that come to rest, or leave an unstable rest: how the motion ends, and the errors that it claims.
+//! Bodies that come to rest, or leave an unstable rest: how the motion ends, and its estimated errors.
 
 use crate::losses::ROLLS;
 use core::f64::consts::FRAC_PI_2;

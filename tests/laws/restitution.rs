@@ -1,4 +1,4 @@
-//! Other laws of restitution: a superball that bounces to and fro, and what the laws have in common.
+//! Laws of restitution other than Stronge's: a superball that bounces to and fro, and properties that all laws share.
 
 use crate::common::{drawn, wander};
 use crate::flight::{account, any_drop, coulomb, dropped, impacts};

@@ -10,7 +10,7 @@ use spincyl::motion::{Ask, Ending, Method};
 use spincyl::{Body, Contact, State, rk4, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// [Routh, Jellett] of a ball.
+/// The integrals of Routh and of Jellett of a ball.
 fn integrals(body: &Body, y: &State) -> [f64; 2] {
     let at = place(body, y.theta);
     let (i1, i3, depth) = (body.i1(), body.i3(), at.depth[0]);

@@ -1,4 +1,5 @@
-//! Scenes for contact engines: the files of Python and of this crate are held to each other, and engines to the answer.
+//! Scenes for contact engines: the files of Python and of this crate agree, and engines are compared with the known
+//! answer.
 
 use crate::common::larger;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -40,7 +41,7 @@ fn read(record: &Record) -> Scene {
     Scene::read(&record.file.to_string()).unwrap()
 }
 
-/// The scene of the same body, start and options, computed here.
+/// The scene of the same body, start and options, computed by this crate.
 fn again(scene: &Scene) -> Scene {
     let (scale, known) = (scene.scale().unwrap(), &scene.contents().expected);
     let mut time = known.time.clone();

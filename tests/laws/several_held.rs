@@ -1,4 +1,4 @@
-//! Motions that begin, or come to rest, where dry friction resists several of them at once.
+//! Rotations that begin, or come to rest, where dry friction resists several of them at once.
 //!
 //! The sum of energy, heat and work lost is constant; and a body is at rest where its motion ends with `STOPS`.
 
@@ -10,23 +10,23 @@ use spincyl::motion::{Ask, Ending, Motion, Moving, roll_with};
 use spincyl::stone::{self, Ellipsoid, StoneState};
 use spincyl::{Body, Slip, State, nalgebra};
 
-/// The motions that are at rest at the start, besides the slip.
+/// The rotations that are at rest at the start, in addition to the slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rest {
-    /// The whole body.
+    /// The whole body is at rest.
     All,
     Contour,
     Drilling,
-    /// Rolling and rocking: the body only turns about the vertical.
+    /// Rolling and rocking are at rest: the body only turns about the vertical.
     Rolling,
 }
 
-/// A random number between two, evenly in its logarithm.
+/// A random number between `low` and `high`, uniform in its logarithm.
 fn between(r: &mut impl FnMut() -> f64, low: f64, high: f64) -> f64 {
     low * (high / low).powf(r())
 }
 
-/// Dry laws: the first always, each of the others in a third of the cases.
+/// Random dry loss laws: the law `first` always, each of the others in a third of the cases.
 fn dry(r: &mut impl FnMut() -> f64, first: Law, contour: bool) -> Losses {
     let mut all = Losses::NONE;
     for law in [Law::RollingResistance, Law::DryContour, Law::Drilling] {
@@ -44,7 +44,7 @@ fn friction(r: &mut impl FnMut() -> f64) -> Friction {
     Friction::Coulomb { mu, fixed: mu * more, patch: 0.0 }
 }
 
-/// Twice a normal variable, about.
+/// A random speed: about twice a normal variable.
 fn speed(r: &mut impl FnMut() -> f64) -> f64 {
     1.2 * (r() + r() + r() - 1.5)
 }
@@ -99,7 +99,7 @@ pub fn stone_at_rest(k: u64, rest: Rest) -> (Ellipsoid, StoneState, Ask) {
 
 const TIMES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 
-/// The sums of energy, heat and work lost of a body and of a stone.
+/// The sum of energy, heat and work lost at each time of a body's motion.
 fn sums(body: &Body, motion: &Motion) -> Vec<f64> {
     let path = path_of(motion);
     let energy = |i: usize| slip::energy(body, &motion.states[i], path.slip[i]);
@@ -121,13 +121,14 @@ fn sums_of_stone(stone: &Ellipsoid, motion: &Motion<StoneState>) -> Vec<f64> {
     (0..motion.states.len()).map(|i| energy(i) + path.dissipated[i] + path.work_lost[i]).collect()
 }
 
-/// How far the sums are out of balance, beyond what the motion claims.
+/// Whether the sums change by more than the estimated error of the motion allows.
 fn out<S: Moving>(sums: &[f64], motion: &Motion<S>) -> bool {
     let off = sums.iter().map(|sum| (sum - sums[0]).abs()).fold(0.0, larger);
     off.is_nan() || off > 3.0 * motion.error + 1e-12
 }
 
-/// What is wrong with the motion of a body: out of balance, ended with `STOPS` while it moves, or given up.
+/// A description of what is wrong with the motion of case `k`: its energy changes, it ends with `STOPS` while it
+/// moves, or its computation stops early; None if nothing is.
 pub fn wrong_with_body(k: u64, rest: Rest) -> Option<String> {
     let (body, start, ask) = body_at_rest(k, rest);
     let motion = match roll_with(&body, start, &TIMES, &ask, || true) {

@@ -33,7 +33,7 @@ fn frictions() -> impl Strategy<Value = Friction> {
     ]
 }
 
-/// A, L, g, g' and the height of the centre, written independently of the library.
+/// Radius A, depth L, lever g, its slope g', and the height of the centre, written independently of the library.
 fn shape(body: &Body, theta: f64) -> [f64; 5] {
     let (s, c) = theta.sin_cos();
     let (ell, rho) = (body.ell(), body.fillet());
@@ -270,7 +270,7 @@ fn launches(count: usize) -> [Vec<f64>; 4] {
     [w1, w3, slip, (0..count).map(|i| 0.1 + 0.3 * share(i, 211)).collect()]
 }
 
-/// The ends, claims and status of these launches, computed together.
+/// The ends, estimated errors and status of these launches, computed in one call.
 fn together(of: &[Vec<f64>; 4], times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<f64>, Vec<u8>) {
     let tube = Body::tube(6.0, 0.8).unwrap();
     let [w1, w3, slip, mu] = of;

@@ -1,4 +1,4 @@
-//! Motions on a slope: closed laws of balls, the conservation of energy, symmetries, and what rests.
+//! Motions on a slope: closed forms for balls, the conservation of energy, symmetries, and bodies that stay at rest.
 
 use crate::common::rim::place;
 use crate::common::wander;
@@ -181,7 +181,7 @@ fn drawn(next: &mut impl FnMut() -> f64) -> (Body, Start, Ask) {
     (body, start, ask.with_slope(within(next, -1.05, 1.05)))
 }
 
-/// Kinetic energy, and the height of the centre in the field of gravity.
+/// Kinetic energy, and potential energy in the tilted field of gravity.
 fn energy(body: &Body, ask: &Ask, m: &Motion, i: usize) -> f64 {
     let ([x, _, z], y) = (centre(body, m, i), m.states[i]);
     let u = m.path.as_ref().map_or([0.0; 2], |path| path.slip[i].into());
@@ -310,7 +310,7 @@ fn a_disk_let_go_slips_at_once_where_rolling_would_need_too_much_friction() {
     }
 }
 
-/// The spin about the vertical.
+/// The spin about the normal of the table.
 fn drilling(y: &State) -> f64 {
     y.theta.sin() * y.w1 + y.theta.cos() * y.w3
 }
@@ -424,7 +424,8 @@ fn a_ball_that_drills_on_a_patch_creeps_down_as_far_from_rolling_as_the_slope_as
     }
 }
 
-/// The share of friction that a patch has against a slip of k times the speed of its rim, by a sum over the pressure of Hertz.
+/// The friction of a patch over mu N, for a slip of k times the speed of its rim, by a sum over the pressure of
+/// Hertz.
 fn patch_share(k: f64) -> f64 {
     let (rings, spokes) = (400, 720);
     let mut sum = 0.0;

@@ -27,7 +27,8 @@ fn end(m: &Motion) -> (Ending, f64) {
     m.event.map_or((Ending::Done, f64::NAN), |event| (event.ending, event.time))
 }
 
-/// The way of the centre since the start, and its velocity, along x and y, while the body is on its face with the heading 0.
+/// The displacement of the centre since the start, and its velocity, along x and y, while the body is on its face
+/// with phi = 0.
 fn centre(body: &Body, m: &Motion, i: usize) -> [f64; 4] {
     let (y, at) = (m.states[i], m.poses.as_ref().unwrap()[i].contact_point);
     let Slip { u_h: u, u_2: v, .. } = m.path.as_ref().unwrap().slip[i];
@@ -158,7 +159,7 @@ fn a_body_that_slides_down_too_fast_for_its_height_topples_and_one_that_spins_do
     assert_eq!((m.states[0].theta, m.path.as_ref().unwrap().phases.len()), (0.0, 1));
 }
 
-/// What a motion has of energy at an output, with the heat.
+/// The sum of energy and heat at the output `i`.
 fn balance(body: &Body, slope: f64, m: &Motion, i: usize) -> f64 {
     let [x, y, v_x, v_y] = centre(body, m, i);
     let w = m.states[i].w3;
@@ -256,8 +257,8 @@ fn a_pillar_rocks_to_rest_on_a_slope_and_tips_over_on_one_that_is_too_steep() {
     }
 }
 
-/// The angular acceleration at which a body let go leaves its face, in units of the level weight, and whether it slips; NaN
-/// where the motion is refused.
+/// The angular acceleration with which a body that is let go on a slope leaves its face, and whether it slips; NaN if
+/// the motion raises an error.
 fn leaves(body: &Body, friction: Friction, arm: f64, tan: f64) -> (f64, bool) {
     let losses = Losses::of(Law::RollingResistance, arm);
     let ask = Ask::on(friction).with_restitution(0.0).with_slope(tan.atan()).with_losses(losses).with_pose();

@@ -36,7 +36,7 @@ fn phi(m: &Motion, i: usize) -> f64 {
     m.poses.as_ref().unwrap()[i].phi.radians()
 }
 
-/// The energy with that of the slope, the heat and what impacts and losses have taken, at each time.
+/// The sum, at each time, of the energy on the slope, the heat, and the energy that impacts and losses have taken.
 fn whole(body: &Body, slope: f64, m: &Motion) -> Vec<f64> {
     let path = m.path.as_ref().unwrap();
     let at = |(i, now): (usize, Sample)| {
@@ -51,7 +51,7 @@ fn whole(body: &Body, slope: f64, m: &Motion) -> Vec<f64> {
     m.samples().enumerate().map(at).collect()
 }
 
-/// The largest error of that energy, in units of the largest speed.
+/// The largest change of that sum of energies, in units of the largest speed.
 fn off(body: &Body, slope: f64, m: &Motion) -> f64 {
     let (all, speeds) = (whole(body, slope, m), m.states.iter().flat_map(|y| [y.w1, y.w2, y.w3]));
     let fastest = speeds.fold(1.0, |most: f64, w| most.max(w.abs()));
@@ -175,10 +175,10 @@ fn a_body_with_its_axis_downhill_lies_still_slides_or_tips_over_its_lower_rim() 
     }
 }
 
-/// A slower slip is a rounding error.
+/// A slip below this counts as a rounding error.
 const STILL: f64 = 1e-12;
 
-/// A body, a start on both rims, mu and the slope.
+/// A random body, start on both rims, coefficient of friction and slope.
 fn any_lying(r: &mut impl FnMut() -> f64) -> (Body, Start, f64, f64) {
     let body = Body::solid(0.3 * 20f64.powf(r())).unwrap();
     let slope = 0.05 + 0.65 * r();
@@ -249,7 +249,7 @@ fn what_is_let_go_at_rest_sticks_slips_pivots_or_rises_as_coulomb_says_at_both_r
     assert!(found.iter().all(|count| *count > 1), "{found:?}");
 }
 
-/// The number of rims that slip.
+/// The number of rims that slip in a phase of this kind.
 fn moving(kind: Kind) -> usize {
     match kind {
         Kind::Lying => 2,

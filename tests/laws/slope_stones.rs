@@ -1,4 +1,4 @@
-//! Stones on a slope: the energy, a stone that is a ball, mirror images, and what rests.
+//! Stones on a slope: the energy, a stone that is a ball, mirror images, and stones that stay at rest.
 
 use crate::common::{cases, larger};
 use crate::stone::{any_start, any_stone};

@@ -38,7 +38,7 @@ fn place(body: &Body, m: &Motion) -> [f64; 3] {
     [centre.x - body.rim(), centre.y, pose.phi.radians() + pose.psi.radians()]
 }
 
-/// A body of any height and moments.
+/// A random body of any moments, with a height up to `tall`.
 fn any(r: &mut impl FnMut() -> f64, tall: f64) -> Body {
     let z = tall * r();
     Body::new(z, 0.5 + z * z / 3.0 + 0.3 * r(), 0.4 + 0.6 * r()).unwrap()

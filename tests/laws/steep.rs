@@ -1,4 +1,5 @@
-//! How steep a table may be: closed laws of bodies that stand, lie and roll, and motions on both sides of the limit.
+//! The steepest slope on which a body stays: closed forms for bodies that stand, lie and roll, and motions on both
+//! sides of the limit.
 
 use crate::common::{any_body, general_rounded, wander};
 use proptest::prelude::*;

@@ -9,7 +9,7 @@ use spincyl::motion::path::Kind;
 use spincyl::motion::{Ask, Ending, Method, Motion, Start, roll_with};
 use spincyl::{Body, Error, State, steady};
 
-/// Motions with the coefficients of sliding and of static friction.
+/// A body, its initial state, and the coefficients of sliding and of static friction.
 type Scene = (Body, State, [f64; 2]);
 type Scenes = Vec<Scene>;
 
@@ -52,7 +52,7 @@ impl Swept {
         to
     }
 
-    /// All numbers but the errors, as bits.
+    /// All results except the errors, as bits.
     fn bits(&self) -> Vec<u64> {
         let columns = self.states.iter().chain(&self.last).chain(&self.sums);
         let numbers = columns.flatten().map(|x| if x.is_nan() { f64::NAN } else { *x }.to_bits());

@@ -19,7 +19,7 @@ pub(crate) fn turned(moments: [f64; 3], [about_3, about_1]: [f64; 2]) -> [[f64; 
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| half[(i, j)]))
 }
 
-/// Pebbles, eggs and rattlebacks: any inertia that a body can have, and a centre of mass well inside.
+/// Random pebbles, eggs and rattlebacks: any inertia that a body can have, and a centre of mass well inside.
 pub(crate) fn any_stone() -> impl Strategy<Value = Ellipsoid> {
     let axes = [0.2..1.0f64, 0.2..1.0f64, 0.2..1.0f64];
     let offset = [-0.4..0.4f64, -0.4..0.4f64, -0.4..0.4f64];
@@ -33,7 +33,7 @@ pub(crate) fn any_stone() -> impl Strategy<Value = Ellipsoid> {
     )
 }
 
-/// Verticals in every direction and turns of every size.
+/// Random states: verticals in every direction, and angular velocities of every size.
 pub(crate) fn any_start() -> impl Strategy<Value = StoneState> {
     let turn = || prop_oneof![3 => -1.5..1.5f64, 1 => Just(0.0)];
     (0.0..3.1f64, -3.1..3.1f64, [turn(), turn(), turn()]).prop_map(|(theta, around, w)| {
@@ -55,7 +55,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The largest difference between the numbers of two states.
+/// The largest difference between the components of two states.
 pub(crate) fn apart(a: &StoneState, b: &StoneState) -> f64 {
     let pairs = a.vertical.iter().zip(b.vertical).chain(a.w.iter().zip(b.w));
     pairs.fold(0.0, |most, (a, b)| larger(most, (a - b).abs()))

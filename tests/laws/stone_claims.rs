@@ -1,4 +1,4 @@
-//! The claimed errors of motions of stones.
+//! The estimated errors of motions of stones.
 
 use crate::common::{cases, larger};
 use crate::stone::{TIMES, any_start, any_stone, apart};
@@ -10,7 +10,7 @@ use spincyl::stone::{self, Ellipsoid, StoneState};
 /// A case: a stone, its start, a coefficient of friction, whether it slips, and log10 of a tolerance.
 type Asked = (Ellipsoid, StoneState, f64, bool, f64);
 
-/// The largest difference of a motion and one of this tolerance, over the sum of their claims.
+/// The largest difference between a motion and one with the given tolerance, over the sum of their estimated errors.
 fn beyond_claims(&(ref stone, start, mu, slips, tol): &Asked) -> f64 {
     let table = if slips { Friction::coulomb(mu).into() } else { Table::default() };
     let ask = Ask::default().with_table(table);
@@ -25,7 +25,8 @@ fn beyond_claims(&(ref stone, start, mu, slips, tol): &Asked) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig { max_shrink_iters: 0, ..cases(4) })]
 
-    /// A claim is an estimate from two runs: of 15,000 stones drawn, 13 lay beyond it, by 4.7 times at most.
+    /// The error is estimated from two runs: of 15,000 random stones 13 had a larger error, by a factor of at most
+    /// 4.7.
     #[test]
     fn the_claimed_errors_of_stones_are_honest(
         asked in prop::collection::vec(

@@ -1,4 +1,5 @@
-//! Stones that fly, land and bounce: what is kept, a stone that is a ball, mirror images, and the way back.
+//! Stones that fly, land and bounce: conserved quantities, a stone that is a ball, mirror images, and motions
+//! reversed in time.
 
 use crate::common::{drawn, larger, wander};
 use crate::flight::other_law;
@@ -19,7 +20,7 @@ fn hops(stone: &Ellipsoid, start: &Start<StoneState>, ask: &Ask, times: &[f64]) 
     stone::roll(stone, *start, times, &ask.with_pose(), || true).unwrap().unwrap()
 }
 
-/// A pebble, an egg, a rattleback or any other stone that is light or heavy at its ends.
+/// A random pebble, egg, rattleback or other stone that is light or heavy at its ends.
 fn any_pebble(r: &mut impl FnMut() -> f64) -> Ellipsoid {
     let axes = core::array::from_fn(|_| 0.25 + 0.75 * r());
     let stone = match (4.0 * r()) as u8 {
@@ -48,7 +49,7 @@ fn any_vertical(r: &mut impl FnMut() -> f64) -> [f64; 3] {
     [s * around.cos(), s * around.sin(), c]
 }
 
-/// A stone in the air, just above the table, on it, or coming down.
+/// A random stone in the air, just above the table, on it, or landing.
 fn any_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let fast = [0.0, 0.3, 1.0, 3.0][(4.0 * r()) as usize];
     let w = core::array::from_fn(|_| if r() < 0.15 { 0.0 } else { fast * (2.0 * r() - 1.0) });
@@ -68,7 +69,7 @@ fn any_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     (any_pebble(r), start)
 }
 
-/// A start that nobody would choose: upright or on its side, at rest but for rounding, just above the table or just down.
+/// A start with special values: upright or on its side, at rest up to rounding, just above the table or on it.
 fn odd_drop(r: &mut impl FnMut() -> f64) -> (Ellipsoid, Start<StoneState>) {
     let mut odd = || [0.0f64, 0.0, 1e-300, 1e-160, -1e-16, 1e-8, 0.1, -0.3, 1.0][(9.0 * r()) as usize];
     let w = core::array::from_fn(|_| odd());
@@ -94,7 +95,7 @@ fn any_table(r: &mut impl FnMut() -> f64) -> Table {
     }
 }
 
-/// The rotation by which the components of a slip are turned to the laboratory of the pose.
+/// The rotation from the axes of a stone's slip to the laboratory axes of its pose.
 fn of_slips(vertical: [f64; 3], orientation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     // The smallest turn from upright; near upside down the library of quaternions would lose half of its digits.
     let [x, y, z] = vertical;

@@ -24,7 +24,7 @@ struct Map {
 }
 
 impl Map {
-    /// A map filled by `fill`. Only this function calls `fill`, since the lanes are compiled for every
+    /// A map that is filled by `fill`. Only this function calls `fill`, since the SIMD code is compiled for every
     /// caller.
     fn filled(size: usize, fill: impl FnOnce(sweep::Portrait<'_>) -> bool) -> Self {
         let mut map = Self { numbers: core::array::from_fn(|_| vec![7.0; size]), region: vec![9; size] };
@@ -79,7 +79,7 @@ impl Single {
     }
 }
 
-/// The rates of a map of rates alone.
+/// The rates of a single-precision map that has only rates.
 fn single_rates(theta: &[f64], bodies: &[Option<Body>], threads: usize) -> Vec<f32> {
     let mut rate = vec![7f32; theta.len() * bodies.len()];
     let out = sweep::Portrait::default().with_rate(&mut rate[..]);
@@ -150,7 +150,7 @@ fn near_folds_and_edges_and_at_any_scale_the_single_rate_is_that_of_doubles_what
     }
 }
 
-/// The bits of one point by single calls; its energy, for which there is no call, is given.
+/// The bits of one point of a map by single calls; its energy, for which there is no call, is given.
 fn alone(body: Option<Body>, theta: f64, energy: f64) -> [u64; 5] {
     let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
     let Some(body) = body else { return [u64::MAX, u64::MAX, u64::MAX, u64::MAX, 0] };

@@ -8,7 +8,8 @@ use spincyl::throw::{launch_number, launch_spin, pressed, recoil, thrown};
 use spincyl::{Body, Error, Slip, State};
 use std::f64::consts::FRAC_PI_2;
 
-/// Bodies that lie on two rims: tubes from coins to pipes, some rounded, and some with moments of their own.
+/// Random bodies that lie on two rims: tubes from coins to pipes, some rounded, and some with other moments of
+/// inertia.
 fn lying_body() -> impl Strategy<Value = Body> {
     let tube = (prop_oneof![0.02..1.0f64, 1.0..8.0f64], 0.0..1.0f64, prop_oneof![Just(0.0), 0.0..1.0f64])
         .prop_map(|(ell, bore, share)| {
@@ -25,12 +26,12 @@ fn on_its_side(w1: f64, w2: f64, w3: f64) -> State {
     State { theta: FRAC_PI_2, w1, w2, w3 }
 }
 
-/// Axes: x along e_h, which is -e3, y along e2, z upwards.
+/// The angular velocity of a body on its side along the axes x = e_h = -e3, y = e2, and z upwards.
 fn angular_velocity(y: &State) -> Vector3<f64> {
     Vector3::new(-y.w3, y.w2, y.w1)
 }
 
-/// The lowest points of the lower and the upper rim, from the centre.
+/// The lowest points of the lower and of the upper rim, relative to the centre of mass.
 fn rims(body: &Body) -> [Vector3<f64>; 2] {
     [1.0, -1.0].map(|side| Vector3::new(side * body.ell(), 0.0, -1.0))
 }
@@ -53,7 +54,7 @@ fn about(body: &Body, y: &State, v: Vector3<f64>, point: Vector3<f64>) -> Vector
     spin(body, y) - point.cross(&v)
 }
 
-/// State and velocity of the centre after a landing, along the axes before it.
+/// State and velocity of the centre after a landing, along the axes before the landing.
 fn back(body: &Body, end: &Landed) -> (State, Vector3<f64>) {
     let v = centre_velocity(body, &end.state, end.slip.into());
     match end.outcome {

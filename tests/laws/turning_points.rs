@@ -8,7 +8,7 @@ use spincyl::stability::{at_rest, boundaries};
 use spincyl::{Body, Contact, rolling, steady};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// 2^SHIFT makes integers of all doubles in the exact counts.
+/// All doubles in the exact counts become integers when multiplied by 2^SHIFT.
 const SHIFT: u32 = 110;
 
 /// The number of steady inclinations of a rate, in exact arithmetic; None if two of them coincide.
@@ -54,7 +54,8 @@ fn exact_count(body: &Body, rate: f64) -> Option<usize> {
     Some(near + usize::from(on_its_side) + big::zeros_beyond_one(&polynomial)?)
 }
 
-/// Bodies, and rates: any, those of steady states, those at folds, at 1, and next to these; multiples of 2^-SHIFT.
+/// Random bodies and rates, multiples of 2^-SHIFT: any rates, those of steady states, those at folds, 1, and rates
+/// next to these.
 fn planted() -> impl Strategy<Value = (Body, f64)> {
     let fillet =
         prop_oneof![3 => 0.01..0.99f64, 1 => Just(0.0), 1 => (-9.0..0.0f64).prop_map(|x| 10f64.powf(x))];
@@ -104,8 +105,8 @@ fn parted(body: &Body, low: f64, high: f64) -> bool {
     signs(low) != signs(high)
 }
 
-/// Checks that the inclinations of a rate have that rate, if they are no worse conditioned than `most`, and
-/// that their states are steady and have it, too.
+/// Checks that the inclinations of a rate have this rate, if their condition number is at most `most`, and that their
+/// states are steady and also have it.
 fn have(body: &Body, rate: f64, most: f64) -> Result<(), TestCaseError> {
     for (x, y) in steady::inclinations(body, rate).iter().zip(steady::states(body, rate)) {
         if x.is_nan() {

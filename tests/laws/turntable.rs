@@ -1,4 +1,4 @@
-//! Motions on a table that turns: closed laws, the balance of energy, symmetries, and what is carried.
+//! Motions on a turntable: closed forms, the balance of energy, symmetries, and bodies that the table carries.
 
 use crate::common::rim::place;
 use crate::common::wander;
@@ -27,8 +27,8 @@ fn spun(w: f64) -> State {
     State { theta: 1.0, w1: 1f64.sin() * w, w2: 0.0, w3: 1f64.cos() * w }
 }
 
-/// The place of the centre of mass along x, y and z, its velocity, and what turns about the vertical, all as seen from the
-/// room, with the kinetic energy.
+/// The place of the centre of mass along x, y and z, its velocity, the angular momentum about the vertical, and the
+/// kinetic energy, all relative to the laboratory.
 struct Seen {
     centre: [f64; 3],
     velocity: [f64; 2],
@@ -56,14 +56,14 @@ fn seen(body: &Body, om: f64, m: &Motion, i: usize) -> Seen {
     }
 }
 
-/// What has become heat, or was lost to losses and in impacts.
+/// The energy that has become heat, or was taken by losses and impacts.
 fn spent(m: &Motion, i: usize) -> f64 {
     let path = m.path.as_ref().unwrap();
     let struck: f64 = path.impacts.iter().filter(|hit| hit.time < m.times[i]).map(|hit| hit.lost).sum();
     path.dissipated[i] + path.work_lost.get(i).copied().unwrap_or(0.0) + struck
 }
 
-/// E - om L_z, which with what is spent stays on a level table that turns.
+/// The quantity E - om L_z, whose sum with the spent energy is conserved on a level turntable.
 fn balance(body: &Body, ask: &Ask, m: &Motion, i: usize) -> f64 {
     let Seen { centre, spins, moving, .. } = seen(body, ask.turning, m, i);
     let ([x, _, z], (sin, cos)) = (centre, ask.slope.sin_cos());

@@ -12,7 +12,7 @@ use spincyl::pose::{EulerAngles, axes, euler_angles};
 use spincyl::{Body, Slip, State};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A turn that is drawn evenly, in a fifth of the cases almost or exactly upright or upside down.
+/// A random orientation; in a fifth of the cases almost or exactly upright or upside down.
 fn any_turn() -> impl Strategy<Value = UnitQuaternion<f64>> {
     let angle = || -PI..PI;
     let tilt = prop_oneof![4 => 0.0..PI, 1 => (-17.0..-1.0f64).prop_map(|x| 10f64.powf(x)), 1 => Just(0.0), 1 => Just(PI)];
@@ -150,7 +150,7 @@ fn a_twist_that_is_no_number_is_refused_by_name() {
     assert_eq!(of(0.0, None).unwrap().state, state(0.0, 0.0, 0.0, 0.0));
 }
 
-/// Motions of every kind, sampled in threes of times that are close to each other.
+/// Motions of every kind, at groups of three times close together, for numerical derivatives.
 fn sampled() -> Vec<(Body, Motion)> {
     const H: f64 = 1e-4;
     let times: Vec<f64> = [0.4, 1.1, 2.3, 5.0, 8.0].into_iter().flat_map(|t| [t - H, t, t + H]).collect();

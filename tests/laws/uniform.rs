@@ -1,4 +1,4 @@
-//! Uniform balls, whose phases are known: against balls that are almost uniform, and that are integrated.
+//! Uniform balls, whose phases have closed forms, compared with almost uniform balls, whose motions are integrated.
 
 use crate::common::many::Many;
 use crate::common::{drawn, path_of, wander};
@@ -18,7 +18,7 @@ fn any_speed(fast: f64, r: &mut impl FnMut() -> f64) -> f64 {
     if r() < 0.1 { 0.0 } else { fast * (2.0 * r() - 1.0) }
 }
 
-/// A start of a ball on the table or in the air.
+/// A random start of a ball on the table or, if `aloft`, in the air.
 fn any_start(aloft: bool, r: &mut impl FnMut() -> f64) -> Start {
     let fast = 10f64.powf(2.0 * r() - 1.0);
     let [w1, w2, w3, u, v] = core::array::from_fn(|_| any_speed(fast, r));
@@ -29,7 +29,7 @@ fn any_start(aloft: bool, r: &mut impl FnMut() -> f64) -> Start {
     dropped(state, [u, v], if r() < 0.2 { 0.0 } else { 2.0 * r() }, any_speed(1.0, r))
 }
 
-/// The kinds of the phases, without flights and what is between them.
+/// The kinds of the phases of a motion, in the order of time.
 fn kinds(m: &Motion) -> Vec<Kind> {
     path_of(m).phases.iter().map(|phase| phase.kind).collect()
 }

@@ -23,7 +23,7 @@ proptest! {
     }
 }
 
-/// A conversion to SI and the one back, of every quantity.
+/// A conversion of a quantity to SI or back.
 type Way = fn(&Scale, f64) -> f64;
 const WAYS: [(Way, Way); 11] = [
     (Scale::metres, Scale::length),

@@ -80,7 +80,7 @@ fn a_struck_ball_slips_as_without_resistance_and_then_stops_as_a_ball_that_rolls
     }
 }
 
-/// A body and its start, the coefficient of friction, and some losses beside a rolling resistance.
+/// A random body and start, the coefficient of friction, and some losses in addition to a rolling resistance.
 struct Drawn {
     body: Body,
     start: Start,
@@ -88,7 +88,7 @@ struct Drawn {
     losses: Losses,
 }
 
-/// Bodies of which most slip at first.
+/// Random bodies and starts, most of which slip at first.
 fn drawn_starts(count: usize) -> Vec<Drawn> {
     let (mut r, mut runner) = (wander(71), TestRunner::deterministic());
     let mut all = Vec::new();

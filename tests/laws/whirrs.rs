@@ -8,7 +8,7 @@ use spincyl::loss::{Law, Losses};
 use spincyl::motion::{Ask, Ending, Method, roll_with};
 use spincyl::{Body, State};
 
-/// Bodies, states and losses as columns.
+/// Bodies, states and losses as columns of numbers.
 struct Scene {
     bodies: [Vec<f64>; 5],
     states: [Vec<f64>; 4],
@@ -16,8 +16,8 @@ struct Scene {
 }
 
 impl Scene {
-    /// Disks and tubes, sharp and rounded, from rest and turning, under each law alone, under all and under
-    /// none.
+    /// Random disks and tubes, sharp and rounded, from rest and turning, under each loss law alone, under all and
+    /// under none.
     fn of(count: usize) -> Self {
         let (mut bodies, mut states, mut losses) =
             <([Vec<f64>; 5], [Vec<f64>; 4], [Vec<f64>; LAWS])>::default();
@@ -46,7 +46,7 @@ impl Scene {
         Law::ALL.iter().fold(Losses::NONE, |all, law| all.with(*law, self.losses[*law as usize][i]))
     }
 
-    /// The ends, sums, claims and status.
+    /// Computes the motions. Returns the ends, sums, estimated errors and status.
     fn run(&self, on: TableKind, times: &[f64], threads: usize) -> (Vec<Vec<f64>>, Vec<u8>) {
         let count = self.states[0].len();
         let bodies = body_columns(core::array::from_fn(|k| &self.bodies[k][..]));

@@ -1,4 +1,4 @@
-//! Bodies that start anywhere in the world, and their readings there.
+//! Measured bodies that start from any pose in the world, and their results there.
 
 use crate::common::cases;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};

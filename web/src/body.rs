@@ -1,15 +1,17 @@
-//! The calls that set the body.
+//! The calls of a page that set the body.
 
 use crate::{Answer, Desk};
 use spincyl::{Body, Contact, Error, stability, steady};
 
-/// A tube with this half length, bore and fillet; a fillet of 0 means sharp edges.
+/// A uniform tube with this half length, bore and fillet, in units of its outer radius; a fillet of 0 means sharp
+/// edges.
 pub(crate) fn tube(half: f64, bore: f64, fillet: f64) -> Result<Body, Error> {
     if fillet == 0.0 { Body::tube(half, bore) } else { Body::rounded_tube(half, bore, fillet) }
 }
 
 impl Desk {
-    /// Sets a uniform tube by its half length, bore and fillet.
+    /// Sets a uniform tube by its half length, bore (inner radius) and fillet, in units of its outer radius, and
+    /// writes its numbers.
     pub fn tube(&mut self, [half, bore, fillet]: [f64; 3]) -> Answer {
         self.take(tube(half, bore, fillet)?)
     }
@@ -21,8 +23,9 @@ impl Desk {
         self.take(if theta_end.is_nan() { body } else { body.with_theta_end(theta_end)? })
     }
 
-    /// Sets a uniform frustum by the radii of both ends, the larger of which is 1, and its height. After the
-    /// numbers of every body it writes radius, depth below the centre of mass, and fillet of each circle.
+    /// Sets a uniform frustum by the radii of both ends, the larger of which is 1, and its height. After the numbers
+    /// that are written for any body it writes the radius, the depth below the centre of mass, and the fillet of each
+    /// circle.
     pub fn frustum(&mut self, [bottom, top, height]: [f64; 3]) -> Answer {
         let body = Body::frustum(bottom, top, height, None)?;
         self.take(body)?;
@@ -30,7 +33,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Writes the half length of the critical tube.
+    /// Writes the half length, in outer radii, of the critical tube with this bore and fillet.
     pub fn critical(&mut self, [bore, fillet]: [f64; 2]) -> Answer {
         self.out.push(Body::critical_aspect(bore, fillet)?);
         Ok(())

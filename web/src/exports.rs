@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 thread_local! { static DESK: RefCell<Desk> = RefCell::default(); }
 
-/// Each export passes its numbers to the method of the same name of the desk.
+/// Defines WebAssembly exports, each of which passes its numbers to the method of [`Desk`] with the same name.
 macro_rules! exports {
     ($($name:ident($($x:ident),*);)*) => {$(
         #[allow(unsafe_code)]
@@ -16,7 +16,7 @@ macro_rules! exports {
     )*};
 }
 
-/// Exports that tell where the buffers of the last answer lie and how long they are.
+/// Defines the exports that return the address and the length of each buffer of the last answer.
 macro_rules! tells {
     ($($name:ident -> $what:ty, $desk:ident => $told:expr;)*) => {$(
         #[allow(unsafe_code)]

@@ -1,10 +1,11 @@
-//! The calls for states in which a body leaves the hand.
+//! The calls for states in which a body leaves the hand of a person who throws it.
 
 use crate::{Answer, Desk};
 use spincyl::{Slip, State, throw};
 
 impl Desk {
-    /// The start of a flicked tube, from the impulse of the finger, its angle, and the friction of finger and table.
+    /// Writes the start of a flicked tube, from the impulse of the finger, its angle, and the coefficients of
+    /// friction of finger and table.
     pub fn flick(&mut self, [impulse, angle, finger, table]: [f64; 4]) -> Answer {
         let body = self.set_body()?;
         let (y, slip) = throw::pressed(&body, impulse, angle, finger, table)?;
@@ -13,7 +14,7 @@ impl Desk {
         Ok(())
     }
 
-    /// The start of a hoop thrown on edge, from its velocity and backspin.
+    /// Writes the start of a hoop that is thrown upright, from its velocity and backspin.
     pub fn thrown(&mut self, [velocity, backspin]: [f64; 2]) -> Answer {
         let (y, slip) = throw::thrown(&self.set_body()?, velocity, backspin)?;
         self.tell_start(&y, slip);

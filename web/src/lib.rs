@@ -3,12 +3,12 @@
 //! ```text
 //! code = call(numbers)     new Float64Array(memory.buffer, out(), len())     made anew after every call
 //! ```
-//! No call takes a pointer, so that only the attribute that names an export is unsafe. Every refusal is a
-//! code with a meaning ([`Refusal`]); every number is the result of a public function of `spincyl`. `exports`
-//! names the calls of WebAssembly; as a Rust library the crate has [`Desk`], with which a native program
-//! makes the same calls.
+//! No call takes a pointer, so that only the attribute that names an export is unsafe. Every error is a code with a
+//! meaning ([`Refusal`]); every number is the result of a public function of `spincyl`. The module `exports` defines
+//! the WebAssembly calls; as a Rust library the crate has [`Desk`], with which a native program makes the same calls.
 //!
-//! `tests/test_web.py` compares the two: codes are equal, and motions agree within the error that they state.
+//! `tests/test_web.py` compares a page with a native program: codes are equal, and motions agree within their
+//! estimated errors.
 
 mod body;
 #[cfg(target_arch = "wasm32")]
@@ -35,20 +35,20 @@ pub struct Desk {
     pub out: Vec<f64>,
     /// The codes of the last map.
     pub codes: Vec<u8>,
-    /// The name and the range of the number that was refused last, on two lines.
+    /// The name and the accepted range of the last number that was out of range, on two lines.
     pub words: String,
     body: Option<Body>,
     losses: Losses,
-    /// The slope of the table, and the direction of the first lean from downhill.
+    /// The slope of the table, and the initial direction phi of the lean from downhill, in radians.
     slope: [f64; 2],
     motion: Option<Kept>,
 }
 
-/// An answer, or the reason for its refusal.
+/// The result of a call: its numbers have been written, or the reason why there are none.
 pub type Answer = Result<(), Refusal>;
 
 impl Desk {
-    /// Clears the last answer, asks the question, and returns the code.
+    /// Clears the last answer, makes the call `question`, and returns its code (0 for success).
     pub fn ask(&mut self, question: impl FnOnce(&mut Self) -> Answer) -> u32 {
         self.out.clear();
         self.words.clear();
@@ -66,7 +66,7 @@ impl Desk {
     }
 }
 
-/// A count that is given as a number, from 1 to `most`.
+/// Converts a count that is given as a double, from 1 to `most`; an error if it is out of range.
 fn count(name: &'static str, given: f64, most: usize) -> Result<usize, Refusal> {
     if given >= 1.0 && given <= most as f64 {
         Ok(given as usize)

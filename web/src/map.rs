@@ -1,4 +1,4 @@
-//! The map of inclination and aspect ratio: the codes of the regions, and the lines between the regions.
+//! The map of steady states over inclination and aspect ratio: the codes of the regions, and the lines between them.
 
 use crate::body::tube;
 use crate::{Answer, Desk, Refusal, count};
@@ -8,8 +8,8 @@ use spincyl::{Contact, stability, steady};
 const MOST: usize = 4096;
 
 impl Desk {
-    /// Writes the codes of the regions at the middles of cells. The aspect ratio runs along a row; the first row has
-    /// the least inclination.
+    /// Writes the region codes of steady states at the middles of w x h cells. The aspect ratio varies along a row;
+    /// the first row has the least inclination.
     pub fn map(&mut self, [w, h, low, high, from, to, bore, fillet]: [f64; 8]) -> Answer {
         let (w, h) = (count("w", w, MOST)?, count("h", h, MOST)?);
         // A NaN in the range fails this comparison, too.
@@ -27,8 +27,8 @@ impl Desk {
         Ok(())
     }
 
-    /// Writes rows along the aspect ratio: its value, theta0, thetaInf, folds, ridge, rolling and smooth stability
-    /// limits.
+    /// Writes a row for each of `n` aspect ratios: its value, theta0, thetaInf, the folds, the ridge, and the
+    /// stability limits for rolling and on a smooth table.
     pub fn curves(&mut self, [n, low, high, bore, fillet]: [f64; 5]) -> Answer {
         let n = count("n", n, MOST)?;
         for i in 0..n {

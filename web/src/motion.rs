@@ -1,4 +1,5 @@
-//! The calls for a motion: the first integrals solve it if nothing is lost and nothing slips; otherwise `walk` does.
+//! The calls for a motion: the first integrals solve it if no energy is lost and nothing slips; otherwise `walk`
+//! integrates it.
 
 #[cfg(feature = "friction")]
 use crate::walk::Walked;
@@ -11,12 +12,12 @@ use spincyl::motion::{self, Event};
 use spincyl::pose::Pose;
 use spincyl::{Body, Contact, Slip, State};
 
-/// The largest number of rows, which is more than a page shows.
+/// The largest number of output rows, more than a page shows.
 pub(crate) const MOST: usize = 20_000;
 /// The number of times at which the error of an exact motion is evaluated.
 const ERRORS: u32 = 16;
 
-/// A motion at one time.
+/// The outputs of a motion at one time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Row {
     pub t: f64,
@@ -30,11 +31,12 @@ pub(crate) struct Row {
     /// The vertical velocity of the lowest point of the rim.
     #[cfg_attr(not(feature = "friction"), allow(dead_code))]
     pub lift: f64,
-    /// The circle that carries: of two equal rims 1 if it was the upper one at the start, of more its number.
+    /// The circle that carries the body: for two equal rims 1 if it was the upper one at the start, for several
+    /// circles its number.
     pub rim: u8,
 }
 
-/// The current motion.
+/// The current motion, with what is needed to compute its rows.
 #[derive(Debug, Clone)]
 pub(crate) enum Kept {
     Exact {
@@ -64,13 +66,13 @@ pub(crate) fn times(from: f64, to: f64, n: usize) -> impl Iterator<Item = f64> {
     (0..n).map(move |i| if i + 1 == n && n > 1 { to } else { from + (to - from) * (i as f64 / last) })
 }
 
-/// The code and the time of the event that ends a motion; 0 and infinity without an event.
+/// The code and the time of the event that ends a motion; code 0 and infinite time without an event.
 pub(crate) fn told(event: Option<Event>) -> (f64, f64) {
     event.map_or((0.0, f64::INFINITY), |e| (f64::from(e.ending as u8), e.time))
 }
 
 impl Desk {
-    /// Sets the one law of loss by its number, with its coefficient; 0 for no loss.
+    /// Sets the loss law by its number, with its coefficient; number 0 for no loss.
     pub fn losses(&mut self, [law, coefficient]: [f64; 2]) -> Answer {
         let expected = "the number of a law of loss";
         let known = Law::ALL.iter().copied().find(|known| f64::from(*known as u8) == law);
@@ -81,7 +83,7 @@ impl Desk {
         Ok(())
     }
 
-    /// Sets the slope of the table, and the direction in which the axis leans at first, from downhill.
+    /// Sets the slope of the table, and the initial direction phi of the lean, from downhill, in radians.
     pub fn slope(&mut self, [slope, heading]: [f64; 2]) -> Answer {
         (self.slope, self.motion) = ([slope, heading], None);
         Ok(())

@@ -1,24 +1,24 @@
-//! The reason why a question has no answer, as a code and numbers that a page puts into words.
+//! The reason why a call has no result, as a code and numbers that the page turns into a message.
 
 use spincyl::Error;
 
-/// The reason why a question has no answer. Each reason has a code of its own.
+/// The reason why a call has no result. Each reason has its own code.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
-    /// Code 1: a number is out of range; its name, its value and the accepted range are given.
+    /// Code 1: a number is out of range.
     Range {
-        /// The number's name.
+        /// The name of the number that is out of range.
         name: &'static str,
         /// The value that was given.
         value: f64,
         /// The accepted range.
         expected: &'static str,
     },
-    /// Codes 2 to 6, 8, 11 and 13: the core itself refuses.
+    /// Codes 2 to 6, 8, 11 and 13: errors of the library.
     Core(Error),
     /// Code 9: no body has been set, or no motion has been started.
     Nothing,
-    /// Code 10: the work is too much for a page.
+    /// Code 10: the computation is too long for a page.
     Work,
     /// Code 12: this core has been built without friction and losses.
     Lean,
@@ -34,7 +34,7 @@ impl From<Error> for Refusal {
 }
 
 impl Refusal {
-    /// Returns the code, and appends the numbers to `out` and the words to `words`.
+    /// Returns the code, and appends the numbers of the message to `out` and its words to `words`.
     pub fn tell(self, out: &mut Vec<f64>, words: &mut String) -> u32 {
         let (code, numbers): (u32, &[f64]) = match self {
             Self::Range { name, value, expected } => {

@@ -4,7 +4,7 @@ use crate::{Answer, Desk};
 use spincyl::{Body, Contact, State, contact, rolling, stability, steady};
 
 impl Desk {
-    /// The steady state with the centre at rest.
+    /// Writes the steady state at an inclination, with the centre at rest.
     pub fn at_rest(&mut self, [theta]: [f64; 1]) -> Answer {
         let body = self.set_body()?;
         let y = steady::state(&body, theta)?;
@@ -13,14 +13,14 @@ impl Desk {
         Ok(())
     }
 
-    /// The inclinations of the steady states with this reduced rate, in ascending order.
+    /// Writes the inclinations of the steady states with this reduced rate, in ascending order.
     pub fn by_rate(&mut self, [rate]: [f64; 1]) -> Answer {
         let body = self.set_body()?;
         self.out.extend(steady::inclinations(&body, rate).into_iter().filter(|theta| !theta.is_nan()));
         Ok(())
     }
 
-    /// The steady state that precesses at this rate while its centre runs along a circle.
+    /// Writes the steady state that precesses at this rate while its centre moves on a circle.
     pub fn circular(&mut self, [theta, precession]: [f64; 2]) -> Answer {
         let body = self.set_body()?;
         let y = steady::circular(&body, theta, precession)?;

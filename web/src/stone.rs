@@ -1,4 +1,4 @@
-//! The call for a rattleback: its numbers, how it rocks, and how it rolls.
+//! The call for a rattleback: its dimensions, its modes of rocking, and its rolling motion.
 
 use crate::motion::{MOST, times};
 use crate::{Answer, Desk, Refusal, count};
@@ -6,16 +6,16 @@ use spincyl::{Ellipsoid, stone};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
 const TOL: f64 = 1e-12;
-/// The motion is given up after this many times 256 steps, which is too much work for a page.
+/// The computation of a motion stops after this many times 256 steps, which take too long for a page.
 const LOOKS: u32 = 100;
 
 impl Desk {
-    /// Rolls the lower half of a uniform ellipsoid with these semi-axes, whose principal axes are turned by
-    /// `twist`, until the time `t`. It starts with `spin`, and leans by the angle `push` about axes 1 and 2.
-    /// Writes the numbers of the stone in its natural units, the growth and the frequency of both modes of
-    /// rocking, the slower one first, and the error of the motion; and then rows at equally spaced times: t,
-    /// six numbers, their rates, the spin, how far axes 1 and 2 point upward, and the normal force. The six
-    /// are x, y, z of the quaternion, the place of the centre of mass, and w of the quaternion.
+    /// Rolls the lower half of a uniform ellipsoid with these semi-axes, whose principal axes are turned by `twist`,
+    /// until the time `t`. It starts with `spin`, and leans by the angle `push` about axes 1 and 2. Writes the
+    /// dimensions of the stone in its natural units, the growth and the frequency of both modes of rocking, the
+    /// slower one first, and the error of the motion; and then rows at equally spaced times: t; x, y, z of the
+    /// quaternion, the place of the centre of mass, and w of the quaternion; their rates; the spin; the upward
+    /// components of axes 1 and 2; and the normal force.
     pub fn rattleback(&mut self, [a, b, c, twist, spin, push, t, n]: [f64; 8]) -> Answer {
         let n = count("n", n, MOST)?;
         for (name, value, most) in [("push", push, 1.5), ("t", t, 1e12)] {

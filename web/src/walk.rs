@@ -1,9 +1,9 @@
-//! A motion that slips or loses energy, which the integrator follows to a last time.
+//! A motion that slips or loses energy, which is integrated up to a last time.
 //!
 //! The motion is integrated once, and its rows are kept; any other time is reached from the last row before it. The
 //! pose of a motion that starts with a row is turned and moved to the pose of this row. With a restitution the motion
-//! goes on in the air and on both rims, and its rows are told from the rim that the library tells them from. On a slope a
-//! motion that starts with a row has the heading and the place of this row.
+//! continues in the air and on both rims, and each row refers to the same rim as in the library. On a slope a motion
+//! that starts with a row has the heading and the place of this row.
 
 use crate::motion::{Kept, Row, Wish, times, told};
 use crate::{Answer, Desk, Refusal};
@@ -16,9 +16,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The tolerance of a step of the integrator, which is enough for a page.
 const TOL: f64 = 1e-11;
-/// The motion is given up after this many times 256 steps, which is too much work for a page.
+/// The computation of a motion stops after this many times 256 steps, which take too long for a page.
 const LOOKS: u32 = 40;
-/// No motion is started from a row whose face is nearer to the table than this angle.
+/// No motion is started from a row in which the angle between face and table is smaller than this, in radians.
 const FLAT: f64 = 1e-6;
 
 /// The request for a motion that is integrated, and its rows and phases.
@@ -74,7 +74,7 @@ impl Walked {
         self.body.borders().iter().any(|border| border.theta != FRAC_PI_2)
     }
 
-    /// Rows at equally spaced times, up to the end of the motion.
+    /// Returns rows at equally spaced times, up to the end of the motion.
     pub fn at(&self, from: f64, to: f64, n: usize) -> Result<Vec<Row>, Refusal> {
         let wanted: Vec<f64> = times(from, to, n).take_while(|t| *t <= self.until).collect();
         let known = |t: &f64| {
@@ -108,7 +108,7 @@ impl Walked {
         Ok(self.read(&motion, None))
     }
 
-    /// What the energy has on a slope beside that on a level table.
+    /// The difference of the energy on a slope from that on a level table, in M g R.
     fn energy_of_fall(&self, body: &Body, row: &Row) -> f64 {
         let (sin, cos) = self.ask.slope.sin_cos();
         let centre = row.pose.centre(body, &row.y);
@@ -117,8 +117,8 @@ impl Walked {
         0.5 * falls * falls - (1.0 - cos) * centre.z - sin * centre.x
     }
 
-    /// The pose that follows the pose of a row by the change `by` in the time `t`; about the axis of a body that has
-    /// `turned` over since then the first pose counts backwards.
+    /// The pose after the pose of the row `from` has changed by `by` in the time `t`. If the body has `turned` over
+    /// since then, psi of the row counts backwards.
     fn moved(&self, from: &Row, (t, by): (f64, &Pose), turned: bool) -> Pose {
         let Pose { phi, psi: Angle { turns, rest }, contact_point, .. } = from.pose;
         let psi = if turned { Angle { turns: -turns, rest: -rest } } else { from.pose.psi };

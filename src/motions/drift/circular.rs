@@ -49,7 +49,7 @@ pub(crate) struct CirclePoint<T> {
     /// The rates psi' and w_z, times their initial signs.
     pub going: [T; 2],
     pub w1: T,
-    /// |V|, the speed of the centre.
+    /// The speed |V| of the centre of mass.
     pub speed: T,
 }
 

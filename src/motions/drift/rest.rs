@@ -54,7 +54,7 @@ impl BranchPath {
         })
     }
 
-    /// |dt/dtheta|, and the size of the terms of which it is the sum.
+    /// Returns a function that computes |dt/dtheta| and the size of the terms of which it is the sum.
     fn slowness(&self) -> impl Fn(&WayPoint) -> [f64; 2] {
         |spot| {
             let local = self.at(spot);

@@ -1,14 +1,14 @@
-//! The initial state of a motion in twice the digits, and the motion computed from there at other places.
+//! The initial state of a motion with twice the digits of a double, and the motion computed from it at other places.
 //!
 //! ```text
 //! G = s^2 (2 E - al w1^2 - b n^2 + 2 k w1 n - 2 h),   G' = 2 s^2 (c G/s^2 + s tilting)
 //! ```
 //! Near an unstable steady state these are differences of numbers of order one, and the time for which the motion
 //! lingers depends on their logarithm. Therefore the initial sine and cosine, the coefficients, the energy and the
-//! power series from one place to another are summed in twice the digits. No double is exactly a steady state: e^(i
-//! theta) is transcendental (Lindemann), so that J theta'', a polynomial in it, is never 0.
+//! power series from one place to another are computed with twice the digits of a double. No double is exactly a
+//! steady state: e^(i theta) is transcendental (Lindemann), so that J theta'', a polynomial in it, is never 0.
 //!
-//! Error: 2^-100 of the terms, including the steps of half the reach.
+//! Error: 2^-100 of the terms, also after steps over half the reach of the series.
 
 use super::panel::{PanelCentre, Poles, lines};
 use crate::laws::body::Body;
@@ -18,19 +18,19 @@ use crate::laws::state::State;
 use crate::numbers::power::horner;
 use crate::numbers::{Sum, long_sin_cos};
 
-/// Number of terms of a series whose error is 1e-36 within half the reach.
+/// Number of terms of a power series, with which its error is 1e-36 within half its reach.
 const CARRY_TERMS: usize = 44;
 
-/// A place along a motion, to 32 digits.
+/// A place along a motion, with 32 digits.
 #[derive(Debug, Clone)]
 pub(super) struct PrecisePlace {
-    /// s, c, P and n.
+    /// Sine and cosine of theta, P = w1 sin(theta), and n = w3.
     pub at: [Sum<f64>; 4],
     /// Twice the energy of the rotation w2, J w2^2.
     tilting: Sum<f64>,
 }
 
-/// The initial state of a motion, with the numbers that its continuation needs.
+/// The initial state of a motion with 32 digits, and the coefficients for its continuation.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     law: Reduced<Sum<f64>>,
@@ -56,7 +56,7 @@ impl Origin {
         &self.start
     }
 
-    /// The numbers of a place as the centre of a panel. K, twice the energy less that of the height and of
+    /// The values at a place, as the centre of a power series. K, twice the energy without that of the height and of
     /// the spin, is a sum of squares.
     pub fn centre(&self, place: &PrecisePlace) -> PanelCentre {
         let [s, c, p, n] = place.at;
@@ -72,7 +72,7 @@ impl Origin {
         PanelCentre { at: place.at.map(|x| x.hi), k, size: k.abs() }
     }
 
-    /// G and its slope at a place.
+    /// The function G = J sin(theta)^2 theta'^2 and its slope in x at a place.
     #[inline(always)]
     pub fn g_and_slope(&self, place: &PrecisePlace) -> [f64; 2] {
         let [s, c, p, n] = place.at;

@@ -5,19 +5,19 @@
 //! doubt of the time = uncertainty summed along the way from the start to now
 //! ```
 //! The rounding error of G is propagated into the time by the same quadrature as the time itself. Where the motion
-//! lingers, most of this error cancels between time 0 and a time close to it; the rest grows by the same factor as the
-//! motion departs. Where the rest is so large that the motion may have gone the other way, the error is the greatest
-//! possible difference of states.
+//! lingers, most of this error cancels between time 0 and a time close to it; the rest grows by the same factor as
+//! the motion departs. Where this rest is so large that the motion may have passed the unstable state instead of
+//! turning, or the reverse, the error is the greatest possible difference of states.
 
 use super::{LegPoint, Swing, SwingPhase};
 use crate::numbers::larger_or_nan;
 
-/// A panel at a smaller sine of the inclination does not count in the growth of errors if the motion reaches
-/// a pole or a face.
+/// Parts of a motion with a smaller sin(theta) do not count in the growth of errors if the motion reaches a pole or a
+/// face.
 const NEAR_POLE: f64 = 1e-6;
 
 impl Swing {
-    /// Estimated error of the state at time `t`: the largest error of its four numbers.
+    /// Estimated error of the state at time `t`: the largest error of its four components.
     pub fn error(&self, t: f64) -> f64 {
         let ulp = 8.0 * f64::EPSILON;
         if self.is_steady() {
@@ -52,7 +52,7 @@ impl Swing {
         if self.is_steady() || t == 0.0 { 0.0 } else { self.time_doubt(&self.phase_at(t), t) }
     }
 
-    /// Estimated error of the period; NaN without a period.
+    /// Estimated error of the nutation's period, in sqrt(R/g); NaN without a period.
     pub fn period_error(&self) -> f64 {
         let period = self.period();
         if period.is_infinite() {
@@ -80,7 +80,7 @@ impl Swing {
         doubt + 64.0 * f64::EPSILON * turn.abs()
     }
 
-    /// Error of a steady state: a rounding error, which grows exponentially if the state is unstable.
+    /// Error of a steady state at time `t`: a rounding error, which grows exponentially if the state is unstable.
     fn steady_error(&self, t: f64) -> f64 {
         let [low, high] = self.lines.range();
         let size = 1.0 + self.start.w1.abs().max(self.start.w3.abs());
@@ -111,7 +111,7 @@ impl Swing {
         gone + placed + f64::EPSILON * (t.abs() + self.half_nutation.time)
     }
 
-    /// Uncertainties of both ends in x.
+    /// Uncertainties of both ends of the swing, in x = ln tan(theta/2).
     fn uncertainties_of_ends(&self) -> [f64; 2] {
         [false, true].map(|upper| {
             if self.lines.reaches_pole()[usize::from(upper)] {
@@ -123,8 +123,8 @@ impl Swing {
         })
     }
 
-    /// Greatest difference of states per unit of `doubt`, the uncertainty of the time; 0 where `doubt` is so
-    /// small that the rate of the state suffices.
+    /// Greatest difference between states within `doubt`, the uncertainty of the time, per unit of it; 0 where
+    /// `doubt` is so small that the time derivative of the state suffices.
     fn largest_difference(&self, now: LegPoint, doubt: f64) -> f64 {
         let growth = self.lines.panels.iter().fold(0f64, |most, panel| {
             let (s, c) = self.lines.angle(panel.centre);

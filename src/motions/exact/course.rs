@@ -9,7 +9,8 @@ use crate::motions::Start;
 pub(crate) struct Course<'a> {
     pub body: &'a Body,
     pub start: &'a State,
-    /// The initial time, and the time from there to the last output, which is negative backward in time.
+    /// The initial time; the next field is the time from it to the last output, negative for a motion backward in
+    /// time.
     pub t0: f64,
     pub span: f64,
     pub times: &'a [f64],
@@ -26,7 +27,7 @@ impl<'a> Course<'a> {
         if self.span < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Number of the times up to a time since the start.
+    /// Number of requested times up to the time `until` since the start.
     pub fn count(&self, until: f64) -> usize {
         self.times.partition_point(|t| (t - self.t0).abs() <= until.abs())
     }

@@ -3,9 +3,9 @@
 //! ```text
 //! theta > 0,   low < theta < theta_end,   N > 0,   mu N - |F_horizontal| > 0
 //! ```
-//! Along one motion all of these are functions of the inclination alone, so that they have the same values on the way
-//! up and on the way down. The nearest places below and above the initial one at which an assumption fails are
-//! computed, and the event is at the place that the motion reaches first.
+//! Along one motion all of these quantities are functions of the inclination alone, with the same values while theta
+//! rises and while it falls. The inclinations nearest to the initial one, below and above, at which an assumption
+//! fails are computed; the event is at the one that the motion reaches first.
 
 use super::Swing;
 use crate::laws::body::{Body, border_at, leaves};
@@ -17,11 +17,11 @@ use crate::methods::search;
 use crate::motions::{Ending, Event};
 use core::f64::consts::PI;
 
-/// Allowance for rounding in the margin of slip, relative to the terms whose difference is the required friction. With
-/// a smaller allowance, rolling that needs exactly mu N could end by rounding alone.
+/// Allowance for rounding in the condition against slip, mu N >= |F|, relative to the terms whose difference is the
+/// required friction. With a smaller allowance, rolling that needs exactly mu N could end by rounding alone.
 const SLIP_MARGIN_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A body with its contact, and the margins of its motion that must stay positive.
+/// A body with its contact, and the conditions under which its motion continues.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     pub body: Body,
@@ -36,7 +36,8 @@ impl Limits {
         Self { body: *body, contact, mu, rates: contact.rates(body) }
     }
 
-    /// Margins of lift-off and slip; the margin of slip includes an allowance for rounding.
+    /// Margins that are negative after a lift-off (N) and after a slip (mu N minus the required friction, with an
+    /// allowance for rounding).
     #[inline(always)]
     pub fn grip(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         let [lift, slip] = self.margins_without_allowance(y, dy, angle);
@@ -45,7 +46,7 @@ impl Limits {
         [lift, slip + SLIP_MARGIN_ROUNDING * terms]
     }
 
-    /// Margins of lift-off and slip without the allowance for rounding; they determine the time of an event.
+    /// The margins against lift-off and slip without the allowance for rounding; their zeros are the times of events.
     #[inline(always)]
     fn margins_without_allowance(&self, y: &State, dy: &State, angle: (f64, f64)) -> [f64; 2] {
         // Unlimited friction never lets the contact point slip, and on a smooth table slip is no event.
@@ -56,7 +57,7 @@ impl Limits {
         [f.normal, self.mu * f.normal - f.friction()]
     }
 
-    /// Margins of lift-off and slip at a state, with the allowance for rounding.
+    /// The margins against lift-off and slip in a state, with the allowance for rounding.
     fn margins_of_state(&self, y: &State) -> [f64; 2] {
         let angle = y.theta.sin_cos();
         self.grip(y, &self.rates.derivative(y, angle), angle)
@@ -67,16 +68,16 @@ impl Limits {
         self.margins_without_allowance(y, &self.rates.derivative(y, angle), angle)
     }
 
-    /// Margin of theta from the inclinations at which another circle or another part of the body lands; at least 1
-    /// without such an inclination.
+    /// The distance of theta from the inclinations at which another circle or another part of the body lands; at
+    /// least 1 without such an inclination.
     pub fn side(&self, y: &State) -> f64 {
         let [low, high] = self.body.carries();
         let below = if low > 0.0 { y.theta - low } else { 1.0 };
         if high < PI { below.min(high - y.theta) } else { below }
     }
 
-    /// The margin that must stay positive so that this ending does not occur; 1 for an ending
-    /// without a margin.
+    /// The quantity that must stay positive so that this ending does not occur; 1 for an ending without such a
+    /// quantity.
     fn margin(&self, ending: Ending, y: &State) -> f64 {
         match ending {
             Ending::Side => self.side(y),
@@ -94,8 +95,9 @@ impl Limits {
 
     /// Error of the time and the state of an event, from the rounding of the state.
     ///
-    /// Let d be the change of the margin m for an ulp of each of the four numbers. The time at which m vanishes has the
-    /// error d/|m'|, or the square root of 2 d/|m''| where m only touches zero. An event at time 0 is exact.
+    /// Let m be the margin whose zero is the event, and d its change for a rounding (ulp) of each of the four
+    /// components of the state. The time at which m vanishes has the error d/|m'|, or the square root of 2 d/|m''|
+    /// where m only touches zero. An event at time 0 is exact.
     pub fn doubt(&self, event: &Event) -> f64 {
         let y = event.state;
         if event.time == 0.0 {
@@ -129,13 +131,14 @@ impl Limits {
         if time.is_finite() { time * (1.0 + fastest) } else { 0.0 }
     }
 
-    /// The ending of a motion that is over at once, if it is.
+    /// The ending of a motion that ends at its start; None if it does not. `way` is the direction of time.
     pub fn at_start(&self, y: &State, way: f64) -> Option<Ending> {
         let angle = y.theta.sin_cos();
         self.at_start_of(y, &self.rates.derivative(y, angle), angle, way)
     }
 
-    /// The ending of a motion that is over at once, for known derivative of the state and sine and cosine of theta.
+    /// The ending of a motion that ends at its start, from the derivative of the state and the sine and cosine of
+    /// theta; None if it does not.
     pub fn at_start_of(&self, y: &State, dy: &State, angle: (f64, f64), way: f64) -> Option<Ending> {
         let [lift, slip] = self.grip(y, dy, angle);
         if leaves(self.body.carries(), y.theta, [way * y.w2, dy.w2]) {
@@ -150,7 +153,7 @@ impl Limits {
     }
 }
 
-/// The first event of an exact motion, with its time since the initial state.
+/// The first event of an exact motion, with its time since the initial state; None without an event.
 pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Event> {
     let start = swing.start();
     if let Some(ending) = limits.at_start(start, way) {
@@ -184,11 +187,11 @@ pub(crate) fn first_event(swing: &Swing, limits: &Limits, way: f64) -> Option<Ev
     first.map(|e| Event { time: way * e.time, ..e })
 }
 
-/// The nearest places below and above the initial one at which a margin of the half swing turns negative.
+/// The places nearest to the start, below and above, at which a margin turns negative along the swing.
 ///
-/// The zero of the margin `plain`, which has no allowance for rounding, gives the place where `plain` changes its sign.
-/// The margin is evaluated at the nodes of the swing, which resolve the motion, and at `between` places between each
-/// two of them, since the required friction, with its quotient and square root, varies faster than the motion.
+/// If the margin `plain`, without an allowance for rounding, changes its sign, its zero is that place. The margin is
+/// evaluated at the nodes of the swing, which resolve the motion, and at `between` places between neighbouring nodes,
+/// since the required friction, with its quotient and square root, varies faster than the motion.
 fn violations(
     swing: &Swing,
     margin: impl Fn(f64) -> f64,

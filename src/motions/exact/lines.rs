@@ -1,4 +1,4 @@
-//! Turning points and slow places of a motion on the axis x = ln tan(theta/2).
+//! Turning points and slow places of a motion, in the variable x = ln tan(theta/2).
 //!
 //! ```text
 //! low < start < high   G = 0 at a turning point; else the face lands
@@ -6,9 +6,9 @@
 //! G = (x - xa)(xb - x) H(x)
 //! ```
 //! The module `panel` carries P, n and G along x by power series, from one panel to the next. A zero of G is divided
-//! out of the series, which keeps the digits of a small swing. Where two zeros nearly meet, or a dip nearly touches
-//! zero, their distance depends on digits of G that rounding has removed. There the module `carry` computes the place
-//! from the start in twice the digits, which decides whether the motion turns or passes.
+//! out of the series, which keeps the digits of a small swing. Where two zeros of G nearly meet, or a minimum nearly
+//! touches zero, rounding of G hides whether the motion turns or passes. There the module `carry` decides, with twice
+//! the digits of a double.
 
 use super::carry::Origin;
 use super::panel::{
@@ -20,24 +20,26 @@ use crate::laws::contact::{Contact, FLAT};
 use crate::laws::state::State;
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// Width in x below which a slow place is checked for the loss of digits; a wider one keeps them.
+/// Width in x below which a slow place is checked for a loss of digits; wider places do not lose any.
 const NARROW_DIP: f64 = 0.03;
-/// Relative rounding error of the width above which the place is computed again in twice the digits.
+/// Relative rounding error of the width of a slow place above which the place is computed again with twice the
+/// digits.
 const REFINED: f64 = 1e-12;
-/// Relative rounding error of the width that ends this computation.
+/// Relative rounding error of the width of a slow place at which its computation with twice the digits ends.
 const ENDS_REFINING: f64 = 1e-6;
 
-/// Largest number of places on one side that are computed again, so that the search ends even where rounding repeatedly
-/// shows a place that has been passed.
+/// Largest number of slow places on one side of the start that are computed with twice the digits, so that the search
+/// ends even where rounding repeatedly shows a place that has been passed.
 const MOST_RECOMPUTED: u32 = 3;
 
-/// Inclination below which a ball is assumed to pass exactly through its pole; the change is a rounding error.
+/// A ball whose least inclination is below this is assumed to pass exactly through its pole; the change is a rounding
+/// error.
 const POLE: f64 = 1e-13;
 
 #[derive(Debug, Clone)]
 pub(super) struct SwingEnd {
     pub x: f64,
-    /// The turning point at this end; none where the face lands or a ball goes through its pole.
+    /// The turning point at this end of the swing; None where the face lands or a ball goes through its pole.
     pub turning: Option<Turning>,
 }
 
@@ -48,7 +50,8 @@ pub(super) struct Turning {
     pub rest: PanelTerms,
 }
 
-/// A minimum of G between the turning points, its place in its panel, and its width.
+/// A minimum of G = J sin(theta)^2 theta'^2 between the turning points, where the motion is slow; its place in its
+/// panel, and its width.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SlowPlace {
     pub x: f64,
@@ -62,7 +65,8 @@ pub(super) struct SlowPlace {
 pub(super) struct Lines {
     pub law: Reduced<f64>,
     poles: Poles,
-    /// The x of the start (`origin`), tan(theta/2) there, and the x of both borders of the circle relative to the start.
+    /// The variable x = ln tan(theta/2) at the start; the next fields are tan(theta/2) there, and the x of both
+    /// limits of the circle of contact relative to the start.
     pub origin: f64,
     tangent: f64,
     pub borders: [f64; 2],
@@ -70,23 +74,23 @@ pub(super) struct Lines {
     ball: bool,
     pub panels: Vec<Panel>,
     pub ends: [SwingEnd; 2],
-    /// Least values of G, ascending in x.
+    /// The minima of G, ascending in x.
     pub slow: Vec<SlowPlace>,
-    /// H, if both ends lie in the panel of the start.
+    /// The quotient H of G by both ends, if these lie in the panel of the start.
     pub both: Option<DividedByEnds>,
 }
 
-/// H as a power series, and the numbers on which its rounding error depends.
+/// The quotient H = G/((x - xa)(xb - x)) as a power series, and the values on which its rounding error depends.
 #[derive(Debug, Clone)]
 pub(super) struct DividedByEnds {
     pub h: PanelTerms,
-    /// The end that is farther from the start, and H there.
+    /// The end that is farther from the start; the next field is H there.
     far: f64,
     at_far: f64,
 }
 
 impl DividedByEnds {
-    /// Rounding error of H at `y`, relative to H, in units of epsilon times the terms of G.
+    /// Rounding error of H = G/((x - xa)(xb - x)) at `y`, relative to H, in units of epsilon times the terms of G.
     ///
     /// G and G' are known at the start, and the curvature is not. An error of the curvature moves the farther end,
     /// which scales all of H by the relative error there; it also changes H at `y` in proportion to the distance of `y`
@@ -96,14 +100,14 @@ impl DividedByEnds {
     }
 }
 
-/// Whether the motion turns at a place or passes it, with the panel and the position in it.
+/// Whether the motion turns at a place or passes it, with the panel and the position in the panel.
 enum TurnsOrPasses {
     Turns(usize, f64),
     Passes(SlowPlace),
 }
 
 impl Lines {
-    /// Returns None if the numbers leave the range in which the motion can be computed.
+    /// Computes the motion between its turning points; None if it leaves the range in which it can be computed.
     pub fn new(body: &Body, contact: Contact, y: &State) -> Option<Self> {
         let from = Origin::new(body, contact, y);
         let tangent = (0.5 * y.theta).tan();
@@ -160,7 +164,7 @@ impl Lines {
         crate::numbers::in_registers!(Panel::new(&self.law, centre, reach, start))
     }
 
-    /// Computes the motion to its end at lower x (`way` = -1) or at higher x (`way` = 1).
+    /// Computes the motion to its end at smaller theta (`way` = -1) or at larger theta (`way` = 1).
     fn end(&mut self, from: &Origin, way: f64) -> Option<SwingEnd> {
         let face = way * -(0.5 * self.flat_inclination()).ln() - self.origin;
         let (mut panel, mut y) = (0, 0.0);
@@ -233,14 +237,14 @@ impl Lines {
         SlowPlace { x: self.panels[panel].centre + dip.local, panel, local: dip.local, width: dip.width }
     }
 
-    /// The size of the terms of which G is the sum, at `y` in a panel.
+    /// The size of the terms whose sum is G, at `y` in a panel.
     pub fn terms_at(&self, panel: usize, y: f64) -> f64 {
         let Panel { centre, p, n, .. } = &self.panels[panel];
         let (s, c) = self.angle(centre + y);
         self.terms(panel, y, [s, c, value(p, y), value(n, y)])
     }
 
-    /// The size of the terms of G, from s, c, P and n.
+    /// The size of the terms whose sum is G, from sine and cosine of theta, P = w1 sin(theta) and n = w3.
     pub fn terms(&self, panel: usize, y: f64, [s, c, p, n]: [f64; 4]) -> f64 {
         let (of, rim, m) = (self.law.at((s, c)), &self.law.shape.rim, n * s);
         let weight = s * s * self.panels[panel].size(y);
@@ -276,8 +280,8 @@ impl Lines {
         width < NARROW_DIP && !near && self.rounding(panel, local) > REFINED * size
     }
 
-    /// Whether the motion in the direction `way` turns near the place `x` or passes it, computed from the
-    /// start in twice the digits.
+    /// Whether the motion in the direction `way` turns near the place `x` or passes it, computed from the start with
+    /// twice the digits.
     fn turns_or_passes(&mut self, from: &Origin, mut x: f64, way: f64) -> Option<TurnsOrPasses> {
         const ROUNDS: u32 = 4;
         for round in 1..=ROUNDS {
@@ -306,8 +310,9 @@ impl Lines {
         None
     }
 
-    /// H as G divided by both ends. The division by the nearer end comes first, from the highest term down; the lowest
-    /// term of the second quotient depends on G' at the centre and is computed from the lowest term of the first.
+    /// Computes the quotient H of G by both ends. The division by the nearer end comes first, from the highest term
+    /// down; the lowest term of the second quotient depends on G' at the centre and is computed from the lowest term
+    /// of the first.
     fn divided_by_ends(&self) -> Option<DividedByEnds> {
         let [SwingEnd { turning: Some(low), .. }, SwingEnd { turning: Some(high), .. }] = &self.ends else {
             return None;
@@ -328,7 +333,7 @@ impl Lines {
         Some(DividedByEnds { far, at_far: value(&h, far), h })
     }
 
-    /// Both ends in x, measured from the start.
+    /// Both ends of the swing in x = ln tan(theta/2), measured from the start.
     pub fn range(&self) -> [f64; 2] {
         [self.ends[0].x, self.ends[1].x]
     }
@@ -343,7 +348,7 @@ impl Lines {
         [self.ends[0].turning.is_none(), self.ends[1].turning.is_none()]
     }
 
-    /// The inclination below which a body lies flat or a ball is at its pole, in radians.
+    /// The inclination below which a body counts as on its face, or a ball as at its pole, in radians.
     pub fn flat_inclination(&self) -> f64 {
         if self.ball { POLE } else { FLAT }
     }
@@ -384,9 +389,9 @@ fn cotangent(theta: f64) -> f64 {
     }
 }
 
-/// For a minimum of G close to 0: the place of the minimum if it is positive, else of the first zero in the direction
-/// `way`; whether the minimum is positive, so that the motion passes; and the size of G with which its rounding error
-/// is compared. None without a minimum within 0.2.
+/// For a minimum of G close to 0: its place if it is positive, else that of the first zero in the direction `way`;
+/// whether the minimum is positive, so that the motion passes; and the size of G with which its rounding error is
+/// compared. None without a minimum within a distance of 0.2 in x.
 fn nature_of_minimum(g: &PanelTerms, way: f64) -> Option<(f64, bool, f64)> {
     let slope: PanelTerms =
         core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * g[i + 1] } else { 0.0 });

@@ -1,4 +1,5 @@
-//! Motions that conserve energy, by the first integrals, or by an integrator, whose error the first integrals show.
+//! Motions that conserve energy: by the first integrals, or by an integrator, whose error is estimated from the first
+//! integrals.
 
 use super::course::Course;
 use super::event::Limits;
@@ -13,10 +14,10 @@ use crate::motions::rk4::stepped;
 use crate::motions::walk::errors::with_contact_forces;
 use crate::motions::{Ask, Method, Motion, Start};
 
-/// Tolerance of the integrator where the first integrals lose all their digits.
+/// Tolerance of the integrator that replaces the first integrals where these lose all their digits.
 const FALLBACK: f64 = 1e-12;
 
-/// The motion of a body that conserves energy, by the method of `ask`.
+/// Computes the motion of a body that conserves energy, by the method of `ask`.
 #[inline(never)] // its frame is not on the stack of the walks
 pub(crate) fn conserved(
     body: &Body,
@@ -37,7 +38,7 @@ pub(crate) fn conserved(
     with_forces(found, body, ask, go_on)
 }
 
-/// The motion by the first integrals, or by steps where these lose their digits.
+/// Computes the motion by the first integrals, or by an integrator where these lose their digits.
 pub(crate) fn by_first_integrals(
     body: &Body,
     start: &Start,

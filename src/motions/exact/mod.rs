@@ -11,10 +11,10 @@
 //! time. After one period theta, w1, w2 and w3 are the same, phi and psi have grown by constants, and the contact path
 //! is rotated by the constant of phi, so that whole periods are summed in closed form.
 //!
-//! Error: the rounding error of G is propagated through the integrals, so that [`Swing::error`] is an estimate for this
-//! motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of the true
-//! error against the three-dimensional model at 40 digits. The inputs are taken as exact: a change of the inputs by
-//! half an ulp moves a motion that lingers by more than the estimate.
+//! Error: the rounding error of G is propagated through the integrals, so that [`Swing::error`] is an estimate for
+//! this motion at that time, conditioning included. In the tests of `exact` the estimate is never below a tenth of
+//! the true error against the three-dimensional model at 40 digits. The inputs are taken as exact: a change of the
+//! inputs by half a rounding (ulp) changes a motion that lingers by more than the estimate.
 //!
 //! ```
 //! use spincyl::{Body, Contact, exact::Swing, steady};
@@ -59,30 +59,31 @@ pub struct Swing {
     contact: Contact,
     start: State,
     lines: Lines,
-    /// The legs from the lower end to the upper one; empty for a steady state.
+    /// The parts (legs) of the swing from its lower end to its upper end; empty for a steady state.
     legs: Vec<Leg>,
-    /// The integrals from the lower end to the upper one, half a nutation.
+    /// Time, angles and contact path from the lower to the upper end of the swing: half a nutation.
     half_nutation: LegSums,
-    /// Initial time since the lower turning point, negative before it; `at_start` is the place of the initial state.
+    /// Time of the initial state since the lower turning point, negative before it; `at_start` is the place of the
+    /// initial state.
     phase: f64,
     at_start: LegPoint,
-    /// Squared nutation frequency of a steady state.
+    /// Square of the nutation frequency of a steady state.
     kappa: f64,
 }
 
-/// A stretch of the swing and the integrals over it.
+/// A part (leg) of the swing and the integrals over it.
 #[derive(Debug, Clone)]
 struct Leg {
     stretch: Stretch,
     clock: Antiderivative<1>,
-    /// Integrals of phi and psi, and of the contact path, if poses are wanted.
+    /// Integrals of phi and psi over the leg, if poses are requested; the next field is that of the contact path.
     turns: Option<Antiderivative<2>>,
     path: Option<Antiderivative<2>>,
     /// The integrals from the lower end of the swing to the lower end of this leg.
     before: LegSums,
 }
 
-/// Time, angles and contact point since the lower end, with their absolute uncertainties.
+/// Time, angles and contact point since the lower end of the swing, with their absolute uncertainties.
 #[derive(Debug, Clone, Copy, Default)]
 struct LegSums {
     time: f64,
@@ -109,7 +110,8 @@ struct SwingPhase {
 }
 
 impl Leg {
-    /// An integral from the lower end of the swing to `v`, where `before` is its part below the leg.
+    /// An integral from the lower end of the swing to the variable `v` of this leg; `before` is its part below the
+    /// leg.
     fn since<const M: usize>(&self, of: &Antiderivative<M>, before: [f64; M], v: f64) -> [f64; M] {
         let here = of.at(v);
         core::array::from_fn(|i| {
@@ -156,8 +158,8 @@ impl Leg {
     }
 }
 
-/// Relative uncertainty that the error estimate assumes for P at a pole, and so for the angle by which the
-/// turn of phi there differs from pi/2.
+/// Relative uncertainty that the error estimate assumes for P = w1 sin(theta) at a pole, and therefore for the angle
+/// by which the turn of phi there differs from pi/2.
 const POLE_UNCERTAINTY: f64 = 1e-9;
 
 /// Returns an error for a body or a state outside the range in which motions are computed.
@@ -172,7 +174,7 @@ pub(crate) fn check(body: &Body, y: &State) -> Result<(), Error> {
     check_speeds(y)
 }
 
-/// Returns an error for a body on its face that moves otherwise than by a spin, or by a kick that lets it rise.
+/// Returns an error for a body on its face with an angular velocity other than a spin, or a w2 that lets it rise.
 pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
     check_body(body)?;
     check_speeds(y)?;
@@ -231,8 +233,7 @@ impl Swing {
         Self::of(body, start, contact, true)
     }
 
-    /// The motion that passes through a state at time 0; with `pose` the angles and the contact path are prepared as
-    /// well.
+    /// The motion that passes through a state at time 0; if `pose`, with angles and contact path.
     pub(crate) fn of(body: &Body, start: &State, contact: Contact, pose: bool) -> Result<Self, Error> {
         check(body, start)?;
         let lost = Error::Lost { theta: start.theta };
@@ -291,7 +292,7 @@ impl Swing {
         Ok(swing)
     }
 
-    /// The integrals over a stretch, which continue those over the legs below it.
+    /// The integrals over a part of the swing, which continue those over the legs below it.
     fn leg(&self, stretch: Stretch, pose: bool) -> Option<Leg> {
         let (lines, cuts, narrowest) = (&self.lines, stretch.cuts(), 1e-15 * stretch.greatest_v);
         // The weight is sqrt(J) dx/dv/sqrt(G).
@@ -344,7 +345,7 @@ impl Swing {
         self.legs[spot.leg].time(spot.v)
     }
 
-    /// The lower or the upper end of the swing.
+    /// The place of the lower or of the upper end of the swing.
     fn end(&self, upper: bool) -> LegPoint {
         let leg = if upper { self.legs.len() - 1 } else { 0 };
         let stretch = &self.legs[leg].stretch;
@@ -352,8 +353,8 @@ impl Swing {
         LegPoint { leg, v: if upper == (stretch.way > 0.0) { stretch.greatest_v } else { 0.0 } }
     }
 
-    /// A place as a number that grows with the inclination: the index of the leg plus the part of the leg that lies
-    /// below.
+    /// A place as a number that grows with the inclination: the index of the leg plus the part of the leg below the
+    /// place.
     fn place_of(&self, spot: LegPoint) -> f64 {
         let stretch = &self.legs[spot.leg].stretch;
         let part = spot.v / stretch.greatest_v;
@@ -367,8 +368,8 @@ impl Swing {
         LegPoint { leg, v: stretch.greatest_v * if stretch.way > 0.0 { part } else { 1.0 - part } }
     }
 
-    /// Whether only the angles change, because the swing is smaller than rounding. An unstable steady state is assumed
-    /// to last; its [`error`](Self::error) grows with time.
+    /// Whether the motion is a steady state, since its nutation is smaller than rounding. An unstable steady state is
+    /// assumed to last; its [`error`](Self::error) grows with time.
     pub fn is_steady(&self) -> bool {
         self.legs.is_empty()
     }
@@ -401,7 +402,7 @@ impl Swing {
         [if low { 0.0 } else { theta(false) }, if high { PI } else { theta(true) }]
     }
 
-    /// Periods, time since the lower turning point and place of the motion at time `t`.
+    /// Whole periods, time since the lower turning point, and place of the motion at time `t`.
     fn phase_at(&self, t: f64) -> SwingPhase {
         let half = self.half_nutation.time;
         let period = 2.0 * half;
@@ -439,15 +440,15 @@ impl Swing {
         core::array::from_fn(|i| self.lines.reaches_pole()[i] && !lands[i])
     }
 
-    /// The time that a ball takes from the outermost x that is computed to its pole.
+    /// The time that a ball takes from the outermost computed x to its pole.
     fn pole_time(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         self.lines.flat_inclination() * at.s * self.inertia(&at).sqrt() / at.root
     }
 
-    /// The angle by which phi turns between the outermost computed x and the point nearest to the pole: pi/2
-    /// less the arcsine of the least inclination over that at x. This angle has few correct digits, but it
-    /// cancels against the turn on the rest of the way.
+    /// The angle by which phi turns between the outermost computed x and the point nearest to the pole: pi/2 minus
+    /// the arcsine of the ratio of the least inclination to that at x. This angle has few correct digits, but its
+    /// error cancels against that of the turn on the rest of the way.
     fn pole_turn(&self, upper: bool) -> f64 {
         let at = self.lines.at_face(upper);
         at.root.atan2(at.p * self.inertia(&at).sqrt())
@@ -477,8 +478,8 @@ impl Swing {
         }
     }
 
-    /// Time until the face lands, and the state then. With `way` = -1 the motion goes backward in time, and the time is
-    /// positive as well.
+    /// Time until the face lands, and the state then; None if it does not land. With `way` = -1 the motion goes
+    /// backward in time, and the time is also positive.
     pub fn landing(&self, way: f64) -> Option<(f64, State)> {
         let lands = self.lines.lands();
         if self.is_steady() || lands == [false; 2] {

@@ -11,13 +11,15 @@ use crate::motions::walk::errors::with_contact_forces;
 use crate::motions::{Ask, Event, Method, Motion};
 use crate::numbers::larger_or_nan;
 
-/// Largest estimated errors of a state and of a pose for which the quick method is as good as the other.
+/// Largest estimated error of a state at which the result of the quick method is accepted; the next constant is that
+/// of a pose.
 const QUICK: f64 = 2e-12;
 const QUICK_POSE: f64 = 3e-11;
 /// Number of times after which the caller may interrupt the quick method: their states take about a millisecond.
 const TIMES_PER_BLOCK: usize = 1 << 14;
 
-/// The exact motion by the quick method, if the swing is narrow and has no event; this takes a tenth of the work.
+/// Computes the exact motion by the quick method, if the swing is narrow and has no event, else None; it takes a
+/// tenth of the work.
 pub(crate) fn quickly(
     body: &Body,
     start: &State,
@@ -74,7 +76,7 @@ pub(crate) fn quickly(
     }))
 }
 
-/// The exact motion up to its end.
+/// Computes the exact motion up to its end.
 pub(crate) fn follow(
     swing: &Swing,
     course: &Course<'_>,

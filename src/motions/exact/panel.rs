@@ -1,4 +1,4 @@
-//! The two linear integrals and the energy as power series in x = ln tan(theta/2) about one place.
+//! The angular velocities w1 and w3 and the energy of theta' as power series in x = ln tan(theta/2) about one place.
 //!
 //! ```text
 //! s = sech x = sin theta,   c = -tanh x = cos theta,   P = w1 s,   n = w3
@@ -9,11 +9,11 @@
 //!          D n' = A (I1 a P + (I3 L - I1 rho c) m)
 //!          G = K s^2 - I1 P^2 - (A m - L P)^2,   K = 2 (E - h) - I3 n^2
 //! ```
-//! K is twice the energy less that of the height and of the spin about the axis. Where the axis is nearly vertical, K
-//! is a small difference of these large numbers, which hardly change. Therefore the value of K at the centre is given,
-//! and the further terms of its series are those of n^2 and h alone, which are as small as the change. These functions
-//! are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim may bring inside. The step to the next
-//! possible zero of G uses a bound on G'', so that no zero is stepped over.
+//! K is twice the energy without that of the height and of the spin about the axis. Where the axis is nearly
+//! vertical, K is a small difference of these large numbers, which hardly change. Therefore the caller gives the
+//! value of K at the centre, and the further terms of its series come from those of n^2 and h alone, which are as
+//! small as the change. These functions are analytic for |Im x| < pi/2, except at the zeros of D that a rounded rim
+//! may bring inside. The step to the next possible zero of G uses a bound on G'', so that no zero is stepped over.
 //!
 //! Error: the rounding error of G is at most [`Panel::rounding`]; the tests of `exact` check this on motions.
 
@@ -23,8 +23,8 @@ use crate::numbers::Real;
 use crate::numbers::power::{divide, multiply_on, square_on};
 use nalgebra::Complex;
 
-/// Number of terms: the series is good to 1e-16 within 0.3 of its radius of convergence, though G has a triple pole
-/// there.
+/// Number of terms of a power series: it is accurate to 1e-16 within 0.3 of its radius of convergence, although G has
+/// a triple pole at that radius.
 pub(super) const ORDER: usize = 36;
 
 pub(super) type PanelTerms = [f64; ORDER];
@@ -32,26 +32,28 @@ pub(super) type PanelTerms = [f64; ORDER];
 /// Bounds of the errors of G and G' at the centre of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Certainty {
-    /// G and G' to epsilon times their terms.
+    /// The errors of G and G' are epsilon times their terms.
     Rounded,
-    /// At the start of the motion: G to full relative precision, G' to 2^-100 of its terms.
+    /// At the start of the motion: G has full relative precision, and the error of G' is 2^-100 of its terms.
     Start,
-    /// G and G' to 2^-100 of their terms, carried from the start in twice the digits.
+    /// The errors of G and G' are 2^-100 of their terms, since they were computed from the start with twice the
+    /// digits.
     Carried,
 }
 
-/// The motion as functions of x in a neighbourhood of `centre`.
+/// The motion as power series in x about `centre`.
 #[derive(Debug, Clone)]
 pub(super) struct Panel {
-    /// Centre of the panel in x, measured from the start like every x here.
+    /// Centre of the panel in x = ln tan(theta/2), measured from the start like every x in this struct.
     pub centre: f64,
     pub reach: f64,
     pub p: PanelTerms,
     pub n: PanelTerms,
     pub g: PanelTerms,
-    /// K, twice the energy less that of the height and of the spin.
+    /// The series of K, twice the energy without that of the height and of the spin about the axis.
     pub k: PanelTerms,
-    /// The size of the terms of which K is the sum at the centre, and its growth up to the reach.
+    /// The size of the terms whose sum is K at the centre; the next field is its growth up to the reach of the
+    /// series.
     size: f64,
     growth: f64,
     pub known: Certainty,
@@ -59,14 +61,14 @@ pub(super) struct Panel {
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PanelCentre {
-    /// s, c, P and n.
+    /// Sine and cosine of theta, P = w1 sin(theta), and n = w3.
     pub at: [f64; 4],
     pub k: f64,
-    /// The size of the terms of which K is the sum.
+    /// The size of the terms whose sum is K, twice the energy without that of the height and of the spin.
     pub size: f64,
 }
 
-/// A least value of G between two turning points: its place relative to the centre of the panel, and its width sqrt(2
+/// A minimum of G between two turning points: its place relative to the centre of the panel, and its width sqrt(2
 /// G/G'').
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dip {
@@ -77,7 +79,7 @@ pub(super) struct Dip {
 /// Singularities of the motion in the complex x plane, which limit the reach of a series.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Poles {
-    /// Zeros of D in the upper half plane; none for a sharp rim.
+    /// Zeros in the upper half plane of D, by which the equations of a rounded rim divide; none for a sharp rim.
     zeros: [Option<Complex<f64>>; 4],
 }
 
@@ -97,8 +99,8 @@ impl Poles {
         Self { zeros: roots.map(|root| Some(root.ln()).filter(|x| x.im >= 0.0 && x.is_finite())) }
     }
 
-    /// Reach of a series about x: 0.3 of its radius of convergence, and at most 0.75, since exp(2x) must not vary too
-    /// much.
+    /// Reach of a power series about x: 0.3 of its radius of convergence, but at most 0.75, since exp(2x) must not
+    /// vary too much.
     pub fn reach(&self, x: f64) -> f64 {
         let strip = x.hypot(core::f64::consts::FRAC_PI_2);
         let zeros = self.zeros.iter().flatten();
@@ -124,7 +126,7 @@ fn quartic(c: [f64; 5]) -> [Complex<f64>; 4] {
     roots
 }
 
-/// The value of a series at `y`: four sums side by side, in powers of y^4, hide the latency of the arithmetic.
+/// The value of a power series at `y`. Four independent sums in powers of y^4 hide the latency of the arithmetic.
 #[inline]
 pub(super) fn value(series: &PanelTerms, y: f64) -> f64 {
     let (square, mut sums) = (y * y, [0.0; 4]);
@@ -137,14 +139,15 @@ pub(super) fn value(series: &PanelTerms, y: f64) -> f64 {
     (sums[0] + sums[1] * y) + (sums[2] + sums[3] * y) * square
 }
 
-/// The quotient by (x - root); the remainder, which is a rounding error, is dropped.
+/// The quotient of a power series by (x - root); the remainder, which is a rounding error, is dropped.
 pub(super) fn divided_by_root(series: &PanelTerms, root: f64) -> PanelTerms {
     let mut quotient = *series;
     divide(&mut quotient, root);
     quotient
 }
 
-/// Value, slope, half the second derivative and a sixth of the third of a series.
+/// The first four Taylor coefficients of a power series at x: value, slope, half the second derivative and a sixth of
+/// the third.
 pub(super) fn taylor(series: &PanelTerms, x: f64) -> [f64; 4] {
     let mut r = [0.0; 4];
     for c in series.iter().rev() {
@@ -153,7 +156,7 @@ pub(super) fn taylor(series: &PanelTerms, x: f64) -> [f64; 4] {
     r
 }
 
-/// Power series of s, c, P, n, s^2 and m = s n, in this order.
+/// Power series in x of s = sin(theta), c = cos(theta), P = w1 s, n = w3, s^2 and m = s n, in this order.
 #[inline(always)]
 pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
     if law.round {
@@ -181,7 +184,7 @@ pub(super) fn lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) ->
     [s, c, p, n, square, m]
 }
 
-/// Series with the first terms `start`; all other terms are 0.
+/// Power series with the first terms `start`; all other terms are 0.
 #[inline(always)]
 fn first_terms<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     start.map(|x| {
@@ -191,7 +194,8 @@ fn first_terms<T: Real, const N: usize>(start: [T; 4]) -> [[T; N]; 4] {
     })
 }
 
-/// Power series of s, c, P, n, s^2 and m = s n for a rounded rim.
+/// Power series in x of s = sin(theta), c = cos(theta), P = w1 s, n = w3, s^2 and m = s n for a rounded rim, in this
+/// order.
 #[inline(always)]
 fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[T; N]; 6] {
     let zero = start[0].splat(0.0);
@@ -242,7 +246,7 @@ fn rounded_lines<T: Real, const N: usize>(law: &Reduced<T>, start: [T; 4]) -> [[
 }
 
 impl Panel {
-    /// The series about `centre`, good up to the distance `reach`, from the numbers there.
+    /// Computes the power series about `centre`, accurate up to the distance `reach`, from the values at the centre.
     #[inline(always)]
     pub fn new(law: &Reduced<f64>, centre: f64, reach: f64, start: PanelCentre) -> Self {
         let [s, c, p, n, square, m] = lines::<f64, ORDER>(law, start.at);
@@ -279,12 +283,12 @@ impl Panel {
         Self { centre, reach, p, n, g, k: left, size: start.size, growth, known: Certainty::Rounded }
     }
 
-    /// The size of the terms of which K is the sum, at the distance `y` from the centre.
+    /// The size of the terms whose sum is K, at the distance `y` from the centre.
     pub fn size(&self, y: f64) -> f64 {
         self.size + self.growth * (y / self.reach).abs().min(1.0)
     }
 
-    /// Returns this panel with more accurate values of G and its slope at the centre.
+    /// Returns this panel with more accurate values of G and its slope at the centre, of the certainty `known`.
     pub fn with_exact_centre(mut self, [g, slope]: [f64; 2], known: Certainty) -> Self {
         (self.g[0], self.g[1], self.known) = (g, slope, known);
         self
@@ -315,8 +319,8 @@ impl Panel {
         }
     }
 
-    /// The first zero of G from `y` on in the direction `way`, within reach; least values of G that are passed before
-    /// it are added to `dips`. All places are measured from the centre.
+    /// The first zero of G from `y` on in the direction `way`, within the reach of the series; the minima of G that
+    /// are passed before it are added to `dips`. All places are measured from the centre.
     pub fn first_zero_or_dips(&self, mut y: f64, way: f64, dips: &mut Vec<Dip>) -> Option<f64> {
         let derivative = |of: &PanelTerms| -> PanelTerms {
             core::array::from_fn(|i| if i + 1 < ORDER { (i + 1) as f64 * of[i + 1] } else { 0.0 })
@@ -351,8 +355,8 @@ impl Panel {
         Some(y)
     }
 
-    /// The least value of G between two places where its slope has different signs. An approximate place is enough,
-    /// since it only tells where the motion is slow.
+    /// The minimum of G between two places where its slope has different signs. An approximate place is enough, since
+    /// it only shows where the motion is slow.
     fn dip(&self, slope: &PanelTerms, falling: f64, rising: f64) -> Option<Dip> {
         let (mut a, mut b) = (falling, rising);
         let sign = (rising - falling).signum();

@@ -10,8 +10,8 @@ use crate::laws::contact::Contact;
 use crate::laws::state::State;
 
 impl Swing {
-    /// Places along half a swing, ascending in inclination and dense enough to show every feature: each as a number for
-    /// [`rising`](Self::rising), with the time spent around it.
+    /// Places along half a swing, ascending in inclination and dense enough to resolve the motion: each as a number
+    /// for [`rising`](Self::rising), with the time spent around it.
     pub(crate) fn nodes(&self) -> Vec<(f64, f64)> {
         if self.is_steady() {
             return vec![(0.0, 1.0)];
@@ -35,7 +35,8 @@ impl Swing {
         nodes
     }
 
-    /// Time until the motion first passes a place; positive also for `way` = -1, which goes backward in time.
+    /// Time until the motion first passes a place; None if it never does. The time is positive also for `way` = -1,
+    /// backward in time.
     pub(crate) fn time_to_place(&self, way: f64, place: f64) -> Option<f64> {
         if self.is_steady() {
             return Some(0.0);
@@ -82,8 +83,8 @@ impl Swing {
         if self.is_steady() { self.start } else { self.state_at(self.leg_point_at(place), true) }
     }
 
-    /// The places at which the body reaches the borders of its circle, where another circle or another part lands; None
-    /// if the swing does not get there.
+    /// The places at which the body reaches the limits of its circle of contact, where another circle or another part
+    /// lands; None for a limit that the swing does not reach.
     pub(crate) fn borders(&self) -> [Option<f64>; 2] {
         let ([low, high], [below, above]) = (self.lines.range(), self.lines.borders);
         let place = |x: f64| {
@@ -93,8 +94,8 @@ impl Swing {
         [if below > low { place(below) } else { None }, if above < high { place(above) } else { None }]
     }
 
-    /// The first time at which the swing is at the place `below` or at the place `above` its start, and the
-    /// state then. The time is positive also for `way` = -1, backward in time.
+    /// The first time at which the swing reaches the place `below` or the place `above` its start, and the state
+    /// then. The time is positive also for `way` = -1, backward in time.
     pub(crate) fn first(&self, way: f64, below: Option<f64>, above: Option<f64>) -> Option<(f64, State)> {
         if self.is_steady() {
             return None;

@@ -35,12 +35,12 @@ pub struct ContactDrift {
 }
 
 impl Swing {
-    /// The angles of a whole nutation; None without a period or a pose.
+    /// The angles by which the body turns in a whole nutation; None without a period or a pose.
     pub fn angles_per_period(&self) -> Option<AnglesPerPeriod> {
         self.turns_per_period().map(|[precession, spin]| AnglesPerPeriod { precession, spin })
     }
 
-    /// Precession and spin angle of a whole nutation.
+    /// The changes of phi and psi in a whole nutation, in radians.
     pub(super) fn turns_per_period(&self) -> Option<[f64; 2]> {
         if self.period().is_infinite() {
             return None;
@@ -118,7 +118,7 @@ impl Swing {
         half - Complex::from_polar(1.0, turn) * half.conj()
     }
 
-    /// Contact point of a steady state.
+    /// The contact point of a steady state at time `t`.
     fn position(&self, t: f64) -> Option<Point2<f64>> {
         let y = &self.start;
         let phi = Angle::of(Sum::product(y.precession(), t)).rest;
@@ -159,8 +159,8 @@ impl Swing {
             + self.error(t) * self.lever()
     }
 
-    /// Bound of the distance, in R, by which a radian moves the contact point. On a smooth table this point
-    /// circles below the centre of mass, at a distance that grows with ell.
+    /// Bound of the distance, in R, by which a radian of phi moves the contact point. On a smooth table the contact
+    /// point circles below the centre of mass, at a distance that grows with ell.
     fn lever(&self) -> f64 {
         if self.contact == Contact::Smooth { 1.0 + self.body.ell().abs() } else { 1.0 }
     }

@@ -1,4 +1,5 @@
-//! The swing from one turning point to the other in stretches, each with a variable v in which the time grows evenly.
+//! Divides the swing from one turning point to the other into stretches, each with a variable v in which the time
+//! grows evenly.
 //!
 //! ```text
 //! whole   x = mid - amp cos u,                G = (x - xa)(xb - x) H       dx/du/sqrt(G) = 1/sqrt(H)
@@ -18,8 +19,8 @@ use super::lines::{Lines, SlowPlace, Turning};
 use super::panel::{PanelTerms, taylor, value};
 use core::f64::consts::PI;
 
-/// An end has its own stretches if its width is below this fraction of half the swing, a dip if its width is below this
-/// fraction of the distance to the nearer end.
+/// A turning point has its own stretches if its width is below this fraction of half the swing, and a minimum of G if
+/// its width is below this fraction of the distance to the nearer turning point.
 const SLOW_END: f64 = 0.03;
 const SLOW_DIP: f64 = 0.2;
 
@@ -35,36 +36,37 @@ enum StretchMap {
 #[derive(Debug, Clone)]
 pub(super) struct Stretch {
     map: StretchMap,
-    /// 1 if x rises with v, -1 if it falls.
+    /// 1 if x = ln tan(theta/2) rises with v, -1 if it falls.
     pub way: f64,
-    /// The place from which distances are measured: `x` from the start, and `local` from the centre of its `panel`.
+    /// The place from which distances are measured: its distance `x` from the start; the next fields are its panel
+    /// and its distance from the centre of the panel.
     x: f64,
     panel: usize,
     local: f64,
     width: f64,
     length: f64,
-    /// The greatest v of the stretch.
+    /// The greatest value of the variable v on the stretch.
     pub greatest_v: f64,
-    /// G divided by the distance from the end; `both` tells whether H times the distance from the other end is used in
-    /// its place.
+    /// The series of G divided by the distance from the end. If `both`, H times the distance from the other end is
+    /// used instead.
     rest: Option<PanelTerms>,
     both: bool,
-    /// Uncertainty of the place of the end in x.
+    /// Uncertainty of the end of the swing in x.
     shift: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StretchPoint {
-    /// ln tan(theta/2), relative to the start.
+    /// The variable x = ln tan(theta/2), relative to the start.
     pub x: f64,
     pub s: f64,
     pub c: f64,
     pub p: f64,
     pub n: f64,
-    /// sqrt(G), and dx/dv/sqrt(G).
+    /// The root sqrt(G); the next field is dx/dv/sqrt(G), the integrand.
     pub root: f64,
     pub x_per_root: f64,
-    /// Relative rounding error of the radicand H, R or G.
+    /// Relative rounding error of the radicand: G, or G divided by the distance from one end (R) or both (H).
     pub noise: f64,
 }
 
@@ -157,7 +159,7 @@ impl Lines {
         }
     }
 
-    /// The v of the start, if the start lies on this stretch.
+    /// The variable v of the start, if the start lies on this stretch.
     ///
     /// Where G is small, its value, which is known to all digits at the start, gives the distance from the end.
     pub fn start_on(&self, on: &Stretch) -> Option<f64> {
@@ -289,27 +291,27 @@ impl Lines {
         StretchPoint { x, s, c, p, n, root, x_per_root: 1.0 / h.sqrt(), noise }
     }
 
-    /// The nearest panel, and the place in it.
+    /// The panel nearest to x, and the distance from its centre.
     fn place(&self, x: f64) -> (usize, f64) {
         let panel = self.panel(x);
         (panel, x - self.panels[panel].centre)
     }
 
-    /// s, c, P and n at a place.
+    /// Sine and cosine of theta, P = w1 sin(theta), and n = w3 at a place.
     fn numbers(&self, panel: usize, x: f64, y: f64) -> [f64; 4] {
         let (s, c) = self.angle(x);
         let of = &self.panels[panel];
         [s, c, value(&of.p, y), value(&of.n, y)]
     }
 
-    /// dP/dx and dn/dx.
+    /// The derivatives of P = w1 sin(theta) and n = w3 with respect to x.
     pub fn slope(&self, at: &StretchPoint) -> [f64; 2] {
         let (of, m) = (self.law.at((at.s, at.c)), at.n * at.s);
         [at.s * (of.q * m - of.p * at.p), of.r * at.p + of.t * m]
     }
 }
 
-/// Error of the slope of G at the start in twice the digits, relative to its terms.
+/// Error of the slope of G at the start, which is computed with twice the digits, relative to its terms.
 const KEPT: f64 = 1.0 / (1u128 << 100) as f64;
 
 /// Approximate distance from a turning point to the next zero of G on either side: the distance over which the quotient
@@ -337,7 +339,7 @@ impl Stretch {
         }
     }
 
-    /// The v of a place `x`, measured from the start; none if the place is not on this stretch.
+    /// The variable v of a place `x`, measured from the start; None if the place is not on this stretch.
     pub fn v(&self, x: f64) -> Option<f64> {
         let d = self.way * (x - self.x);
         // The other side of a dip belongs to another stretch; a place beyond an end can only be a rounding error.
@@ -346,7 +348,8 @@ impl Stretch {
         inside.then(|| self.at_distance(d, self.length - d))
     }
 
-    /// The v at the distance `d` from the place of the stretch and at the distance `left` from its other end.
+    /// The variable v at the distance `d` from the end at which the stretch begins, and at the distance `left` from
+    /// its other end.
     fn at_distance(&self, d: f64, left: f64) -> f64 {
         let d = d.max(0.0).min(self.length);
         match self.map {
@@ -357,8 +360,8 @@ impl Stretch {
         }
     }
 
-    /// The first cuts of the quadrature in [0, top], between the part that changes on the scale of x and the
-    /// part where the motion lingers.
+    /// The first subdivision of the quadrature in v: it separates the part where the integrand changes on the scale
+    /// of x from that where the motion lingers.
     pub fn cuts(&self) -> Vec<f64> {
         let (greatest_v, slow) = (self.greatest_v, matches!(self.map, StretchMap::End | StretchMap::Dip));
         if slow && greatest_v > 6.0 {
@@ -376,8 +379,8 @@ impl Stretch {
         self.shift
     }
 
-    /// The derivative of v with respect to ln d: a relative error of G/d is a relative error of the distance d. It is 0
-    /// on the way to a face.
+    /// The derivative of v with respect to ln d, d being the distance from the end: a relative error of G/d is a
+    /// relative error of d. It is 0 on the way to a face.
     pub fn stiffness(&self, v: f64) -> f64 {
         match self.map {
             StretchMap::Whole => 0.5 * v.sin(),

@@ -1,13 +1,12 @@
-//! Motions that conserve energy, computed by steps within a tolerance. Their error is the difference from the exact
-//! solution, or from a rougher run without an accurate exact solution.
+//! Motions that conserve energy, computed by an integrator within a tolerance. Their estimated error is the
+//! difference from the exact solution or, without an accurate one, from a run with a larger tolerance.
 //!
-//! In a nearly flat passage, steps with errors of 1e-6 may lead to a lift-off that the motion does not have, and steps
-//! a hundred times as accurate may lead to the same lift-off again. Therefore an end is accepted if the exact solution
-//! has it, where that solution is accurate enough; elsewhere an end is accepted if a run within a smaller tolerance has
-//! it too.
+//! Where a body passes close to its face, steps with errors of 1e-6 may lead to a lift-off that the true motion does
+//! not have, and so may steps a hundred times as accurate. Therefore an end is accepted only if the exact solution
+//! has it or, where that solution is not accurate enough, if a run with a smaller tolerance also has it.
 //!
-//! A motion backward in time is computed forward in time from the reversed angular velocity; the angular
-//! velocities of the result are reversed again.
+//! A motion backward in time is computed forward in time from the reversed angular velocity; the angular velocities
+//! of the result are then reversed.
 
 use super::Swing;
 use super::course::Course;
@@ -32,13 +31,13 @@ const STEP_TOLERANCE_SHARE: f64 = 0.1;
 /// Smallest tolerance of the runs that test an end which the exact solution cannot judge.
 const TIGHTEST: f64 = 1e-13;
 
-/// The exact solution and its end, if its error is at most `REFERENCE_ERROR`.
+/// The exact solution and its end, if the error of the solution is at most `REFERENCE_ERROR`.
 pub(crate) struct ExactEnd<'a> {
     pub swing: Option<&'a Swing>,
     pub event: Option<Event>,
-    /// The error of the time and the state of that event.
+    /// The error of the time and the state of the exact solution's end.
     pub doubt: f64,
-    /// Number of the times that the motion reaches.
+    /// Number of requested times that the motion reaches.
     pub count: usize,
 }
 
@@ -65,8 +64,8 @@ impl<'a> ExactEnd<'a> {
         }
     }
 
-    /// Whether the error of the exact solution is at most `DECISIVE_ERROR` up to this end, or up to its
-    /// own earlier end.
+    /// Whether the error of the exact solution is at most `DECISIVE_ERROR` up to the end `made`, or up to an earlier
+    /// end of the exact solution.
     fn is_sure(&self, made: &Event, t0: f64) -> bool {
         let since = |event: &Event| event.time - t0;
         let own = self.event.as_ref().map(since).filter(|own| own.abs() < since(made).abs());
@@ -74,7 +73,7 @@ impl<'a> ExactEnd<'a> {
     }
 }
 
-/// The motion by steps within `tol`, and its path; `fine` is the tolerance of the finer of two runs.
+/// Integrates the motion with the tolerance `tol`; `fine` is the smaller tolerance of the two runs.
 fn run_with_steps(
     course: &Course<'_>,
     ask: &Ask,
@@ -99,7 +98,8 @@ fn run_with_steps(
     Ok(found)
 }
 
-/// The motion by steps within `tol`, with its errors; `swing` is the exact solution, if there is one.
+/// Integrates the motion with the tolerance `tol`, and estimates its errors; `swing` is the exact solution, if there
+/// is one.
 pub(crate) fn within(
     course: &Course<'_>,
     swing: Option<&Swing>,
@@ -138,10 +138,10 @@ fn take_exact_end(motion: &mut Motion, known: &ExactEnd<'_>, course: &Course<'_>
     }
 }
 
-/// Decides whether an end is real that the steps have (`made`) and the exact solution does not have. If that solution
-/// is accurate enough to decide, the steps are continued beyond their end. If this is impossible, since the face has
-/// landed, or if that solution is not accurate enough, the steps are repeated with smaller tolerances until these
-/// confirm an end.
+/// Decides whether an end of the integrated motion (`made`) is real that the exact solution does not have. If the
+/// exact solution is accurate enough to decide, the integration continues past its end. If this is impossible, since
+/// the face has landed, or if the exact solution is not accurate enough, the integration is repeated with smaller
+/// tolerances until these confirm an end.
 fn decide_about_end(
     course: &Course<'_>,
     known: &ExactEnd<'_>,
@@ -180,8 +180,8 @@ fn decide_about_end(
     Ok(motion)
 }
 
-/// The motion by steps within `tol`, with its error from a rougher run. If the two runs end differently, they
-/// are repeated with smaller tolerances.
+/// Integrates the motion with the tolerance `tol`, and estimates its error from a run with a larger tolerance. If the
+/// two runs end differently, they are repeated with smaller tolerances.
 fn judged_by_rougher_run(
     course: &Course<'_>,
     ask: &Ask,

@@ -7,10 +7,10 @@ use spincyl::loss::Law;
 pub struct LossRates {
     pub weight: f64,
     pub spin: f64,
-    /// The rolling together with the rocking.
+    /// The rate of rolling and rocking together, sqrt(w_h^2 + w2^2).
     pub rolling: f64,
     pub drilling: f64,
-    /// |w|.
+    /// The size |w| of the angular velocity.
     pub whole: f64,
     pub sine: f64,
     pub radius: f64,

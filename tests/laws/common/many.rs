@@ -33,7 +33,7 @@ pub fn body_columns([ell, i1, i3, fillet, theta_end]: [&[f64]; 5]) -> BodyColumn
     BodyColumns::new(ell, i1, i3).with_fillet(fillet).with_theta_end(theta_end)
 }
 
-/// These arrays with one for each summary.
+/// Adds an array for each summary to the output arrays.
 pub fn with_summaries<'a>(out: MotionOutput<'a>, sums: &'a mut [Vec<f64>]) -> MotionOutput<'a> {
     assert_eq!(sums.len(), SUMMARIES);
     Summary::ALL.iter().zip(sums).fold(out, |out, (kind, column)| out.with_summary(*kind, column))
@@ -74,7 +74,7 @@ impl Many {
         State::from(self.last.each_ref().map(|x| x[i]))
     }
 
-    /// Motion `i` at time `j`.
+    /// The state of the motion `i` at the time with the index `j`.
     pub fn at(&self, i: usize, j: usize) -> State {
         let times = self.states[0].len() / self.error.len();
         State::from(self.states.each_ref().map(|x| x[i * times + j]))
@@ -84,7 +84,7 @@ impl Many {
         self.sums[kind as usize][i]
     }
 
-    /// The bits of all results of motion i.
+    /// The bits of all results of the motion `i`.
     pub fn bits(&self, i: usize) -> Vec<u64> {
         let times = self.states[0].len() / self.error.len();
         let mut all: Vec<f64> =

@@ -10,18 +10,20 @@ use spincyl::motion::path::Path;
 use spincyl::motion::{Ask, Method, Motion, roll_with};
 use spincyl::{Body, Contact, Error, State, steady};
 
-/// How many of `count` random cases are drawn: a third in `make test`, all where `SPINCYL_LONG` is set, as in `make long`.
+/// How many of `count` random cases are tested: a third in `make test`, all if `SPINCYL_LONG` is set, as in `make
+/// long`.
 pub fn drawn(count: usize) -> usize {
     if std::env::var_os("SPINCYL_LONG").is_some() { count } else { count / 3 }
 }
 
-/// The number of cases of a property. Failures are not stored, since a case that failed becomes a test.
+/// The configuration of a proptest with this number of cases. Failures are not stored, since a case that failed is
+/// made a test.
 pub fn cases(count: usize) -> ProptestConfig {
     let count = drawn(count).max(64.min(count)) as u32;
     ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(count) }
 }
 
-/// Tubes from disks to pipes, the critical shape and its neighbours among them.
+/// Random tubes from disks to pipes, among them the critical shape and shapes close to it.
 pub fn ordinary_tube() -> impl Strategy<Value = Body> {
     let ell =
         prop_oneof![0.0..3.0f64, 0.0..1.0f64, 3.0..30.0f64, Just(0.75f64.sqrt()), Just(0.25), Just(0.8)];
@@ -29,18 +31,19 @@ pub fn ordinary_tube() -> impl Strategy<Value = Body> {
     (ell, bore).prop_map(|(ell, bore)| Body::tube(ell, bore).unwrap())
 }
 
-/// Any body: tubes, and bottles and cans of any moments, some of them equal.
+/// Random bodies with sharp rims: tubes, and bodies like bottles and cans with any moments of inertia, some of them
+/// equal.
 pub fn any_body() -> impl Strategy<Value = Body> {
     let general = (0.0..5.0f64, 0.1..4.0f64, prop_oneof![0.01..2.0f64, Just(1.0)]);
     prop_oneof![ordinary_tube(), general.prop_map(|(ell, i1, share)| Body::new(ell, i1, share * i1).unwrap())]
 }
 
-/// Fillets of all sizes, from next to nothing to a ball.
+/// Random fillets of all sizes, from almost 0 to that of a ball.
 pub fn any_fillet() -> impl Strategy<Value = f64> {
     prop_oneof![3 => 0.01..0.99f64, 2 => (-12.0..0.0f64).prop_map(|x| 10f64.powf(x)), 1 => Just(1.0)]
 }
 
-/// Bodies of any moments on rounded rims; in a third of them the moments are equal or almost equal.
+/// Random bodies of any moments on rounded rims; in a third of them the moments are equal or almost equal.
 pub fn general_rounded() -> impl Strategy<Value = Body> {
     let ell = prop_oneof![4 => 0.0..3.0f64, 1 => Just(0.0), 1 => 3.0..30.0f64];
     let share = prop_oneof![4 => 0.05..2.0f64, 1 => Just(1.0), 1 => (-12.0..-3.0f64).prop_map(|x| 1.0 + 10f64.powf(x))];
@@ -48,7 +51,7 @@ pub fn general_rounded() -> impl Strategy<Value = Body> {
         .prop_map(|(ell, i1, share, fillet)| Body::rounded(ell, i1, share * i1, fillet).unwrap())
 }
 
-/// Coins, cans and tubes with rounded edges, and capsules.
+/// Random coins, cans and tubes with rounded edges, and capsules.
 pub fn rounded_tube() -> impl Strategy<Value = Body> {
     let bore = prop_oneof![2 => Just(0.0), 1 => 0.0..0.9f64];
     let tube = (any_fillet(), prop_oneof![0.0..3.0f64, Just(0.0)], bore).prop_map(|(fillet, more, bore)| {
@@ -59,7 +62,7 @@ pub fn rounded_tube() -> impl Strategy<Value = Body> {
     prop_oneof![4 => tube, 1 => capsule]
 }
 
-/// Balls: Hurricane balls, and balls whose centre of mass lies above or below their own centre.
+/// Random balls: Hurricane balls, and balls whose centre of mass lies above or below their geometric centre.
 pub fn any_ball() -> impl Strategy<Value = Body> {
     let twins = prop_oneof![Just(1.0), 1.0..3.0f64].prop_map(|x| Body::balls(x).unwrap());
     let loaded = (-0.95..0.95f64, 0.1..2.0f64, prop_oneof![0.2..2.0f64, Just(1.0)])
@@ -67,22 +70,22 @@ pub fn any_ball() -> impl Strategy<Value = Body> {
     prop_oneof![1 => twins, 2 => loaded]
 }
 
-/// Any body with a fillet.
+/// Random bodies with a fillet.
 pub fn any_rounded() -> impl Strategy<Value = Body> {
     prop_oneof![3 => general_rounded(), 3 => rounded_tube(), 2 => any_ball()]
 }
 
-/// Any body; two of three have a fillet.
+/// Random bodies; two of three have a fillet.
 pub fn any_rim() -> impl Strategy<Value = Body> {
     prop_oneof![2 => any_rounded(), 1 => any_body()]
 }
 
-/// Tubes with a sharp rim, a third of all, and any body with a fillet.
+/// Random bodies: a third are tubes with a sharp rim, the others have a fillet.
 pub fn tube_or_rounded() -> impl Strategy<Value = Body> {
     prop_oneof![2 => any_rounded(), 1 => ordinary_tube()]
 }
 
-/// Any state; a third of them tilt slowly or not at all, a third have one decimal.
+/// Random states; in a third theta' is small or zero, in a third all numbers have one decimal.
 pub fn any_state() -> impl Strategy<Value = State> {
     let slow =
         (-300.0..-4.0f64, any::<bool>()).prop_map(|(x, up)| 10f64.powf(x) * if up { 1.0 } else { -1.0 });
@@ -125,12 +128,12 @@ pub fn newton_euler(body: &Body, y: &State, contact: Contact) -> Vector4<f64> {
     Vector4::new(-y.w2, rate(&e1), rate(&e2), rate(&e3))
 }
 
-/// A double as C's %a writes it, or a decimal number.
+/// Parses a double that is written as by %a in C, or as a decimal number.
 pub fn number(text: &str) -> f64 {
     if text.contains("0x") { hex(text) } else { text.parse().unwrap() }
 }
 
-/// A double written as C's %a.
+/// Parses a double that is written as by %a in C.
 pub fn hex(text: &str) -> f64 {
     let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
     if rest == "nan" {
@@ -199,12 +202,12 @@ pub fn numbers(y: &State) -> [f64; 4] {
     (*y).into()
 }
 
-/// The larger of two numbers; NaN if one of them is NaN, which `f64::max` would drop.
+/// The larger of two numbers; NaN if one of them is NaN, which `f64::max` would ignore.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b <= a { a } else { b }
 }
 
-/// The largest difference of two states; NaN if a number of them is NaN.
+/// The largest difference between the components of two states; NaN if a component is NaN.
 pub fn distance(a: &State, b: &[f64]) -> f64 {
     numbers(a).iter().zip(b).fold(0.0, |d, (a, b)| larger(d, (a - b).abs()))
 }
@@ -243,12 +246,12 @@ pub fn starts() -> impl Iterator<Item = (Body, State)> {
     rounded_starts().into_iter().chain([sharp_start()])
 }
 
-/// The motion at these times, computed as `scene` asks.
+/// The motion at these times, with the options `scene`.
 pub fn moved(body: &Body, y: &State, times: &[f64], scene: Ask) -> Result<Motion, Error> {
     roll_with(body, y, times, &scene, || true).map(|m| m.expect("nobody interrupts"))
 }
 
-/// The part of the result that only a motion with friction or losses has.
+/// The path of a motion: the part of the result that only a motion with friction or losses has.
 pub fn path_of(motion: &Motion) -> &Path {
     motion.path.as_deref().expect("friction or losses")
 }
@@ -257,7 +260,7 @@ pub fn by(method: Method) -> Ask {
     Ask::default().with_method(method)
 }
 
-/// Pseudo-random numbers in [0, 1).
+/// A generator of pseudo-random numbers in [0, 1); `k` is the seed.
 pub fn wander(k: u64) -> impl FnMut() -> f64 {
     let mut x = k.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     move || {
@@ -266,7 +269,7 @@ pub fn wander(k: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// A tilting rate of 0, or of 1e-300 to 1e-4 in size, with either sign.
+/// A random theta' of 0, or of the size 1e-300 to 1e-4, with either sign.
 pub fn almost_at_rest(r: &mut impl FnMut() -> f64) -> f64 {
     let size = if r() < 0.5 { 10f64.powf(-300.0 * r()) } else { 10f64.powf(-4.0 - 14.0 * r()) };
     if r() < 0.4 {
@@ -278,8 +281,8 @@ pub fn almost_at_rest(r: &mut impl FnMut() -> f64) -> f64 {
     }
 }
 
-/// Random starts of all kinds: at any inclination, also beyond pi/2, tilting slowly or not at all, with
-/// numbers of one decimal; and near steady states.
+/// A random start: at any inclination, also beyond pi/2, with small or zero theta', with numbers of one decimal, or
+/// near a steady state.
 pub fn wild(r: &mut impl FnMut() -> f64) -> (Body, State, Contact) {
     loop {
         let ell = if r() < 0.2 { 0.0 } else { 3.0 * r() };

@@ -6,7 +6,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Half of the distance from 1 to the next double.
 pub const ULP: f64 = f64::EPSILON / 2.0;
 
-/// Sine, cosine, A; and L, h, g, g', each as a value and as the sum of the sizes of its terms.
+/// Sine and cosine of theta and radius A of a rim; and L, h, g and g', each as a value and as the sum of the sizes of
+/// its terms.
 pub struct Place {
     pub s: f64,
     pub c: f64,
@@ -33,7 +34,7 @@ pub fn place(body: &Body, theta: f64) -> Place {
     }
 }
 
-/// |dlog rate/dlog theta|, from rate^2 = n A/(s m) with m = n + d c A.
+/// The condition number |dlog rate/dlog theta| of a steady rate, from rate^2 = n A/(s m) with m = n + d c A.
 pub fn condition(body: &Body, theta: f64) -> f64 {
     let Place { s, c, radius, lever, slope, .. } = place(body, theta);
     let (rho, d) = (body.fillet(), body.excess());

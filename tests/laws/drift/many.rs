@@ -67,7 +67,7 @@ impl Many {
         DriftStarts::new(*centre, columns.with_theta_end(theta_end), states, loss_columns(losses))
     }
 
-    /// Every `step`th start from `from` on.
+    /// The part of the columns with every `step`th start from `from` on.
     fn part(&self, from: usize, step: usize) -> Self {
         let cut = |x: &Vec<f64>| x.iter().skip(from).step_by(step).copied().collect::<Vec<_>>();
         Self {
@@ -79,7 +79,7 @@ impl Many {
     }
 }
 
-/// The times, the inclinations and the codes of the ends.
+/// The times, the inclinations and the codes of the ends of all drifts.
 fn stopped(many: &Many, threads: usize) -> (Vec<f64>, Vec<f64>, Vec<u8>) {
     let n = many.states[0].len();
     let (mut times, mut thetas, mut ends) = (vec![0.0; n], vec![0.0; n], vec![0; n]);

@@ -1,4 +1,4 @@
-//! With the centre at rest: the table of the thin disk, energies, ends, refusals.
+//! Drifts with the centre at rest: the thin disk's table of powers, energies, ends, and errors.
 
 use super::{apart, disk, drift, laws_of};
 use crate::common::loss_power::{LossRates, loss_power};
@@ -6,7 +6,7 @@ use spincyl::drift::{Drift, End};
 use spincyl::loss::{Law, Losses};
 use spincyl::{Body, rolling, steady};
 
-/// The transverse moment of the thin disk.
+/// The moment of inertia of the thin disk about a diameter, in M R^2.
 const I1: f64 = 0.25;
 
 /// Integral of `f` from 0 to x by Simpson's rule in v = theta^(1/4), in which all these integrands are

@@ -1,4 +1,4 @@
-//! Extreme inclinations, the contact force and the precession of a motion in lanes.
+//! Extreme inclinations, extreme contact forces and the precession of motions in SIMD lanes.
 
 use super::series::change_of_theta;
 use super::{LanePhase, Midpoints, Swings};
@@ -9,8 +9,8 @@ use core::f64::consts::PI;
 use fearless_simd::{ExtractToken, Simd, SimdBase, f64x8};
 
 impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
-    /// Precession in a whole nutation, in radians, by the midpoint rule, which converges as fast as the period; its
-    /// estimated error, and the rounding part of that error.
+    /// Precession in a whole nutation, in radians, by the midpoint rule; its estimated error; and the rounding part
+    /// of this error.
     #[inline(always)]
     pub fn precession_per_period(&self, points: &Midpoints<K>) -> [T; 3] {
         let number = |x: f64| self.theta.splat(x);
@@ -32,7 +32,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         [turn, error(of.place, of.per_time), error(of.noise, of.noise)]
     }
 
-    /// Bound of the rates of the precession and of the phase of the nutation.
+    /// Bound of the rates of precession and of the phase of the nutation.
     #[inline(always)]
     pub fn fastest_turn(&self, points: &Midpoints<K>) -> T {
         let zero = self.theta.splat(0.0);
@@ -44,7 +44,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         most
     }
 
-    /// The interval of u within [0, pi] that the motion covers between time 0 and `t`.
+    /// The interval of the nutation's phase u within [0, pi] that the motion covers between time 0 and `t`.
     #[inline(always)]
     fn passed(&self, t: T) -> [T; 2] {
         let number = |x: f64| self.theta.splat(x);
@@ -60,7 +60,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         ]
     }
 
-    /// The value of a [`Grip`] at u.
+    /// The value of a [`Grip`] quantity at the nutation's phase u.
     #[inline(always)]
     fn margin<const ROUND: bool>(&self, grip: Grip, rates: &Rates<T>, u: T) -> T {
         let (sin, cos) = sin_cos(u);
@@ -91,8 +91,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         self.theta + change_of_theta(self.sin, self.cos, self.mid - self.amp * cos)
     }
 
-    /// The least value of a [`Grip`] from time 0 to `t`; or, if `roughly`, a lower bound, which is enough for a
-    /// decision and much cheaper.
+    /// The least value of a [`Grip`] quantity from time 0 to `t`; or, if `roughly`, a lower bound, which is enough
+    /// for a decision and takes much less time.
     #[inline(always)]
     pub fn least(&self, grip: Grip, t: T, roughly: bool) -> T {
         // The kind of the rim is a constant, so that each kind is compiled separately.
@@ -128,8 +128,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     }
 }
 
-/// `yes` where a whole number plus `offset` lies between two times, else `no`. The times are in periods since the lower
-/// turning point.
+/// Returns `yes` where a whole number plus `offset` lies between two times, in periods since the lower turning point,
+/// else `no`.
 #[inline(always)]
 fn passes_between<T: Real>(from: T, to: T, offset: T, yes: T, no: T) -> T {
     floor(to - offset).select_lt(-floor(offset - from), no, yes)
@@ -143,8 +143,8 @@ fn floor<T: Real>(x: T) -> T {
 }
 
 impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
-    /// A lower bound of a [`Grip`] from time 0 to `t` for one motion, the same in all SIMD lanes; the samples lie side by
-    /// side.
+    /// A lower bound of a [`Grip`] quantity from time 0 to `t`, for one motion that is the same in all SIMD lanes;
+    /// each lane takes other samples.
     #[inline(always)]
     pub fn bound<const ROUND: bool>(&self, grip: Grip, t: f64x8<S>) -> f64 {
         let rates = Rates::of(self.law.contact, &self.law.shape, ROUND);
@@ -169,8 +169,8 @@ impl<S: Simd, const N: usize, const K: usize> Swings<f64x8<S>, N, K> {
     }
 }
 
-/// Greatest dip of a [`Grip`] between two samples, as a fraction of its range; a smaller one would miss an
-/// event.
+/// Assumed greatest dip of a [`Grip`] quantity between two samples, as a fraction of its range; assuming less might
+/// miss an event.
 const LARGEST_HIDDEN_DIP: f64 = 0.25;
 
 /// A quantity that must stay large enough for a body to keep rolling.

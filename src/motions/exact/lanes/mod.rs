@@ -1,4 +1,5 @@
-//! The exact motion of eight bodies at a time, where one series about the start reaches both turning points.
+//! The exact motion of eight bodies at a time in SIMD lanes, if one power series about the start reaches both turning
+//! points.
 //!
 //! ```text
 //! tan(theta/2) = tan(theta0/2) (1 + y)/(1 - y),   Q = 1 - 2 c0 y + y^2,   dtheta = 2 s0 dy/Q
@@ -65,7 +66,7 @@ impl<const K: usize> Midpoints<K> {
     }
 }
 
-/// Motions between their turning points, one in each lane of T, with a capacity of N terms in y and K in u.
+/// Motions between their turning points, one in each SIMD lane of T, with a capacity of N terms in y and K in u.
 pub(crate) struct Swings<T, const N: usize, const K: usize> {
     /// Numbers of terms in y and in u.
     terms: [usize; 2],
@@ -75,22 +76,22 @@ pub(crate) struct Swings<T, const N: usize, const K: usize> {
     cos: T,
     w1: [T; N],
     w3: [T; N],
-    /// -H as a series in y; its last two terms are not used.
+    /// The function -H = -F/((y - low)(high - y)) as a series in y; its last two terms are not used.
     rest: [T; N],
     mid: T,
     amp: T,
-    /// dt/du as a cosine series (`rate`), and its values at the midpoints (`slope`).
+    /// The derivative dt/du as a cosine series; the next field has its values at the midpoints.
     rate: [T; K],
     slope: [T; K],
-    /// Time since the lower turning point, negative before it.
+    /// Time of the start since the lower turning point, negative before it.
     phase: T,
-    /// The variable u at the start.
+    /// The phase u of the nutation at the start.
     start: T,
     doubt: Uncertainty<T>,
 }
 
-/// A time as whole periods and the time since the lower turning point, negative before that point; u with its sine and
-/// cosine; and the error of u as a time (`miss`).
+/// A time as whole periods and the time since the lower turning point, negative before that point; the phase u with
+/// its sine and cosine; and the error of u as a time (`miss`).
 struct LanePhase<T> {
     periods: T,
     u: T,
@@ -101,33 +102,33 @@ struct LanePhase<T> {
 }
 
 struct Uncertainty<T> {
-    /// Error of y caused by rounding of F; also the relative error of a long time.
+    /// Error of the variable y caused by rounding of F = J theta'^2; also the relative error of a long time.
     noise: T,
-    /// Error of y, including the truncation of the series.
+    /// Error of the variable y, including the truncation of the series.
     place: T,
-    /// Error of a time within the swing, and its growth per unit of a later time.
+    /// Error of a time within the swing; the next field is its growth per unit of a later time.
     time: T,
     per_time: T,
     /// Bound of the derivative of dt/du with respect to u.
     clock_slope: T,
-    /// Bounds of the change of the state with y, and of the rates of y and of the tilting.
+    /// Bound of the change of the state with y; the next fields are bounds of the rates of y and of theta'.
     state_per_y: T,
     y_rate: T,
     tilt_rate: T,
 }
 
-/// dt/du of a swing: its values at the midpoints, its cosine series, and its extremes.
+/// The derivative dt/du of a swing: its values at the midpoints, its cosine series, and its extremes.
 struct Clock<T, const K: usize> {
     slope: [T; K],
     rate: [T; K],
-    /// The least H, and the least and the greatest dt/du.
+    /// The least H = F/((y - low)(high - y)); the next fields are the least and the greatest dt/du.
     weakest: T,
     fastest: T,
     slowest: T,
 }
 
 impl<T: Real, const K: usize> Clock<T, K> {
-    /// From -H as a series `rest` about a start with this sine and cosine, for a swing about `mid`.
+    /// Computes dt/du from the series `rest` of -H about a start with this sine and cosine, for a swing about `mid`.
     #[inline(always)]
     fn of(
         points: &Midpoints<K>,
@@ -273,13 +274,13 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
     }
 
-    /// The number of terms in y.
+    /// The number of terms of the power series in y.
     #[inline(always)]
     fn terms(&self) -> usize {
         if N < RUNTIME_TERMS { N } else { self.terms[0].min(N) }
     }
 
-    /// The number of terms in u.
+    /// The number of terms of the cosine series in u.
     #[inline(always)]
     fn parts(&self) -> usize {
         if K < RUNTIME_TERMS { K } else { self.terms[1].min(K) }
@@ -301,7 +302,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         [self.doubt.per_time, self.doubt.noise].map(|x| self.period() * x)
     }
 
-    /// The place of the motion at time `t`.
+    /// The phase of the motion at time `t`.
     #[inline(always)]
     fn phase_at(&self, t: T) -> LanePhase<T> {
         let number = |x: f64| self.theta.splat(x);
@@ -334,7 +335,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         }
     }
 
-    /// y at a place, with sin theta, cos theta, w1, |w2| and w3 there.
+    /// The variable y at a phase u, and sin theta, cos theta, w1, |w2| and w3 there.
     #[inline(always)]
     fn motion(&self, sin_u: T, cos_u: T) -> (T, [T; 5]) {
         let one = self.theta.splat(1.0);
@@ -347,8 +348,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         (y, [s, c, horner(&self.w1[..n], y), tilt, horner(&self.w3[..n], y)])
     }
 
-    /// (theta, w1, w2, w3) at time `t`, the largest of their estimated errors, and the rounding part of it, which more
-    /// terms would not reduce.
+    /// The state (theta, w1, w2, w3) at time `t`, the largest of its estimated errors, and the rounding part of this
+    /// error, which more terms would not reduce.
     #[inline(always)]
     pub fn state(&self, t: T) -> ([T; 4], T, T) {
         self.state_at(t, &self.phase_at(t))
@@ -375,7 +376,7 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
         ([self.theta + change_of_theta(self.sin, self.cos, y), w1, w2, w3], error, least)
     }
 
-    /// Error of the time at which the motion reaches a place.
+    /// Error of the time at which the motion reaches the phase `at`.
     #[inline(always)]
     fn time_error_at(&self, t: T, at: &LanePhase<T>) -> T {
         let rounded = self.theta.splat(f64::EPSILON) * (t.abs() + self.period());
@@ -383,7 +384,8 @@ impl<T: Real, const N: usize, const K: usize> Swings<T, N, K> {
     }
 }
 
-/// Approximate width of a swing: the larger |y| at the zeros of the parabola of F; NaN without zeros.
+/// Approximate width of a swing: the larger |y| at the zeros of the parabola that approximates F = J theta'^2; NaN
+/// without zeros.
 #[inline(always)]
 pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T {
     let (sin, cos) = sin_cos(theta);
@@ -405,7 +407,7 @@ pub(crate) fn width<T: Real>(law: &Reduced<T>, [theta, w1, w2, w3]: [T; 4]) -> T
     high.max(zero - low) + (low + high) * zero
 }
 
-/// Time since the lower turning point at u, and dt/du (Clenshaw's sums).
+/// Time since the lower turning point at the phase u, and dt/du (Clenshaw's sums).
 #[inline(always)]
 fn time<T: Real>(rate: &[T], u: T, sin: T, cos: T) -> (T, T) {
     let zero = u.splat(0.0);

@@ -1,4 +1,4 @@
-//! Series in y about a centre: their recurrences, their zeros and their truncation errors.
+//! Power series in y about a centre: their recurrences, their zeros and their truncation errors.
 //!
 //! The head of [`lanes`](super) has the equations. This module uses only the [`Reduced`] law of a motion.
 
@@ -6,16 +6,15 @@ use crate::laws::contact::reduced::Reduced;
 use crate::numbers::power::{term, times};
 use crate::numbers::{Real, arctan2};
 
-/// Sine and cosine of theta at y, where Q is known.
+/// Sine and cosine of theta at y; `q` is Q = 1 - 2 c0 y + y^2.
 #[inline(always)]
 pub fn angle_at<T: Real>(sin: T, cos: T, y: T, q: T) -> (T, T) {
     let one = y.splat(1.0);
     (sin * (one - y * y) / q, cos.fma(y.fma(y, one), -(y + y)) / q)
 }
 
-/// Sine and cosine normalized to a unit vector, for a place about which a further series is taken: the smaller one is
-/// kept, and the other is computed from it. Along a chain of series an error of 1e-16 in s^2 + c^2 would otherwise stay
-/// in 1 -+ c, which may be as small as 1e-16 itself.
+/// Normalizes sine and cosine at the centre of a further series: the smaller one is kept, and the other is computed
+/// from it. Without this an error of 1e-16 in s^2 + c^2 would stay in 1 -+ c, which may be as small as 1e-16 itself.
 #[inline(always)]
 pub fn normalized<T: Real>((s, c): (T, T)) -> (T, T) {
     let (zero, one) = (s.splat(0.0), s.splat(1.0));
@@ -26,7 +25,7 @@ pub fn normalized<T: Real>((s, c): (T, T)) -> (T, T) {
     (zero.select_lt(level, left(c), s), zero.select_lt(level, c, cos))
 }
 
-/// theta - theta0 at y, computed as 2 atan(s0 y/(1 - c0 y)).
+/// The change theta - theta0 at y, computed as 2 atan(s0 y/(1 - c0 y)).
 #[inline(always)]
 pub fn change_of_theta<T: Real>(sin: T, cos: T, y: T) -> T {
     let half = arctan2(sin * y.abs(), (-cos).fma(y, y.splat(1.0)));
@@ -34,7 +33,8 @@ pub fn change_of_theta<T: Real>(sin: T, cos: T, y: T) -> T {
     y.select_lt(y.splat(0.0), -turn, turn)
 }
 
-/// Bound of the terms left out of a series within `reach`, for a function whose singularities are on the unit circle.
+/// Bound of the sum of the terms that are left out of a series, within `reach`, for a function whose singularities
+/// are on the unit circle.
 #[inline(always)]
 pub fn truncation_bound<T: Real>(series: &[T], reach: T) -> T {
     let n = series.len();
@@ -65,7 +65,7 @@ pub fn power<T: Real>(x: T, n: usize) -> T {
     all
 }
 
-/// The series of w1 and w3 in y, from their first terms; N is the capacity.
+/// Computes the series of w1 and w3 in y from their first terms; N is the capacity.
 #[inline(always)]
 pub fn lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     if law.round {
@@ -120,7 +120,7 @@ impl<T: Real> HeightTerms<T> {
         }
     }
 
-    /// The term `k`, in ascending order from 1 on.
+    /// Returns the term `k`; calls are in ascending order from 1 on.
     #[inline(always)]
     fn next(&mut self, k: usize) -> T {
         let next = match k {
@@ -153,7 +153,7 @@ impl<T: Real> Quadratics<T> {
     }
 }
 
-/// The series of w1 and w3 about a place on a rounded rim.
+/// Computes the series of w1 and w3 in y for a rounded rim.
 #[inline(always)]
 fn rounded_lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T, w: &mut [T], n: &mut [T]) {
     let number = |x: f64| sin.splat(x);
@@ -196,7 +196,7 @@ fn rounded_lane_lines<T: Real, const N: usize>(law: &Reduced<T>, sin: T, cos: T,
     }
 }
 
-/// The series of F about a place on a rounded rim, as a sum of three squares without cancellation.
+/// Computes the series of F = J theta'^2 in y for a rounded rim, as a sum of three squares without cancellation.
 #[inline(always)]
 fn rounded_balance<T: Real, const N: usize>(
     law: &Reduced<T>,
@@ -237,7 +237,7 @@ fn rounded_balance<T: Real, const N: usize>(
     }
 }
 
-/// The series of F = J theta'^2 from its first term: twice the energy less that of the turning and of the height.
+/// Computes the series of F = J theta'^2 from its first term: twice the energy minus that of w1, w3 and the height.
 #[inline(always)]
 pub fn square_of_rate<T: Real, const N: usize>(
     law: &Reduced<T>,
@@ -276,7 +276,7 @@ pub fn square_of_rate<T: Real, const N: usize>(
     }
 }
 
-/// The zeros of the first three terms of F, ascending; NaN without real zeros.
+/// The zeros of the first three terms of the series of F, ascending; NaN without real zeros.
 #[inline(always)]
 pub fn parabola<T: Real>(force: &[T]) -> [T; 2] {
     let number = |x: f64| force[0].splat(x);
@@ -289,9 +289,9 @@ pub fn parabola<T: Real>(force: &[T]) -> [T; 2] {
     [first.min(second), first.max(second)]
 }
 
-/// The zeros of F on both sides, from those of its parabola: Newton's method for F divided by the distance from the
-/// other zero (Ehrlich 1967, Aberth 1973), so that both never converge to the same zero. A zero at y = 0, as for a
-/// start at rest, stays.
+/// The zeros of F (turning points) on both sides of the start: Newton's method, from the zeros of its parabola, for F
+/// divided by the distance from the other zero (Ehrlich 1967, Aberth 1973), so that both never converge to the same
+/// zero. A zero at y = 0, as for a start at rest, stays.
 #[inline(always)]
 pub fn turning_points<T: Real>(force: &[T]) -> [T; 2] {
     let mut ends = parabola(force);
@@ -310,7 +310,7 @@ pub fn turning_points<T: Real>(force: &[T]) -> [T; 2] {
     [a.min(b) + (a + b) * a.splat(0.0), a.max(b)]
 }
 
-/// One step of both estimates towards the zeros.
+/// Makes one step of Newton's method for both zeros of F.
 #[inline(always)]
 fn newton<T: Real>(force: &[T], ends: [T; 2]) -> [T; 2] {
     let (last, before) = (force[force.len() - 1], &force[..force.len() - 1]);

@@ -1,4 +1,4 @@
-//! One motion at eight times side by side: the fast method for narrow swings without an event.
+//! One motion at eight times at once in SIMD lanes: the fast method for narrow swings without an event.
 
 use super::turns::{PeriodAngleSeries, PeriodPoint};
 use super::{Grip, Midpoints, Swings};
@@ -12,13 +12,14 @@ use core::f64::consts::PI;
 use fearless_simd::{Simd, SimdBase, f64x8};
 use std::sync::LazyLock;
 
-/// Numbers of terms in y and in u, enough for swings a quarter as wide as the reach of the series.
+/// Number of terms of the power series in y; `MIDPOINTS_OF_ONE` is that of the series in u. They suffice for swings a
+/// quarter as wide as the reach of the series.
 const TERMS: usize = 20;
 const MIDPOINTS_OF_ONE: usize = 16;
 
 static POINTS: LazyLock<Midpoints<MIDPOINTS_OF_ONE>> = LazyLock::new(|| Midpoints::new(MIDPOINTS_OF_ONE));
 
-/// A motion and the outputs that are wanted.
+/// A motion and the requested outputs.
 pub(crate) struct QuickTask<'a> {
     pub contact: Contact,
     pub body: &'a Body,
@@ -26,7 +27,7 @@ pub(crate) struct QuickTask<'a> {
     /// Times since the start, ascending.
     pub times: &'a [f64],
     pub mu: f64,
-    /// Greatest accepted errors of a state, and of a pose if poses are wanted.
+    /// Greatest accepted error of a state; the next field is that of a pose, if poses are requested.
     pub tol: f64,
     pub pose: Option<f64>,
 }

@@ -1,4 +1,5 @@
-//! Angles and contact path of one motion in lanes: series in u, which grows from period to period.
+//! Angles and contact path of one motion: Fourier series in the phase u of the nutation, which grows from period to
+//! period.
 //!
 //! ```text
 //! dphi/du = (w1/s) dt/du          = sum p_k cos(k u)        phi = p_0 u + omega,  omega = sum p_k sin(k u)/k
@@ -24,21 +25,21 @@ use nalgebra::{Complex, Point2};
 
 /// The series of the angles and of the path of a motion.
 pub(super) struct PeriodAngleSeries<const K: usize> {
-    /// The cosine series of dphi/du and of dpsi/du.
+    /// The cosine series of dphi/du; the next field is that of dpsi/du.
     p: [f64; K],
     q: [f64; K],
-    /// The series of the path: c_k/(p_0 + k) for k from 0 on (`up`) and for -k (`down`), with 0 for the term that
-    /// drifts.
+    /// The coefficients c_k/(p_0 + k) of the contact path for k from 0 on; the next field has those for -k. The
+    /// coefficient of the term that drifts is 0.
     up: [f64; K],
     down: [f64; K],
-    /// The k of the term that drifts, and its c_k.
+    /// The index k of the term of the contact path that drifts, and its coefficient c_k.
     drift: (f64, f64),
     /// The place at which the motion starts.
     start: PeriodPoint,
     doubt: AngleErrors,
 }
 
-/// A place on a swing: whole periods; u since the lower turning point, negative before it; and e^(i u).
+/// A place on a swing: whole periods; the phase u since the lower turning point, negative before it; and e^(i u).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PeriodPoint {
     pub periods: f64,
@@ -47,19 +48,20 @@ pub(super) struct PeriodPoint {
     pub sin: f64,
 }
 
-/// The uncertainties of the series.
+/// The uncertainties of the series of angles and contact path.
 struct AngleErrors {
-    /// Error of an angle: per unit of time, per error of the time, and a constant.
+    /// Error of an angle per unit of time; the next fields are the error per error of the time, and a constant error.
     per_time: f64,
     fastest: f64,
     angle: f64,
-    /// Error of the path: per unit of u, and a constant; and the greatest distance by which a radian moves the path.
+    /// Error of the contact path per unit of u; the next fields are a constant error, and the greatest distance by
+    /// which a radian moves the path.
     per_u: f64,
     place: f64,
     reach: f64,
 }
 
-/// The coefficients of an even function from its values at the midpoints.
+/// The cosine coefficients of an even function from its values at the midpoints.
 fn cosines<const K: usize>(points: &Midpoints<K>, values: &[f64; K]) -> [f64; K] {
     let mut found = [0.0; K];
     for (k, (found, cosines)) in found.iter_mut().zip(&points.cosines).enumerate() {
@@ -69,14 +71,14 @@ fn cosines<const K: usize>(points: &Midpoints<K>, values: &[f64; K]) -> [f64; K]
     found
 }
 
-/// sin(k u_j) at the midpoints, for k from 1 on.
+/// The value sin(k u_j) at the midpoint `j`, for k from 1 on.
 fn sine<const K: usize>(points: &Midpoints<K>, k: usize, j: usize) -> f64 {
     let sine = points.cosines[K - k][j];
     if j.is_multiple_of(2) { sine } else { -sine }
 }
 
-/// The truncation error of a series, extrapolated from its last terms; and the size of the first pair of terms left
-/// out.
+/// The truncation error of a series, extrapolated from its last terms, and the size of the first two terms that are
+/// left out.
 fn truncation_error<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
     let pair = |k: usize| (size(K - k) + size(K - k - 1)).max(f64::MIN_POSITIVE);
     let (last, before, earlier) = (pair(1), pair(3), pair(5));
@@ -85,7 +87,7 @@ fn truncation_error<const K: usize>(size: impl Fn(usize) -> f64) -> [f64; 2] {
 }
 
 impl<const K: usize> PeriodAngleSeries<K> {
-    /// The series for a motion that is the same in all SIMD lanes; `start` is its place at time 0.
+    /// Computes the series for a motion that is the same in all SIMD lanes; `start` is its place at time 0.
     #[inline(always)]
     pub fn of<S: Simd, const N: usize>(
         swing: &Swings<f64x8<S>, N, K>,
@@ -180,7 +182,8 @@ impl<const K: usize> PeriodAngleSeries<K> {
         sums
     }
 
-    /// The sum of the path's terms at a place, with the term that drifts taken from u = 0 on.
+    /// The sum of the terms of the contact path at a place, as x + i y; the term that drifts is counted from u = 0
+    /// on.
     fn path(&self, at: &PeriodPoint) -> Complex<f64> {
         let step = Complex::new(at.cos, at.sin);
         let sum = |terms: &[f64; K], step: Complex<f64>| {
@@ -195,7 +198,7 @@ impl<const K: usize> PeriodAngleSeries<K> {
         Complex::from_polar(1.0, turn) * terms + Complex::from_polar(c * chord, half) * Complex::i()
     }
 
-    /// Angles and, for a rolling body, contact point since the start.
+    /// The pose at a place: angles and, for a rolling body, contact point, relative to the start.
     pub fn pose(&self, at: &PeriodPoint) -> Pose {
         let (here, start) = (self.angles(at), self.angles(&self.start));
         let angle = |i: usize, per_u: f64| {
@@ -207,8 +210,8 @@ impl<const K: usize> PeriodAngleSeries<K> {
         Pose { phi: angle(0, self.p[0]), psi: angle(1, self.q[0]), contact_point, height: 0.0 }
     }
 
-    /// Estimated error of the pose at a place reached at time `t` with the error `late`: angles in radians, contact
-    /// point in R.
+    /// Estimated error of the pose at a place that is reached at time `t`, whose error is `late`: of angles in
+    /// radians, of the contact point in R.
     pub fn error(&self, at: &PeriodPoint, t: f64, late: f64) -> f64 {
         let of = &self.doubt;
         let gone = TAU.mul_add(at.periods, at.u).abs() + self.start.u.abs();

@@ -1,12 +1,12 @@
-//! The time of a motion from one place of a panel to another.
+//! The time of a motion from one place to another within a panel (a range of one power series).
 //!
 //! ```text
 //! F = (eta - low)(high - eta) W,   W = -R + r1/(eta - low) + r2/(high - eta)
 //! R = F divided by both,   r1 = F(low)/(high - low),   r2 = F(high)/(high - low):   exactly 0 at a true zero
 //! eta = mid - amp cos phi,   dt/dphi = (2 s0/Q) sqrt(J/W)
 //! ```
-//! Where F has no zero within reach, the edge of the panel takes its place. This costs no accuracy: dt/dphi
-//! is as smooth as dt/deta.
+//! Where F has no zero within reach, the edge of the panel takes its place. This does not reduce the accuracy:
+//! dt/dphi is as smooth as dt/deta.
 
 use super::{Rule, here};
 use crate::laws::contact::reduced::Reduced;
@@ -26,13 +26,14 @@ pub(super) struct PanelClock<'a, T, const N: usize> {
     way: T,
     low: T,
     high: T,
-    /// R as a series; its last two terms are not used.
+    /// The quotient R of F by the distances from both turning points, as a series in eta; its last two terms are not
+    /// used.
     rest: [T; N],
-    /// The remainders r1 and r2.
+    /// The remainders r1 and r2 of the division of F by the distances from both turning points.
     left: [T; 2],
 }
 
-/// The place that is reached at a given time.
+/// The place that the motion reaches at a given time.
 pub(super) struct SoughtTime<T> {
     pub time: T,
     pub at: T,
@@ -43,7 +44,8 @@ pub(super) struct SoughtTime<T> {
 }
 
 impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
-    /// The clock between two places `low` and `high`; 1 in `is_low` or `is_high` marks a place that is a zero of F.
+    /// The integrand of the time between two places `low` and `high`; 1 in `is_low` or `is_high` marks a place that
+    /// is a turning point (zero of F).
     #[inline(always)]
     pub fn of(
         law: &'a Reduced<T>,
@@ -70,34 +72,35 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         angle + angle
     }
 
-    /// eta - low and high - eta, at least 1e-30 so that they can be divisors.
+    /// The distances eta - low and high - eta from both ends, at least 1e-30 so that they can be divisors.
     #[inline(always)]
     pub fn distances(&self, eta: T) -> [T; 2] {
         let least = eta.splat(1e-30);
         [(eta - self.low).max(least), (self.high - eta).max(least)]
     }
 
-    /// W, from the distances and the value `rest` of R.
+    /// The function W = F/((eta - low)(high - eta)), from the distances and the value `rest` of R.
     #[inline(always)]
     fn weight(&self, [above, below]: [T; 2], rest: T) -> T {
         let [r1, r2] = self.left;
         (r1 * below + r2 * above) / (above * below) - rest
     }
 
-    /// F at eta, whose distances from both ends are given.
+    /// F = J theta'^2 at eta, from the distances of eta from both ends.
     #[inline(always)]
     pub fn force(&self, eta: T, [above, below]: [T; 2]) -> T {
         above * below * self.weight([above, below], horner(&self.rest[..N - 2], eta))
     }
 
-    /// eta at the phase whose cosine is given.
+    /// The variable eta at the phase with this cosine.
     #[inline(always)]
     fn eta_at_phase(&self, cosine: T) -> T {
         let half = cosine.splat(0.5);
         half * (self.high + self.low) - half * (self.high - self.low) * cosine
     }
 
-    /// dt/dphi at four phases at once, which hides the latency of the arithmetic; `weakest` keeps the least W so far.
+    /// The derivative dt/dphi of the time at four phases at once, which hides the latency of the arithmetic;
+    /// `weakest` keeps the least W so far.
     #[inline(always)]
     fn rates(&self, cosines: [T; 4], weakest: &mut T) -> [T; 4] {
         let one = self.sin.splat(1.0);
@@ -124,7 +127,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         rates
     }
 
-    /// The time from one phase to another, its quadrature error, and the least W between.
+    /// The time from one phase to another, its quadrature error, and the least W = F/((eta - low)(high - eta))
+    /// between them.
     #[inline(always)]
     pub fn between(&self, rule: &Rule, from: T, to: T) -> (T, T, T) {
         let number = here(
@@ -181,8 +185,8 @@ impl<'a, T: Lane, const N: usize> PanelClock<'a, T, N> {
         [sum * width, from.splat(100.0) * width.abs() * tail * tail / size]
     }
 
-    /// The place that is reached at the time `target`, if `stop` is reached at the time `whole`. Newton's method starts
-    /// with an integral from `start` and adds a short integral at each step.
+    /// The place that the motion reaches at the time `target`, where it reaches `stop` at the time `whole`. Newton's
+    /// method starts with an integral from `start` and adds a short integral at each step.
     #[inline(always)]
     pub fn sought(&self, rule: &Rule, [start, stop]: [T; 2], (target, whole): (T, T)) -> SoughtTime<T> {
         let number = here(

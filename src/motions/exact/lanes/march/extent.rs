@@ -9,12 +9,12 @@ use crate::motions::exact::lanes::series::{
 use crate::numbers::Lane;
 use crate::numbers::power::horner;
 
-/// Number of samples of a panel, and of rounds that sample again about the least value: its place is found to
-/// 1e-6 of the panel or better, and the least value to the square of that.
+/// Number of samples of a panel. `ROUNDS` times the samples are repeated about the least value, whose place is found
+/// to 1e-6 of the panel or better, and the value to the square of that.
 const SAMPLES: usize = 16;
 const ROUNDS: usize = 8;
 
-/// The extremes within a panel.
+/// The extreme contact forces within a panel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extent<T> {
     /// The least normal force in units of the weight.
@@ -27,7 +27,8 @@ pub(crate) struct Extent<T> {
 }
 
 impl<T: Lane> March<T> {
-    /// The extremes of the panel that begins at a knot, up to the inclination whose sine and cosine are `side`.
+    /// The extreme contact forces of the panel that begins at a knot, up to the inclination whose sine and cosine are
+    /// `side`.
     #[inline(always)]
     pub fn extent<const N: usize>(&self, knot: &Knot<T>, way: T) -> Extent<T> {
         let number = here(

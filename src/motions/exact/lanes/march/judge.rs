@@ -1,4 +1,4 @@
-//! The state at the end of a panel, its rate of change, and its uncertainty.
+//! The state at the end of a panel (a range of one power series), its rate of change, and its uncertainty.
 //!
 //! ```text
 //! F       its rounding errors at this knot and at those before it, and the truncation of its series
@@ -23,9 +23,10 @@ use crate::numbers::power::horner;
 pub(super) struct JudgedState<T> {
     knot: Knot<T>,
     tilt: T,
-    /// J at that state.
+    /// The moment of inertia J of the tilting theta' at that state.
     inertia: T,
-    /// dtheta/dy there; bounds of the slopes of w1, w3 and F in y on the way; and a bound of the state's rate in time.
+    /// The derivative dtheta/dy at that state; the next fields are bounds of the slopes of w1, w3 and F in y on the
+    /// way, and of the state's rate in time.
     per_y: T,
     slopes: [T; 3],
     rate: T,
@@ -69,7 +70,8 @@ impl<T: Lane> March<T> {
         JudgedState { knot, tilt, inertia, per_y, slopes, rate }
     }
 
-    /// The event with its uncertainties: rounding and truncation of F, and the error of the series that vanishes.
+    /// Adds the uncertainties to an event: rounding and truncation of F, and the error of the series whose zero is
+    /// the event.
     #[inline(always)]
     pub(super) fn judged<const N: usize>(
         &self,

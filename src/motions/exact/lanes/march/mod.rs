@@ -1,4 +1,5 @@
-//! One panel of a march along a motion, in lanes: the first event within its reach, with its place and time.
+//! Follows motions in SIMD lanes panel by panel (a panel is a range of one power series): the first event in a panel,
+//! with its place and time.
 //!
 //! ```text
 //! eta = d y,  d = +-1 points the way the motion goes        F(eta) = J theta'^2,   X(eta) > 0 while the body presses
@@ -11,8 +12,8 @@
 //! by panel to its end; a motion that does not end is marched to both its turning points, which determine it for all
 //! times.
 //!
-//! Error: the sum of the quadrature error of the clock, the truncation of the series, and the rounding errors of F and
-//! of the series that vanishes. An event that is not certain gets the code of an unknown one.
+//! Error: the sum of the quadrature error of the clock, the truncation of the series, and the rounding errors of F
+//! and of the series that vanishes. An event that is not certain gets the code `Unknown`.
 
 mod clock;
 mod extent;
@@ -29,17 +30,19 @@ use clock::PanelClock;
 pub(crate) use extent::Extent;
 use signs::{EtaSeries, FirstZero};
 
-/// Number of parts of a panel for events, and for the turning points, which are also sought a little beyond its reach.
+/// Number of parts into which a panel is divided in the search for events. `MORE` is that for turning points, which
+/// are also sought a little beyond the reach of the panel.
 const PARTS: usize = 8;
 const MORE: usize = 10;
-/// Width of a part in eta; the error of the cubics in `signs` goes as its fourth power.
+/// Width of a part of a panel in eta; the error of the cubics in `signs` grows as its fourth power.
 const WIDTH: f64 = 0.04;
 const REACH: f64 = WIDTH * PARTS as f64;
-/// Greatest error of Newton's method with which a turning point is divided out of F and counts as an event.
+/// Greatest error of Newton's method with which a turning point counts as an event and is divided out of F = J
+/// theta'^2.
 const TURNING_POINT_ERROR: f64 = 1e-13;
 
-/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F there, and the error of F
-/// accumulated so far.
+/// The start of a panel: the inclination, its sine and cosine, w1, w3 and F = J theta'^2, and the accumulated error
+/// of F.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot<T> {
     pub theta: T,
@@ -51,7 +54,7 @@ pub(crate) struct Knot<T> {
     pub doubt: T,
 }
 
-/// The outputs of each panel of a march, the same in all lanes.
+/// The outputs that each panel computes, the same in all SIMD lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sought {
     /// Whether the end of the motion is sought; otherwise the state at a given time is sought.
@@ -62,7 +65,7 @@ pub(crate) struct Sought {
     pub turns: bool,
 }
 
-/// The first event of a panel; [`Met::code`] is its number in a lane.
+/// The first event in a panel; [`Met::code`] is its number in each SIMD lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PanelEvent {
     /// The edge of the panel, before any other event.
@@ -71,7 +74,7 @@ pub(crate) enum PanelEvent {
     Side,
     LiftOff,
     Slip,
-    /// The time that was sought.
+    /// The motion reaches the requested time.
     Time,
     /// The landing of the face: a body that does not spin falls flat.
     Face,
@@ -94,35 +97,35 @@ impl PanelEvent {
     }
 }
 
-/// The first event of a panel, and the state there.
+/// The first event in a panel, and the state at the event.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Met<T> {
     /// The number of the event, [`PanelEvent::code`]; 9 where it is unknown.
     pub code: T,
     /// The time from the start of the panel to the event.
     pub time: T,
-    /// The error of `time`, and the error of the state at the event.
+    /// The error of `time`; the next field is the error of the state at the event.
     pub late: T,
     pub off: T,
-    /// Bound of the rate of the state at the event.
+    /// Bound of the time derivative of the state at the event.
     pub rate: T,
-    /// |theta'| at the event.
+    /// The size |theta'| at the event.
     pub tilt: T,
-    /// The angle by which phi has turned since the start of the panel, if it is wanted, and its error.
+    /// The angle by which phi has turned since the start of the panel, if requested, and its error.
     pub turn: [T; 2],
     pub knot: Knot<T>,
 }
 
-/// The data of a march that are the same for all panels.
+/// The data of a motion that are the same for all panels.
 pub(crate) struct March<T> {
     pub law: Reduced<T>,
     /// Sine and cosine of the inclination at which something other than the rim lands.
     pub side: [T; 2],
-    /// Square of the coefficient of friction.
+    /// The square of the coefficient of friction.
     pub mu_square: T,
 }
 
-/// The series of a panel in eta, except w1 and w3, which are series in y.
+/// The power series of a panel: those of w1 and w3 in y, all others in eta.
 struct PanelSeries<T, const N: usize> {
     w1: [T; N],
     w3: [T; N],
@@ -133,8 +136,8 @@ struct PanelSeries<T, const N: usize> {
     edge: T,
 }
 
-/// The turning points of a panel, or the edges in place of missing ones: the places, 1 where a place is a turning
-/// point, and the search results.
+/// The turning points of a panel, or its edges in their place: the places, 1 where a place is a turning point, and
+/// the search results.
 struct TurningPlaces<T> {
     low: T,
     high: T,
@@ -143,13 +146,13 @@ struct TurningPlaces<T> {
     seen: [FirstZero<T>; 2],
 }
 
-/// The first event of a panel in computation: its code, its place `out` in eta and its time.
+/// The first event of a panel while it is computed: its code, its place `out` in eta, and its time.
 struct EventInProgress<T> {
     code: T,
     out: T,
     /// The distances of the place from the turning points, or from the edges in their place.
     apart: [T; 2],
-    /// The error of the zero from Newton's method, and the slope of the series there.
+    /// The error of the zero from Newton's method; the next field is the slope of the series at the zero.
     miss: T,
     steep: T,
     time: T,
@@ -158,8 +161,8 @@ struct EventInProgress<T> {
 }
 
 impl<T: Lane> March<T> {
-    /// The panel that begins at a knot, with N terms; `way` is d, `target` the time at which the state is
-    /// sought.
+    /// Computes the panel that begins at a knot, with N terms; `way` is the direction d = +-1 of the motion, `target`
+    /// the requested time.
     #[inline(always)]
     pub fn panel<const N: usize>(
         &self,
@@ -203,7 +206,7 @@ impl<T: Lane> March<T> {
         self.judged(knot, &of, &ends, &reached, &there, turn)
     }
 
-    /// The series about a knot; those of the forces only if ends are sought.
+    /// The power series about a knot; those of the forces only if the end of the motion is sought.
     #[inline(always)]
     fn terms<const N: usize>(&self, knot: &Knot<T>, way: T, sought: Sought) -> PanelSeries<T, N> {
         let zero = way.splat(0.0);
@@ -267,7 +270,7 @@ impl<T: Lane> March<T> {
             + knot.force
     }
 
-    /// The first event and its place.
+    /// The first event in a panel and its place.
     #[inline(always)]
     fn first<const N: usize>(
         &self,
@@ -320,7 +323,7 @@ impl<T: Lane> March<T> {
     }
 }
 
-/// The turning points ahead and behind; the edge of the series replaces a turning point beyond its reach.
+/// The turning points ahead and behind; the edge of the panel replaces a turning point beyond it.
 #[inline(always)]
 fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> TurningPlaces<T> {
     let number = here(
@@ -344,7 +347,7 @@ fn turns_of_force<T: Lane, const N: usize>(force: &[T; N]) -> TurningPlaces<T> {
 }
 
 impl<T: Lane> EventInProgress<T> {
-    /// In each lane where the time that is sought comes before the event, replaces the event by the arrival at that
+    /// In each SIMD lane where the requested time comes before the event, replaces the event by the arrival at that
     /// time.
     #[inline(always)]
     fn at_time<const N: usize>(
@@ -375,19 +378,19 @@ impl<T: Lane> EventInProgress<T> {
     }
 }
 
-/// `yes` where a code is the code of `what`, else `no`.
+/// Returns `yes` where a code is that of the event `what`, else `no`.
 #[inline(always)]
 fn where_event_is<T: Real>(code: T, what: PanelEvent, yes: T, no: T) -> T {
     where_equal(code, what.code(), yes, no)
 }
 
-/// `yes` where the whole number `number` is `other`, else `no`.
+/// Returns `yes` where the whole number `number` is `other`, else `no`.
 #[inline(always)]
 fn where_equal<T: Real>(number: T, other: f64, yes: T, no: T) -> T {
     (number - number.splat(other)).abs().select_lt(number.splat(0.5), yes, no)
 }
 
-/// The first event found so far; for a zero, also its error from Newton's method and the slope there.
+/// The first event found so far; for a zero of a series also its error from Newton's method and the slope.
 struct FirstEvent<T> {
     code: T,
     at: T,

@@ -1,4 +1,4 @@
-//! Power series in y of quantities that stay positive while normal force and friction hold the body on the table.
+//! Power series in y of quantities that stay positive while the body presses on the table and friction prevents slip.
 //!
 //! ```text
 //! C = c0 (1 + y^2) - 2 y,   S = s0 (1 - y^2),   c = C/Q,   s = S/Q,   G = Q g,   G2 = Q g',   F' = dF/dy
@@ -9,17 +9,17 @@
 //! sharp:    Z = (mu^2 N^2 - F2^2 - Fh^2) (Q (1 - y^2))^2
 //!           F2^2 = I3^2 (r w1 + t w3)^2 F/J,   Fh = g theta'^2 - h theta'' - (w1/s) (w3 - ell w1)
 //! ```
-//! N is the contact force that lifts the centre, from the second derivative of its height along a motion whose theta'^2
-//! is a known function of the inclination; the two parts of the friction follow likewise. Each is a polynomial times F
-//! or F', so that a term costs a few products. The module [`contact`](crate::laws::contact) has the forces of a state; the
-//! tests at the end compare them.
+//! The normal force N follows from the second derivative of the centre's height, along a motion whose theta'^2 is a
+//! known function of the inclination; the two components of friction follow in the same way. Each is a sum of
+//! polynomials times F or F', so that a term takes a few products. The module [`contact`](crate::laws::contact) has
+//! the forces of a state; the tests at the end compare them.
 
 use crate::laws::contact::Contact;
 use crate::laws::contact::reduced::Reduced;
 use crate::numbers::Real;
 use crate::numbers::power::{multiply_on, square_on, term, times};
 
-/// The term `k` of the product of a polynomial with the slope of a series, added to `sum`.
+/// Adds the term `k` of the product of a polynomial with the derivative of a series to `sum`.
 #[inline(always)]
 fn slope_term<T: Real, const A: usize>(of: &[T; A], series: &[T], k: usize, sum: T) -> T {
     let mut sum = sum;
@@ -48,7 +48,7 @@ fn plus<T: Real, const A: usize>(mut of: [T; A], other: &[T; A]) -> [T; A] {
     of
 }
 
-/// The polynomials Q, G and G2 about a place.
+/// The polynomials Q, G = Q g and G2 = Q g' in y about a place.
 struct Levers<T> {
     q: [T; 3],
     lever: [T; 3],
@@ -68,7 +68,7 @@ impl<T: Real> Levers<T> {
     }
 }
 
-/// The series X.
+/// The power series X in y, which is positive while the body presses on the table.
 #[inline(always)]
 pub(super) fn normal<T: Real, const N: usize>(
     law: &Reduced<T>,
@@ -107,7 +107,8 @@ pub(super) fn normal<T: Real, const N: usize>(
     }
 }
 
-/// The series X from its three polynomials: the term without F, the factor of F' and the factor of F.
+/// Computes the series X, positive while the body presses, from its three polynomials: the term without F, the factor
+/// of F' and the factor of F.
 #[inline(always)]
 fn press_series<T: Real, const A: usize, const B: usize, const C: usize>(
     press: &mut [T],
@@ -122,7 +123,7 @@ fn press_series<T: Real, const A: usize, const B: usize, const C: usize>(
     }
 }
 
-/// Error of X at a place where F and its slope have the error `noise`.
+/// Error of the series X at a place where F and its slope have the error `noise`.
 #[inline(always)]
 pub(super) fn error_of_press<T: Real>(law: &Reduced<T>, (s, c): (T, T), noise: T) -> T {
     let rim = &law.shape.rim;

@@ -1,28 +1,28 @@
-//! The first zero of a series, and whether a zero may have been missed.
+//! Finds the first zero of a power series, and whether a zero may have been missed.
 //!
 //! ```text
 //! between two nodes a series differs from the cubic of its values and slopes there by at most |X''''| h^4/384
 //! |X''''| <= sum |x_k| k (k-1) (k-2) (k-3) reach^(k-4)
 //! ```
 //! A part of the panel is flagged where the value at its end is not positive, or where the cubic has a least value
-//! anywhere in the part that does not exceed the bound; the first flagged part is examined. A zero is found by Newton's
-//! method from that of a parabola, and the series has to fall through zero inside the part. A dip is followed to its
-//! bottom: if that is below zero, the zero lies before it; if above, the search continues behind it. The zero remains
+//! anywhere in the part that does not exceed the bound; the first flagged part is examined. A zero is computed by
+//! Newton's method from that of a parabola; the series has to fall through zero inside the part. The bottom of a dip
+//! is computed: if it is below zero, a zero lies before it; if above, the search continues after it. The zero remains
 //! unknown if Newton's method does not reach the bottom, or if the bottom is above zero in a part whose end is below.
 //!
-//! Lanes are independent: a computation for one lane changes no other lane.
+//! SIMD lanes are independent: a computation for one lane changes no other lane.
 
 use super::{MORE, PARTS, REACH, WIDTH, here, where_equal};
 use crate::numbers::{Lane, Real};
 
-/// Number of dips behind which a search continues; behind more of them the zero is unknown.
+/// Number of dips after which the search for a zero continues; after more dips the zero is unknown.
 const MOST_DIPS: usize = 3;
 /// Greatest last step of Newton's method to the bottom of a dip; the error of the value is the square of the step.
 const REACHED: f64 = 1e-6;
-/// A place beyond every panel, for a zero that does not exist.
+/// A place beyond every panel, which stands for a zero that does not exist.
 const NO_ZERO: f64 = 9.0;
 
-/// The first zero of a series, as far as it is known.
+/// The first zero of a power series, as far as it is known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FirstZero<T> {
     /// 1 where a zero has been found, else 0.
@@ -35,12 +35,12 @@ pub(super) struct FirstZero<T> {
     pub doubt: T,
 }
 
-/// The value and the slope of a series.
+/// The value and the slope of a power series.
 type ValueSlope<T> = (T, T);
 
 pub(super) struct EtaSeries<'a, T, const N: usize> {
     terms: &'a [T; N],
-    /// Bound of the error of the cubics between two nodes.
+    /// Bound of the error of the cubics between two nodes of the series.
     bound: T,
 }
 
@@ -70,7 +70,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         Self { terms, bound: fourth * number(WIDTH * WIDTH * WIDTH * WIDTH / 384.0) }
     }
 
-    /// Values and slopes at M places at once; independent sums side by side hide the latency of the arithmetic.
+    /// Values and slopes of the series at M places at once; independent sums hide the latency of the arithmetic.
     #[inline(always)]
     fn at<const M: usize>(&self, x: [T; M]) -> [ValueSlope<T>; M] {
         let zero = x[0].splat(0.0);
@@ -83,7 +83,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         both
     }
 
-    /// The zeros of F ahead and behind, from its even and odd parts.
+    /// The zeros of F (turning points) ahead and behind, from its even and odd parts.
     #[inline(always)]
     pub fn turns(&self) -> [FirstZero<T>; 2] {
         let terms = self.terms;
@@ -148,7 +148,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
         [seen(&fore, x, x, steps[0], before[0]), seen(&back, x_back, zero - x_back, steps[1], before[1])]
     }
 
-    /// The first zero ahead, before `limit`.
+    /// The first zero of the series ahead, before `limit`.
     #[inline(always)]
     pub fn first(&self, limit: T) -> FirstZero<T> {
         let number = here(
@@ -264,7 +264,7 @@ impl<'a, T: Lane, const N: usize> EtaSeries<'a, T, N> {
 }
 
 impl<T: Real> Flag<T> {
-    /// 1 where a place lies within the part, else 0.
+    /// Returns 1 where a place lies within the flagged part, else 0.
     #[inline(always)]
     fn lies_within(&self, at: T) -> T {
         let (zero, one, tiny) = (at.splat(0.0), at.splat(1.0), at.splat(1e-9));
@@ -281,7 +281,7 @@ fn newton_error<T: Real>(step: T, before: T) -> T {
     step.abs() * ratio * ratio + step * step
 }
 
-/// The first flagged part from `from` on.
+/// The first part from `from` on that may contain a zero or a dip below zero.
 #[inline(always)]
 fn flagged<T: Real>(values: &[ValueSlope<T>], bound: T, from: T) -> Flag<T> {
     let number = here(
@@ -337,7 +337,7 @@ fn zero_of_parabola<T: Real>((value, slope): ValueSlope<T>, end: T, h: T) -> T {
 mod tests {
     use super::*;
 
-    /// The cubic (eta - a)(eta - b)(c - eta).
+    /// The coefficients of the cubic (eta - a)(eta - b)(c - eta).
     fn cubic([a, b, c]: [f64; 3]) -> [f64; 8] {
         [a * b * c, -(a * b + (a + b) * c), a + b + c, -1.0, 0.0, 0.0, 0.0, 0.0]
     }
