@@ -226,7 +226,12 @@ impl Measured {
         let body = Body::from_metres(of.outer_diameter, of.inner_diameter, of.length, of.fillet)?;
         let wall = (of.outer_diameter - of.inner_diameter) * (of.outer_diameter + of.inner_diameter);
         let least = 0.01 * FRAC_PI_4 * wall * of.length;
-        within("mass", of.mass, (least, f64::MAX), "kilograms, 0.01 kg/m^3 or more, and lengths in metres")?;
+        within(
+            "mass",
+            of.mass,
+            (least, f64::MAX),
+            "a mass in kg with which, for lengths in metres, the density is 0.01 kg/m^3 or more",
+        )?;
         Ok(Self::new(body, Scale::new(0.5 * of.outer_diameter, of.mass, of.gravity)?))
     }
 
@@ -250,8 +255,8 @@ impl Measured {
     pub fn with_moments(scale: Scale, of: &MeasuredMoments) -> Result<Self, Error> {
         let &MeasuredMoments { height, fillet, i1, i3 } = of;
         let [low, high] = [1e-3, 1e4].map(|natural| scale.kilogram_square_metres(natural));
-        within("i1", i1, (low, high), "1e-3 to 1e4 M R^2, in kg m^2")?;
-        within("i3", i3, (0.0, high), "at most 1e4 M R^2, in kg m^2")?;
+        within("i1", i1, (low, high), "a moment of inertia in kg m^2, from 1e-3 to 1e4 M R^2")?;
+        within("i3", i3, (0.0, high), "a moment of inertia in kg m^2, at most 1e4 M R^2")?;
         let (ell, rho) = (scale.length(height), scale.length(fillet));
         Ok(Self::new(Body::rounded(ell, scale.moment(i1), scale.moment(i3), rho)?, scale))
     }

@@ -318,7 +318,12 @@ impl LyingEgg {
             ("offset", x.abs().max(y.abs())),
             ("inertia", (i1 - i2).abs().max(one.abs()).max(two.abs()).max(three.abs())),
         ] {
-            within(name, value, (0.0, 1e-12), "0 to 1e-12: the mass of an egg is symmetric about axis 3")?;
+            within(
+                name,
+                value,
+                (0.0, 1e-12),
+                "a deviation of at most 1e-12 from a mass that is symmetric about axis 3",
+            )?;
         }
         // With a lower centre of mass it stands on that end without any spin.
         let long = a * a - b * b;

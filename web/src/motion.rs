@@ -72,9 +72,9 @@ pub(crate) fn told(event: Option<Event>) -> (f64, f64) {
 }
 
 impl Desk {
-    /// Sets the loss law by its number, with its coefficient; number 0 for no loss.
+    /// Sets the loss law by its number, with its coefficient; a coefficient of 0 stands for no loss.
     pub fn losses(&mut self, [law, coefficient]: [f64; 2]) -> Answer {
-        let expected = "the number of a law of loss";
+        let expected = "the number of a loss law";
         let known = Law::ALL.iter().copied().find(|known| f64::from(*known as u8) == law);
         let known = known.ok_or(Refusal::Range { name: "law", value: law, expected })?;
         let losses = Losses::of(known, coefficient);
@@ -177,7 +177,7 @@ impl Desk {
 
     fn rows(&self, n: f64, from: f64, to: f64) -> Result<Vec<Row>, Refusal> {
         let n = count("n", n, MOST)?;
-        let expected = "-1e12 <= t0 <= t1 <= 1e12, of an integrated motion from 0 on";
+        let expected = "-1e12 <= t0 <= t1 <= 1e12, and t0 >= 0 if the motion is integrated";
         let kept = self.motion.as_ref().ok_or(Refusal::Nothing)?;
         let least = if matches!(kept, Kept::Exact { .. }) { -1e12 } else { 0.0 };
         for (name, value, low) in [("t0", from, least), ("t1", to, from)] {

@@ -21,7 +21,11 @@ impl Desk {
         for (name, value, most) in [("push", push, 1.5), ("t", t, 1e12)] {
             let known = value >= 0.0 && value <= most;
             if !known {
-                return Err(Refusal::Range { name, value, expected: "0 or more, and not too much" });
+                return Err(Refusal::Range {
+                    name,
+                    value,
+                    expected: "0 <= push <= 1.5 (radians), 0 <= t <= 1e12",
+                });
             }
         }
         let stone = Ellipsoid::rattleback([a, b, c], None, twist, None)?;

@@ -495,7 +495,7 @@ pub(crate) fn check_patch(ask: &Ask) -> Result<(), Error> {
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
     if SHORT_CODE && patch > 0.0 && ask.restitution.is_some() {
-        let expected = "0 together with a restitution on a page";
+        let expected = "0 for a motion with a restitution on a web page";
         return Err(Error::OutOfRange { name: "patch", value: patch, expected });
     }
     Ok(())
@@ -510,8 +510,7 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
         _ => true,
     };
     if ask.resistance == Resistance::WhileRolling && value != 0.0 && never {
-        let expected =
-            "0, or dry friction without a patch, for rolling resistance that acts only while the body rolls";
+        let expected = "0 on a smooth table, on a viscous film and on a patch, for rolling resistance only while the body rolls";
         return Err(Error::OutOfRange { name: "delta", value, expected });
     }
     Ok(())
@@ -520,8 +519,7 @@ pub(crate) fn check_resistance(ask: &Ask) -> Result<(), Error> {
 fn check_method(method: Method, span: f64) -> Result<(), Error> {
     match method {
         Method::Step(step) => {
-            let expected =
-                "a step with the sign of time, of at least 1e-12 and at least 1e-15 of the span of the times";
+            let expected = "a step with the sign of time (negative if the times descend), of at least 1e-12 and 1e-15 of their span";
             let named = |ok: bool| {
                 if ok { Ok(()) } else { Err(Error::OutOfRange { name: "step", value: step, expected }) }
             };

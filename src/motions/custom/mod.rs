@@ -278,7 +278,8 @@ pub(crate) fn check_options(ask: &Ask, custom: &Custom<'_>) -> Result<(), Error>
     }
     within("turning", ask.turning, (0.0, 0.0), "0 together with a user-defined law")?;
     if custom.friction.is_some() && !matches!(ask.table, Table::Rubs(Friction::Coulomb { .. })) {
-        let expected = "Coulomb friction as the contact of a user-defined law of friction";
+        let expected =
+            "Coulomb friction, whose coefficient of sliding friction the user-defined law replaces";
         return Err(Error::OutOfRange { name: "contact", value: f64::NAN, expected });
     }
     Ok(())

@@ -180,7 +180,7 @@ pub(crate) fn check_on_face(body: &Body, y: &State) -> Result<(), Error> {
     check_speeds(y)?;
     within("w1", y.w1, (0.0, 0.0), "0 at theta = 0 or pi: to let the body rise from its face, give w2")?;
     let expected =
-        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: with the other sign a body would rise into the table";
+        "w2 <= 0 at theta = 0, and w2 >= 0 at pi: with the other sign the body would tilt into the table";
     within("w2", y.theta.cos() * y.w2, (f64::MIN, 0.0), expected).map(drop)
 }
 

@@ -37,7 +37,7 @@ pub(crate) fn check_stone(
 ) -> Result<(Start<StoneState>, f64), Error> {
     let Start { mut state, slip, time, .. } = *start;
     let long = dot(state.vertical, state.vertical).sqrt();
-    within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vector of length 1")?;
+    within("vertical", long, (1.0 - UNIT, 1.0 + UNIT), "a vertical of length 1")?;
     state.vertical = state.vertical.map(|x| x / long);
     for (name, w) in ["w1", "w2", "w3"].into_iter().zip(state.w) {
         within(name, w, (-1e6, 1e6), "|w| <= 1e6 sqrt(g/a) for a motion")?;
@@ -62,7 +62,7 @@ pub(crate) fn check_stone(
         within("height", height, (0.0, 1e6), "0 to 1e6 a")?;
         within("lift", lift, (-1e6, 1e6), "-1e6 to 1e6 sqrt(g a)")?;
         if ask.restitution.is_none() {
-            let expected = "None, or a restitution, which a motion that starts in the air needs";
+            let expected = "None without a restitution: a motion that starts in the air needs one";
             return Err(Error::OutOfRange { name: "height", value: height, expected });
         }
     }

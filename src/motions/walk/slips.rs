@@ -42,7 +42,7 @@ impl<const N: usize> SlowSeries<N> {
     }
 }
 
-/// Number of steps after which it is looked at again how fast the speed of a slip changes: of a slow slip, and of any other.
+/// Number of steps after which the change of a slip's speed is measured: for a slow slip, and for any other slip.
 const STEPS_TO_LOOK: [u64; 2] = [24, 240];
 /// A power series replaces the integration of a slow slip whose speed changes by a smaller factor than
 /// exp(CREEP_CHANGE) in a step: such steps are short only because the direction of the slip follows the motion so
