@@ -15,7 +15,7 @@ def pushed(impulse: float, angle: float = 80.0, finger: float = 0.3) -> sc.State
 
 
 def outcome(motion: sc.Motion) -> str:
-    """Outcome of a flick: the tube settles if it rolls for the last half of the motion."""
+    """Outcome of a flick: a tube settles if it rolls for the last half of the time."""
     if motion.event:
         words = {sc.Ending.SIDE: "lies down again", sc.Ending.LIFT_OFF: "hops"}
         return (
