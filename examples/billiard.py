@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 class Shot(NamedTuple):
-    """The motion of a shot until the ball is at rest, and the times of its stages, in SI."""
+    """Motion of a shot until the ball is at rest, and the times of its stages, in SI."""
 
     motion: sc.Motion
     slides: float  # time when the slip is as fast as the rim of the patch, k = 1
@@ -55,7 +55,7 @@ def creep() -> float:
 
 
 def lasts(spin: float, patch: float) -> float:
-    """Time in s in which drilling friction alone stops a spin, by the couple (3 pi/16) MU N eps."""
+    """Time in s in which the couple of drilling friction alone stops a spin."""
     couple = 3 * np.pi / 16 * MU * scale.gravity * patch
     return 0.4 * scale.radius**2 * spin / couple
 

@@ -15,7 +15,7 @@ t = np.linspace(0.0, 120.0, 2401)
 
 
 def rest(restitution: float) -> sc.Motion:
-    """Motion of the dropped coin with this coefficient of restitution, until it rests."""
+    """Motion of the dropped coin with this restitution, until it rests."""
     return sc.roll(
         body, start, t, contact=table, restitution=restitution, losses=losses
     )

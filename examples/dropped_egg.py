@@ -24,7 +24,7 @@ COLOURS = {0: "#009E73", 1: "#D55E00", 2: "#0072B2"}
 
 
 def fallen(restitution: float) -> sc.EllipsoidMotion:
-    """Motion of the dropped egg with this coefficient of restitution, until it is at rest."""
+    """Motion of the dropped egg with this restitution, until it is at rest."""
     return sc.roll(
         body,
         start,

@@ -17,13 +17,13 @@ LAWS = {
 
 
 def lasting(law: type[sc.loss.Law], time: float) -> sc.loss.Law:
-    """The loss law with the coefficient by which the disk, its centre at rest, stops at `time`."""
+    """The loss law by which the disk, with its centre at rest, stops at `time`."""
     # a drift of half the loss takes twice as long
     return law(1e-3 * float(sc.drift(body, start.theta, law(1e-3)).stops_at) / time)
 
 
 def picture() -> None:
-    """Draw inclination and rate under the three laws over the time that is left until the stop."""
+    """Draw inclination and rate under the three laws over the time until the stop."""
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))
     for law, words in LAWS.items():
         slow = sc.drift(body, start.theta, lasting(law, 1500.0))

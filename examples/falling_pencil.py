@@ -22,7 +22,7 @@ def law(lean: Floats, first: float = 0.0) -> tuple[Floats, Floats]:
 
 
 def let_go(first: float) -> sc.State:
-    """Initial state: at rest, leaning by the angle `first` from the balance on the edge."""
+    """Initial state: at rest, at the angle `first` from the balance on the edge."""
     return sc.State(float(body.theta_balance) + first, 0.0, 0.0, 0.0)
 
 

@@ -19,7 +19,7 @@ NEAR = 1.5, 1.6
 
 
 def spun(turns: float) -> sc.State:
-    """Initial state: spun at so many turns a second about the nearly upright axis, centre at rest."""
+    """Initial state: so many turns a second about the almost upright axis."""
     w3 = 2 * np.pi * turns * float(scale.seconds(1.0))
     return body.with_centre_velocity(sc.State(0.1, 0.0, 0.0, w3), 0.0, 0.0)
 

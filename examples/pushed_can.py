@@ -14,7 +14,7 @@ t = np.linspace(0.0, 1.6 / second, 3201)
 
 
 def pushed(speed: float, turns: float = 0.0, contact: sc.Coulomb = table) -> sc.Motion:
-    """Motion of the can after a push, with a speed in m/s and a spin in turns per second."""
+    """Motion of the can after a push: speed in m/s, spin in turns per second."""
     start = sc.spun(body, 2 * np.pi * turns * second, (speed * second / metre, 0.0))
     return sc.roll(body, start, t, contact=contact, restitution=0.0, want="pose")
 

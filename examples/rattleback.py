@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 class Law(NamedTuple):
-    """The rocking that grows at a spin, from the eigenvalues of the linear equations, in SI."""
+    """The rocking that grows at a spin, from the linear equations, in SI."""
 
     axis: int  # of the stone, which it tilts
     growth: float  # per second
@@ -44,7 +44,7 @@ def swings(motion: sc.EllipsoidMotion, axis: int) -> tuple[Floats, Floats]:
 
 
 def grows(motion: sc.EllipsoidMotion, axis: int) -> float:
-    """Growth rate of the swings of an axis, from 0.3 s until a thousandth of the spin is lost."""
+    """Growth rate of an axis's swings, from 0.3 s until 0.1 % of the spin is lost."""
     times, angle = swings(motion, axis)
     early = (times > 0.3) & (
         times < motion.t[np.argmax(np.abs(motion.spin) < 0.999 * SPIN)]

@@ -10,7 +10,7 @@ Floats = NDArray[np.float64]
 
 
 def lying(turns: float) -> sc.EllipsoidState:
-    """Initial state: axis five degrees from level, centre at rest, so many turns a second."""
+    """Initial state: axis five degrees from level, so many turns a second."""
     lean = np.radians(85)
     up = np.array([-np.sin(lean), 0.0, np.cos(lean)])
     spin = 2 * np.pi * turns * second
@@ -62,7 +62,7 @@ t = np.linspace(0.0, 3.0, 3001)
 
 
 def picture() -> None:
-    """Draw the inclination, the nearly constant Jellett's number, and the loss of energy."""
+    """Draw inclination, Jellett's number (nearly constant) and lost energy."""
     motion = sc.roll(body, start, t, contact=table)
     first = motion.energy[0]
     _, (left, right) = plt.subplots(1, 2, figsize=(9.6, 5.4))

@@ -18,7 +18,7 @@ t = np.linspace(0.0, 400.0, 8001)
 
 
 def pushed(rate: float) -> sc.State:
-    """Initial state: the cup rolls on both rims round the apex, at `rate` in sqrt(g/R)."""
+    """Initial state: the cup rolls on both rims round the apex, at `rate`."""
     w1 = rate * np.sin(lies)
     return sc.State(lies, w1, 0.0, -w1 * np.tan(lies))
 
@@ -43,7 +43,7 @@ def law(rate: float) -> tuple[float, float]:
 
 
 def contacts(motion: sc.Motion) -> tuple[Floats, Floats]:
-    """Contact points of the bottom and of the brim on the table, in cm from the apex."""
+    """Contact points of the bottom and of the brim, in cm from the apex."""
     way = np.column_stack([np.cos(motion.phi), np.sin(motion.phi)])
     apex = motion.contact_point[0] + body.circles[0, 0] / np.cos(lies) * way[0]
     bottom = motion.contact_point - apex

@@ -21,7 +21,7 @@ SPINS = (0.0, 2.0, 5.0, 10.0)  # turns per second
 
 
 def pushed(turns: float, table: sc.Coulomb) -> sc.Motion:
-    """Motion of the puck until it rests, from a push at SPEED with a spin in turns a second."""
+    """Motion of the puck until it rests; the spin is in turns a second."""
     spin = 2 * np.pi * turns * second
     start = sc.spun(body, spin, (SPEED * second / metre, 0.0))
     end = sc.roll(body, start, 1e3, contact=table).event

@@ -15,7 +15,7 @@ t = np.linspace(0.0, 12.6 / second, 3001)
 
 
 def rolled(ball: sc.Body, speed: float, slope: float = 0.0) -> sc.Motion:
-    """Motion of the ball after a throw at `speed` (m/s), 10 cm from the middle of the table."""
+    """Motion of a ball thrown at `speed` (m/s), 10 cm from the middle of the table."""
     table = sc.Table(slope, turning=rate, phi0=0.0, place=(0.1 / metre, 0.0))
     # over the table, which moves there with 0.35 m/s
     slip = (0.0, speed * second / metre - rate * 0.1 / metre)
