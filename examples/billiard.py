@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 class Shot(NamedTuple):
-    """Motion of a shot until the ball is at rest, and the times of its stages, in SI."""
+    """Motion of a shot until the ball rests, and the times of its stages, in SI."""
 
     motion: sc.Motion
     slides: float  # time when the slip is as fast as the rim of the patch, k = 1

@@ -32,7 +32,7 @@ def arrival(motion: sc.Motion, length: float = 1.0) -> float:
 
 
 def picture() -> None:
-    """Draw distances over time on one slope, and the time for a metre over the slope."""
+    """Draw distances over time on one slope, and the time for a metre by slope."""
     _, (left, right) = plt.subplots(1, 2)
     slopes = np.linspace(5, 60, 23)
     for name in runners:
