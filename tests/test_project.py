@@ -184,7 +184,7 @@ def test_a_packed_project_is_not_unpacked_beyond_the_limit(tmp_path, monkeypatch
 def test_a_document_type_and_its_entities_are_refused_unread(tmp_path, document):
     head, rest = TEXT.split("\n", 1)
     text = head + document + rest.replace(">axes<", ">&l9;<" if "l9" in document else ">&x;<")
-    with pytest.raises(ValueError, match="film.trk: a Tracker project, but it has a document type"):
+    with pytest.raises(ValueError, match="film.trk: a Tracker project, but the file contains <!DOCTYPE"):
         read(tmp_path, text)
 
 

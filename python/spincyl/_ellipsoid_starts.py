@@ -96,8 +96,8 @@ class StoneStarts(Sized, Hinting):
             State with the vertical and the angular velocity of the stone. Its slip, height and lift, if it
             has them, are replaced.
         height : array_like
-            Height of the lowest point of the stone above the table, 0 or more, in a; for a measured stone in
-            metres.
+            Height of the lowest point of the stone above the table, 0 or more, in the unit a; for a
+            measured stone in metres.
         velocity : three of array_like, optional
             Velocity of the centre of mass in sqrt(g a), for a measured stone in m/s. The three components are
             along the axes x and y that `EllipsoidState.slip` describes, and upward.

@@ -41,7 +41,8 @@ class Region(IntEnum):
     INVALID
         Outside the domain: theta outside (0, pi/2], or an impossible body.
     FORBIDDEN
-        No steady state: theta is between theta_balance and theta_limit.
+        No steady state: theta is between `Body.theta_balance`, where the body balances at rest, and
+        `Body.theta_limit`, where the rate becomes infinite.
     UNDETERMINED
         Theta is too close to theta_balance or theta_limit to decide in double precision if a state exists.
     UNSTABLE

@@ -95,7 +95,7 @@ def _given(m: "Motion", setting: str) -> bool:
 
 
 class Outputs(Hinting):
-    """Base of motions: the optional outputs at each time."""
+    """Base class of motions: the outputs at each time that `want=` asks for, such as poses and forces."""
 
     contact_point = Number(
         POSE,

@@ -83,9 +83,10 @@ class DryContour(Law):
     """Dry friction along the contour of the rim: ``P = eps N A |psi'|``.
 
     P is the power that the law takes, N the normal force, psi' the spin and A psi' the speed of the contact
-    point along the rim; A is 1 for a sharp rim and 1 - fillet + fillet sin(theta) for a rounded one. The
-    couple is m = eps N A sgn(psi') h/s, with s = sin(theta) and the horizontal vector h, which is e_h of
-    `State`: as if the normal force acted ahead of the contact point by eps/s.
+    point along the rim; A is the distance of the contact point from the axis, 1 for a sharp rim and
+    1 - fillet + fillet sin(theta) for a rounded one. The couple is m = eps N A sgn(psi') h/sin(theta), with
+    the horizontal unit vector h in the vertical plane through the axis (e_h of `State`): as if the normal
+    force acted ahead of the contact point by eps A/sin(theta).
     At theta below about eps it would act outside the rim, which is impossible. Source: Le Saux, Leine and
     Glocker, J. Nonlinear Sci. 15, 27 (2005).
 

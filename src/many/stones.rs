@@ -77,7 +77,8 @@ impl StoneRow {
         Self { losses: Some(losses), ..self }
     }
 
-    /// Returns this row on a table with this slope and with the angle phi at the start, both in radians.
+    /// Returns this initial state on a table with this slope, where the stone has turned by phi about the vertical at the
+    /// start; both in radians.
     #[must_use]
     pub fn with_slope(self, slope: f64, phi: f64) -> Self {
         Self { slope: Some([slope, phi]), ..self }

@@ -82,8 +82,8 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// The largest distance, the largest angle, and the largest absolute difference of the inclinations; the time is
-    /// the last one.
+    /// The largest distance, the largest angle, and the largest absolute difference of the inclinations of all compared
+    /// times; the time of the result is the last one that was compared.
     #[must_use]
     pub fn largest(&self) -> Deviation {
         let most =

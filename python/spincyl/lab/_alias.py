@@ -65,7 +65,7 @@ def uniform(t: Floats, direction: Floats) -> tuple[float, float, float]:
 def read(
     t: Floats, direction: Floats, body: Body, *, one: float, line: float, sine: float, sine_err: float
 ) -> Readings:
-    """Find the rates that agree with the directions of the tube in the frames of a film.
+    """Find the rate of a tube from its directions in the frames of a film, and the other possible rates.
 
     `one` is the unit of reduced rates in turns per second, `line` the distance of the ends of the tube as
     seen from above, in metres, and `sine` that of the inclination. The slowest rate is taken, unless its

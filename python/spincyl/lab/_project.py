@@ -29,7 +29,7 @@ class _Builder(ElementTree.TreeBuilder):
     _count = 0
 
     def doctype(self, name: str, pubid: str | None, system: str | None) -> None:
-        raise ValueError("it has a document type, which Tracker does not write")
+        raise ValueError("the file contains <!DOCTYPE, which Tracker does not write")
 
     def start(self, tag: Any, attrs: Any, /) -> Any:
         self._count += 1

@@ -57,7 +57,7 @@ class Sloped(NamedTuple):
         return slope(values, self.rows, self.weights)
 
     def correlation(self, kept: Any) -> Floats:
-        """Correlation matrix of the errors of the slopes `kept`, if all directions have equal errors."""
+        """Correlation matrix of the errors of the slopes `kept` (a mask), for equally exact directions."""
         whole = np.zeros((len(self.rows), self.t.size))
         np.put_along_axis(whole, self.rows, self.weights, axis=1)
         whole = whole[kept]

@@ -93,10 +93,10 @@ def read_tracker(path: str | PathLike[str], *, encoding: str | None = None) -> d
     dict
         Tracks by name. Each track is a dict of its columns by name: arrays of equal length, with NaN where a
         cell is empty. Columns to the left of the first track's name, such as t, belong to all tracks. A track
-        without a name gets the name "track". A column "x (cm)" gets the name "x" and the unit "cm" in
-        `units`. For a project, the columns are t, x and y of each point mass, from the first to the last
-        frame in which a point was marked. The unit of length is the one of the project's scale, or "px" if
-        none was set.
+        without a name gets the name "track". A column "x (cm)" gets the name "x", and its unit "cm" is
+        in the attribute `units` of the track. For a project, the columns are t, x and y of each point mass,
+        from the first to the last frame in which a point was marked. The unit of length is the one of the
+        project's scale, or "px" if none was set.
 
     Raises
     ------

@@ -79,7 +79,7 @@ def vectors(m: Motion, t: Floats, drawn: tuple[str, ...]) -> Vectors:
 
 
 def usual(m: Motion, drawn: tuple[str, ...]) -> dict[str, float]:
-    """Magnitude for which an arrow has the usual length: the largest; for forces the median of N."""
+    """Magnitude that an arrow of the usual length stands for: the largest; for forces the median of N."""
     first, last = sorted(span(m))
     of = vectors(m, np.linspace(first, last, _SAMPLES), drawn).of
     sizes = {name: np.linalg.norm(x, axis=-1) for name, x in of.items()}

@@ -210,7 +210,7 @@ class _Instants(NamedTuple):
 
 
 def frame(motion: Motion, seconds: float | None = None, scale: Scale | None = None) -> float:
-    """Width of a square about the middle of the path of the centre that contains the whole motion.
+    """Width of a square about the middle of the path of the centre that contains the motion up to `seconds`.
 
     In R; for a measured body in metres.
     """

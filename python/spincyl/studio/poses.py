@@ -163,9 +163,10 @@ def knots(m: "Motion", tolerance: float = 2e-3, until: float | None = None) -> F
     Returns
     -------
     ndarray, shape (n, 11)
-        Rows with ascending times: t; theta, phi, psi, x and y of the centre; the slopes of these five. For a
-        stone (n, 13): x, y, z of its quaternion in place of the angles, and w after the centre. For a body
-        that leaves the table (n, 13): z of the centre after x and y; for a stone (n, 15): z at last.
+        Rows with ascending times t: t, theta, phi, psi, and x and y of the centre; then the derivatives of
+        these five with respect to t. For a stone (n, 13): t, the quaternion's x, y, z, the centre's x and y,
+        the quaternion's w; then the derivatives of these six. For a motion that leaves the table the
+        centre's z is the last of these numbers: (n, 13), and (n, 15) for a stone.
 
     Raises
     ------

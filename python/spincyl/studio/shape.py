@@ -122,7 +122,7 @@ class Skin(NamedTuple):
 
 
 def skin(body: Body) -> Skin:
-    """The surface of a body that is symmetric top to bottom, like all except balls with a stem.
+    """The surface with which a body is drawn; it is symmetric top to bottom except for balls with a stem.
 
     A general body is drawn solid, and as long above its centre as below. If it can lean beyond pi/2 although
     its centre is above its rim, an upper end would reach into the table, and only the lower end is drawn.

@@ -222,8 +222,9 @@ impl Body {
     }
 
     /// Any body of revolution that touches the table with these circles, from the lower end up, with its moments of inertia
-    /// about the centre of mass: a cup, a cone (whose tip is a circle of radius 0), a bottle, unequal balls. A circle that
-    /// never touches the table, since it lies inside the convex hull of the others, is left out.
+    /// about the centre of mass (the depth of a circle is its distance below this centre, negative above): a cup, a cone
+    /// (whose tip is a circle of radius 0), a bottle, unequal balls. A circle that never touches the table, since it lies
+    /// inside the convex hull of the others, is left out.
     ///
     /// All lengths are in one unit R, and the moments in M R^2. The body is seen from its lower end, and stands on its first
     /// circle. Two circles that mirror each other are the two equal rims of a tube.

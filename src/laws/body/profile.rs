@@ -221,7 +221,7 @@ impl CircleRow {
         (1..self.count).map(|k| self.both(k - 1))
     }
 
-    /// The row in the opposite order, for inclinations of the other end.
+    /// The circles in the opposite order: the body turned upside down, so that its upper end touches the table.
     pub fn turned(&self) -> Self {
         let mut row = Self { at: self.count - 1 - self.at, over: !self.over, ..*self };
         row.circles[..self.count].reverse();

@@ -127,8 +127,8 @@ impl<T: Real, G: OwnCouple<T>> Lossy<T, G> {
         self.under(self.losses.pull, angle, precession, w, held)
     }
 
-    /// The response of the body as in [`at`](Self::at), with `pull` as the horizontal acceleration by the slope, along
-    /// e_h and e2.
+    /// The accelerations and the contact force as in [`at`](Self::at), with `pull` as the component of gravity along the
+    /// table, along e_h and e2.
     #[inline(always)]
     pub fn under(
         &self,

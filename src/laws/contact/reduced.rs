@@ -179,7 +179,7 @@ impl<T: Real> Rates<T> {
         Self { of, scaled, lever: [shape.rim.a * weight, shape.rim.ell * weight] }
     }
 
-    /// The equations of motion from which these rates are computed.
+    /// The equations of motion from which these time derivatives of the state are computed.
     #[inline(always)]
     pub fn reduced(&self) -> &Reduced<T> {
         &self.of

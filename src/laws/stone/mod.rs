@@ -216,7 +216,7 @@ impl Ellipsoid {
         self.offset
     }
 
-    /// The inclination of axis 3 at which the edge lands, in radians; pi without an edge.
+    /// The inclination of axis 3 at which the edge of a cut stone lands, in radians; pi for a whole ellipsoid.
     pub fn theta_end(&self) -> f64 {
         self.theta_end
     }

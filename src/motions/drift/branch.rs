@@ -60,8 +60,8 @@ impl<T: Real> Branch<T> {
         BranchAngle { angle, n, m }
     }
 
-    /// E' = dE/dtheta, the lost power and the rotation at a place on the branch; `ROUND` is true for rims with a
-    /// fillet.
+    /// E' = dE/dtheta, the lost power, and w1 and w3 of the steady state at an inclination on the branch; `ROUND` is true
+    /// for rims with a fillet.
     #[inline(always)]
     pub fn at<const ROUND: bool>(&self, BranchAngle { angle, n, m }: BranchAngle<T>) -> BranchPoint<T> {
         let (Shape { rim, i1, i3 }, (s, c)) = (self.shape, angle);

@@ -183,7 +183,7 @@ def state_of(words: Mapping[str, Any]) -> State:
 
 
 def table_of(words: Mapping[str, Any]) -> AnyContact:
-    """The contact that these keywords describe."""
+    """The law of contact with the table that these keywords of a page describe."""
     found: Any = words.get("contact", "rolling")
     # the unit was checked when it was set
     if found == "viscous":

@@ -121,7 +121,8 @@ impl<L: Own> Slide<L> {
         drilling_of(angle, w1, w3) - self.turning
     }
 
-    /// Calls a user-defined drive for its force and couple at the state vector `y`.
+    /// Calls a user-defined drive (a force and a couple on the body) at the state vector `y`; its answer stays in `self` for
+    /// the equations.
     #[inline(always)]
     pub fn asks_drive<const N: usize>(&self, y: &[f64; N]) {
         if L::IS && self.law.varies().drives() {
