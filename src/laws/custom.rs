@@ -200,6 +200,8 @@ const POWER_ROUNDING: f64 = 1e-12;
 /// The conditions on a couple and on a coefficient of friction, as errors name them.
 const FINITE: &str = "a couple that is finite in every state";
 const EXPECTED_TO_LOSE: &str = "a couple that takes energy, m.w <= 0";
+/// The condition on a drive; such an error gives the time, which a slope rescales.
+pub(crate) const DRIVE_FINITE: &str = "a drive whose force and couple are finite at this time";
 const AT_LEAST_0: &str = "a coefficient of friction of 0 or more at every speed";
 
 /// The error of a couple that is not finite, or supplies energy, in the state `y`; None for a valid couple.
@@ -217,8 +219,7 @@ pub(crate) fn fault_of_couple(m: [f64; 3], y: &State, normal: f64) -> Option<Err
 /// The error of a driving force or couple that is not finite; the value in the error is the time.
 pub(crate) fn fault_of_drive(push: &Push, now: &Moment) -> Option<Error> {
     let finite = push.force.iter().chain(&push.couple).all(|x| x.is_finite());
-    let expected = "a force and a couple that are finite at every time";
-    (!finite).then_some(Error::OutOfRange { name: "drive", value: now.time, expected })
+    (!finite).then_some(Error::OutOfRange { name: "t", value: now.time, expected: DRIVE_FINITE })
 }
 
 /// The error of a coefficient of friction that is negative or not finite at a speed; None for a valid one.

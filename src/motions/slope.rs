@@ -23,7 +23,7 @@ use crate::error::{Error, room, within};
 use crate::laws::body::Body;
 use crate::laws::contact::Table;
 use crate::laws::contact::slip::Friction;
-use crate::laws::custom::{CoupleLaw, DriveLaw, FrictionLaw, Moment, Push};
+use crate::laws::custom::{CoupleLaw, DRIVE_FINITE, DriveLaw, FrictionLaw, Moment, Push};
 use crate::laws::loss::{Law, Losses};
 use crate::laws::scale::Scale;
 use crate::laws::state::{Slip, State};
@@ -140,8 +140,8 @@ pub(crate) fn fault_at_pace(fault: Error, pace: f64) -> Error {
             let (w, weight) = (w.map(|w| pace * w), pace * pace);
             Error::Couple { power: pace * weight * power, expected, theta, w, normal: weight * normal }
         }
-        Error::OutOfRange { name: "drive", value, expected } => {
-            Error::OutOfRange { name: "drive", value: value / pace, expected }
+        Error::OutOfRange { name, value, expected: DRIVE_FINITE } => {
+            Error::OutOfRange { name, value: value / pace, expected: DRIVE_FINITE }
         }
         fault => fault,
     }

