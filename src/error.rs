@@ -88,7 +88,8 @@ pub enum Error {
         mu: f64,
         /// The inclination, in radians.
         theta: f64,
-        /// The coefficient mu_P(theta): below it the contact force at this inclination is unique.
+        /// mu_P(theta), the smallest coefficient of friction with which a slip at this inclination may have no unique
+        /// contact force.
         limit: f64,
     },
     /// The laws of impact and friction do not determine a unique motion after the other rim lands.

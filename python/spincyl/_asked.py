@@ -235,7 +235,7 @@ def ask(
 
 
 def on_table(asked: Asked, table: "Table") -> Asked:
-    """Add the table to the arguments; on a slope also request the pose, since gravity acts along x."""
+    """Add the table to the arguments; on a slope also request the pose, since phi matters."""
     from spincyl._table import Table
 
     table = instance_of("table", table, Table)

@@ -173,7 +173,8 @@ pub struct Reading {
     pub force: Vector3<f64>,
     /// Kinetic and potential energy in joules.
     pub energy: f64,
-    /// What the body is doing, such as rolling or slipping; None without a law of friction, losses and a restitution.
+    /// What the body is doing, such as rolling or slipping; None if there is no law of friction, no loss and no
+    /// restitution.
     pub kind: Option<Kind>,
 }
 

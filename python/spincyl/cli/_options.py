@@ -327,7 +327,7 @@ def _roll_options(sub: ArgumentParser) -> None:
     )
     _losses.option(how, "--loss")
     how.add_argument(
-        "--beyond", action="store_true", help="continue the solution past lift-off, slip or a landing"
+        "--beyond", action="store_true", help="continue the solution past lift-off, slip or the side"
     )
     _output_option(sub)
 

@@ -30,7 +30,7 @@ use crate::numbers::{COMPILES_AVX2, Dual, here, in_registers};
 pub(crate) const SHORTEST: f64 = 1e-14;
 /// Time that is added to the elapsed time for the comparison with `SHORTEST`, since changes right after the start may be fast.
 pub(crate) const SOON: f64 = 1e-9;
-/// Largest rate of the fall of a face, relative to its inclination, for which the first step is shortened.
+/// Rate of the fall of a face, relative to its inclination, beyond which the first step is not shortened further.
 pub(crate) const FASTEST: f64 = 1e15;
 /// A step crawls, that is, hardly advances, if it is shorter than this share of the longest step that rotation and
 /// nutation allow.

@@ -54,7 +54,7 @@ coded! {
         /// Too many changes: between phases such as slipping and rolling, or of rotations that dry friction stops and
         /// lets go. The limit is 20 changes per unit of time, but at least 5,000 and at most 10,000.
         Changes = 3,
-        /// Changes between phases follow each other without an advance of time.
+        /// Changes of either kind follow each other without an advance of time.
         Chatter = 4,
         /// There are more than 30,000 impacts, or impacts follow each other without end.
         Impacts = 5,

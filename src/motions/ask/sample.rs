@@ -34,9 +34,9 @@ pub struct Sample<S: Moving = State> {
     pub pose: Option<S::Pose>,
     /// The contact force, if forces were requested.
     pub force: Option<S::Force>,
-    /// The slip of the contact point; None without a law of friction, losses and a restitution.
+    /// The slip of the contact point; None if there is no law of friction, no loss and no restitution.
     pub slip: Option<Slip>,
-    /// The kind of phase, such as rolling or slipping; None without a law of friction, losses and a restitution.
+    /// The kind of phase, such as rolling or slipping; None if there is no law of friction, no loss and no restitution.
     pub kind: Option<Kind>,
     /// The height of the lowest point above the table and its vertical velocity; both are 0 on the table.
     pub aloft: AboveTable,

@@ -34,7 +34,7 @@ const MOST_PARTS: f64 = 4e5;
 const PARTS_PER_TIME: f64 = 2e3;
 
 /// Whether every phase of this motion has a closed form or series: a uniform ball on a level table, without poses,
-/// losses and a patch of contact.
+/// without losses, without viscous friction, and without a patch of contact.
 pub(crate) fn knows(body: &Body, ask: &Ask) -> bool {
     let dry = match ask.table {
         Table::Rolling { .. } | Table::Smooth => true,

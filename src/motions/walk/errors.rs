@@ -123,7 +123,7 @@ pub(crate) fn compare(motion: &mut Motion, other: &Motion) {
     }
 }
 
-/// Whether two solutions end with the same event at times that differ by at most 1 %.
+/// Whether two solutions end with the same event at times that differ by at most 1 % of 1 + the time.
 pub(crate) fn same_end(a: &Event, b: &Event) -> bool {
     a.ending == b.ending && (a.time - b.time).abs() <= 1e-2 * (1.0 + b.time.abs())
 }

@@ -292,8 +292,8 @@ impl<'a, P: Phases<N>, const N: usize> Walk<'a, P, N> {
         Ok(WalkStep::Done)
     }
 
-    /// Counts a change of the motion at the current time: a phase begins, or a contact point is no longer held.
-    /// Returns a limit if there have been too many changes.
+    /// Counts a change of the motion at the current time: a phase begins, or dry friction stops, holds or lets go a
+    /// rotation. Returns a limit if there have been too many changes.
     fn changes(&mut self) -> Option<Limit> {
         let now = self.at[TIME];
         self.still = if now > self.last_change { 0 } else { self.still + 1 };

@@ -22,9 +22,9 @@ use nalgebra::SMatrix;
 
 /// Number of components of the state vector that depend on each other: sine and cosine of theta, w and the slip u.
 const REACTING: usize = 7;
-/// A slip of a uniform ball on a patch has died out where it differs from that of steady creep by less than this
-/// share of the tolerance, or by less than `STEADY` tolerances where integration steps do not follow the creep more
-/// closely.
+/// A slip of a uniform ball on a patch has died out where it is below this share of the tolerance, if its steady creep
+/// is zero; else where it differs by less than `STEADY` tolerances from that creep, which integration steps do not
+/// follow more closely.
 const DEAD: f64 = 0.03;
 const STEADY: f64 = 0.3;
 
