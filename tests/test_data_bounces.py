@@ -72,6 +72,22 @@ def test_the_errors_cover_the_truth_two_times_of_three(jitter, each):
     assert ((np.mean(inside, axis=0) > 0.56) & (np.mean(inside, axis=0) < 0.85)).all()  # 0.68 +- 0.04
 
 
+@pytest.mark.parametrize("many", [6, 9, 12])
+@pytest.mark.parametrize(("jitter", "each"), [(3e-4, 0.0), (1e-3, 0.0), (1e-4, 0.01)])
+def test_errors_of_known_times_are_as_large_as_the_deviations(many, jitter, each):
+    off = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        e, height = rng.uniform(0.75, 0.92), rng.uniform(0.3, 1.2)
+        with warnings.catch_warnings(action="ignore"):
+            found = sc.data.fit_bounces(heard(e, height, many, 0.5, jitter, each, rng), error=jitter)
+        off.append(
+            [(found.restitution - e) / found.restitution_err, (found.height - height) / found.height_err]
+        )
+    rms = np.sqrt(np.mean(np.square(off), axis=0))
+    assert ((rms > 0.7) & (rms < 1.35)).all(), rms
+
+
 def test_a_missed_click_is_counted_and_echoes_and_knocks_are_left_out():
     for seed in range(40):
         rng = np.random.default_rng(seed)

@@ -1,9 +1,11 @@
 """Films: frames show the motion at their times, like the page; missing programs are named."""
 
 import os
+import re
 import stat
 import subprocess
 import sys
+import warnings
 from functools import cache
 
 import numpy as np
@@ -542,12 +544,24 @@ def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_pa
     assert not list(tmp_path.iterdir())
 
 
+def test_a_film_that_is_cut_names_the_slow_motion_with_which_all_of_it_fits(tmp_path):
+    m = motion_of("nutating")
+    view = sc.view(m, slow=20)
+    with pytest.warns(UserWarning, match=r"give seconds= for more, or slow=\d+ for all of it$") as caught:
+        view.save(tmp_path / "film.gif", fps=1, size=(64, 64))
+    slow = int(re.search(r"slow=(\d+)", str(caught[0].message))[1])
+    lasts = float(re.search(r"of ([\d.]+) seconds", str(caught[0].message))[1])
+    assert lasts / 20 * slow <= 10 and slow < 20
+    with warnings.catch_warnings(action="error"):
+        sc.view(m, slow=slow).save(tmp_path / "film.gif", fps=1, size=(64, 64))
+
+
 def test_a_long_film_is_cut_and_says_so_and_how_much_of_it_is_done(tmp_path):
     from PIL import Image
 
     view, shares = sc.view(motion_of("nutating"), slow=2), []
     with pytest.warns(
-        UserWarning, match="^the film shows the first 10 of 40 seconds; give seconds= for more"
+        UserWarning, match="^the film shows the first 10 of 40 seconds; give seconds= for more$"
     ):
         view.save(tmp_path / "film.gif", fps=1, size=(64, 64), progress=shares.append)
     with Image.open(tmp_path / "film.gif") as film:

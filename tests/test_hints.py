@@ -33,6 +33,10 @@ STATE = BODY.steady(1.3)
             "'material': give density= the name of a",
         ),
         (lambda: sc.Ellipsoid.rattleback(axes=(3, 2, 1), twist=0.1), "'axes': semi_axes= are half of length"),
+        (
+            lambda: sc.Ellipsoid.rattleback(length=0.1, twist=0.1),
+            "'length': .* whole ellipsoid; a stone that is its lower half has .* its whole depth$",
+        ),
         (lambda: sc.measured(outer_diameter=0.1, lenght=0.1), "'lenght': did you mean length\\?"),
         (
             lambda: sc.thrown(BODY, 1.0, 2.0, slope=0.1),
@@ -177,10 +181,11 @@ def test_every_word_that_is_proposed_for_an_attribute_begins_with_one_that_there
     ids=["states", "slip", "bodies"],
 )
 def test_the_error_about_an_index_says_how_to_take_one_of_many(family):
-    with pytest.raises(TypeError, match="is not subscriptable: index its fields, as in ") as caught:
+    with pytest.raises(TypeError, match="is not subscriptable: .*index (its|the) fields, as in ") as caught:
         family[1]
     call = str(caught.value).split(" as in ")[1]
     name = type(family).__name__.lower()
+    assert ("subscriptable: m.at(t) has theta, w" in str(caught.value)) == (name == "state")
     one = eval(call, {"dataclasses": dataclasses, name: family})
     assert all(np.ndim(x) == 0 for x in one._numbers)
     assert one.theta == family.theta[1] if name == "state" else one.ell == 2.5 and one.bore == 0.3
@@ -347,3 +352,24 @@ def test_a_film_at_another_speed_is_made_by_view(tmp_path):
     m = sc.roll(BODY, STATE, 1.0)
     with pytest.raises(TypeError, match=r"film\(\) got an unexpected .* 'slow': sc.view\(m, slow=1\).save"):
         m.film(tmp_path / "x.mp4", slow=1)
+
+
+def test_a_spin_in_turns_per_second_is_told_of_hertz():
+    stone = sc.Ellipsoid.rattleback(("8cm", "16mm", "14mm"), twist=0.1)
+    with pytest.raises(TypeError, match=r"^spin = '-1Hz': expected a number in sqrt\(g/a\); hertz= takes"):
+        stone.spinning("-1Hz")
+    assert stone.spinning(hertz="-1Hz").spin < 0
+
+
+def test_a_coin_is_told_that_a_film_from_above_is_for_tubes():
+    coin = sc.measured(outer_diameter="24mm", length="2mm")
+    with pytest.raises(ValueError, match="^tube: from_above is for tubes, .* 0.083 times as long as wide"):
+        sc.data.from_above(sc.data.example("tube_from_above"), coin)
+
+
+def test_branches_of_a_body_that_is_no_tube_name_no_bore_and_say_what_is_shown():
+    pytest.importorskip("matplotlib")
+    balls = sc.assembled([sc.parts.ball(diameter=x, density=7800) for x in ("18mm", "14mm")])
+    said = sc.plot.branches([balls]).get_title()
+    assert "nan" not in said and "up to 90 degrees" in said
+    assert "90" not in sc.plot.branches([2.5]).get_title()

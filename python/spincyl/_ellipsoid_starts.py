@@ -14,6 +14,7 @@ from spincyl._input.numbers import (
     Result,
     common_shape,
     instance_of,
+    is_quantity,
     numbered,
     radians,
     reals,
@@ -32,6 +33,8 @@ class StoneStarts(Sized, Hinting):
         self, spin: Reals | None = None, *, hertz: Reals | None = None, pitch: Reals = 0.0, roll: Reals = 0.0
     ) -> EllipsoidState:
         """Initial state of a stone that spins about the vertical, upright or nearly upright.
+
+        A bare number is in sqrt(g/a), also for a measured stone; ``hertz=`` takes turns per second.
 
         Parameters
         ----------
@@ -151,6 +154,11 @@ class StoneStarts(Sized, Hinting):
         if (spin is None) == (hertz is None):
             raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
         if hertz is None:
+            if isinstance(spin, str) or is_quantity(spin):
+                raise TypeError(
+                    f"spin = {str(spin)!r}: expected a number in sqrt(g/a); hertz= takes"
+                    ' turns per second, as in hertz="-1Hz"'
+                )
             return as_doubles(reals("spin", spin))
         if self.scale is None:
             raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -59,6 +59,8 @@ class State(HintingFamily):
     TypeError
         If a field is not real-valued, or the slip is not a pair; the message names the field.
     """
+
+    _of_motion: ClassVar[str] = "m.at(t) has theta, w and all else of a motion m at the time t"
 
     theta: Reals
     w1: Reals

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import fields
 from functools import wraps
 from inspect import signature
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -114,7 +114,8 @@ def proposal(name: str, known: Iterable[str]) -> str:
     """Text that proposes known names similar to a wrong one, after a colon; empty without a proposal."""
     names = [x for x in known if not x.startswith("_")]
     if "semi_axes" in names and name in ("axes", "length", "lengths", "size", "width", "dimensions"):
-        return ": semi_axes= are half of length, width and height of the whole ellipsoid"
+        told = ": semi_axes= are half of length, width and height of the whole ellipsoid"
+        return f"{told}; a stone that is its lower half has half its length, half its width, its whole depth"
     if name in _INSTEAD:
         return f": {_INSTEAD[name]}"
     near = difflib.get_close_matches(name, names, 3, 0.7)
@@ -190,6 +191,8 @@ def _instead_of_attribute(thing: object, name: str) -> str:
 class HintingFamily(Hinting):
     """Base of bodies and states: the error about an index says how to take one element of a family."""
 
+    _of_motion: ClassVar[str] = ""  # what gives the states of a motion at one time
+
     if not TYPE_CHECKING:  # type checkers know that there is no index
 
         def __getitem__(self, index: Any) -> Any:
@@ -203,4 +206,6 @@ class HintingFamily(Hinting):
                     parts.append(f"{name}={own}.{name}[{at}]")
             how = f"dataclasses.replace({own}, {', '.join(parts)})"
             more = f": index its fields, as in {how}" if parts else ""
+            if parts and self._of_motion:
+                more = f": {self._of_motion}; of any others index the fields, as in {how}"
             raise TypeError(f"{kind!r} object is not subscriptable{more}")

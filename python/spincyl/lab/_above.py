@@ -81,6 +81,7 @@ def from_above(
     Raises
     ------
     ValueError
+        If the body is shorter than wide.
         If there are fewer than three frames, a track or column is missing, or an end has two positions at one
         time. If the line between the ends is much longer or very much shorter than the tube. If the tube
         turns by about half a turn from frame to frame, and the inclination does not decide in which sense. If
@@ -133,11 +134,17 @@ def from_above(
         tracks = read_tracker(tracks, encoding=encoding)
     if not isinstance(tracks, Mapping):
         raise TypeError(f"tracks: expected a dict of tracks, or a path, not {type(tracks).__name__}")
+    tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
+    wide = float(scale.metres(2.0))
+    if tall < wide:
+        raise ValueError(
+            f"tube: from_above is for tubes, whose axis is the line between two marks at the ends,"
+            f" not for a body that is {tall / wide:.2g} times as long as wide"
+        )
     names = _ends(tracks, ends)
     first, second = (_positions(tracks, name) for name in names)
     t, marks, unseen = _both_ends(first, second)
     between = marks[:, 0] - marks[:, 1]
-    tall = float(scale.metres(2.0 * (body.ell + body.fillet)))
     line = np.abs(between)
     share, share_err = _sine_of_inclination(line / tall, ruler)
     one = float(scale.hertz(body, 1.0))

@@ -22,6 +22,7 @@ from spincyl._input.numbers import Floats, flag, in_range, optional_library, who
 from spincyl._input.progress import Progress, reporting_progress
 from spincyl.studio.frames import Reel, frames, pictures, vector
 from spincyl.studio.look import AZIMUTH
+from spincyl.studio.pages.recorded import SLOW
 from spincyl.studio.poses import span
 from spincyl.studio.sound import Silent, pressure, sources, write_wave
 
@@ -63,7 +64,7 @@ def reel(
         lasts = (max(b for _, b in spans) - min(a for a, _ in spans)) * view.slow * unit
         if lasts > _DEFAULT_SECONDS * (1 + 1e-9):
             first = f"{_DEFAULT_SECONDS:g} of {lasts:.3g} seconds"
-            told = f"the film shows the first {first}; give seconds= for more"
+            told = f"the film shows the first {first}; give seconds= for more{_faster(view.slow, lasts)}"
             warnings.warn(told, UserWarning, stacklevel=3)
     return Reel(
         view.motions,
@@ -74,6 +75,12 @@ def reel(
         view._colours,
         view.look,
     )
+
+
+def _faster(slow: float, lasts: float) -> str:
+    """Text that proposes a `slow` at which all of a motion fits into the default length of a film."""
+    fits = [x for x in SLOW if x * lasts <= slow * _DEFAULT_SECONDS * (1 + 1e-9)]
+    return f", or slow={max(fits)} for all of it" if fits else ""
 
 
 def film(what: Reel, path: Path, progress: Progress | bool | None = None, sound: bool | None = None) -> None:

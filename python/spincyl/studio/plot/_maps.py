@@ -110,6 +110,10 @@ def branches(
 ) -> "Axes":
     """Draw the inclination of steady states against their reduced rate: solid if stable, dashed if not.
 
+    The letters of a single body: A balanced at rest, B on its side, C the limit of high rates, D flat on its
+    face, E a fold, F a change of stability, G a ridge of the energy. Inclinations above 90 degrees,
+    which a body with a rounded rim can have, are not drawn; the title says so.
+
     Parameters
     ----------
     ells : iterable of float or Body
@@ -141,7 +145,7 @@ def branches(
     """
     bore = in_range("bore", bore, 0.0, 1.0)
     bodies = [x if isinstance(x, Body) else Body.tube(x, bore) for x in _ells(ells)]
-    bores = {float(body.bore) for body in bodies}
+    bores = {float(body.bore) for body in bodies if body.bore == body.bore}  # only tubes have one
     code_of(contact)
     units = [
         float(sized_body("ells", x, None)[1].hertz(x, 1.0)) if flag("hertz", hertz) else 1.0 for x in bodies
@@ -152,7 +156,9 @@ def branches(
     ax.set(xlim=(0, rate_max), ylim=(0, 90), yticks=range(0, 91, 15))
     colours = [BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK]
     for body, unit, colour in zip(bodies, units, colours * len(bodies), strict=False):
-        label = rf"$\ell = {body.ell:.4g}$" + (f", bore {body.bore:.4g}" if len(bores) > 1 else "")
+        label = rf"$\ell = {body.ell:.4g}$" + (
+            f", bore {body.bore:.4g}" if len(bores) > 1 and body.bore == body.bore else ""
+        )
         for stable, theta, rate in pieces(body, contact, rate_max / unit):
             line = ax.plot(
                 unit * rate,
@@ -171,7 +177,9 @@ def branches(
     reduced = r"reduced rotation rate  $\widetilde\Omega = \Omega\,\sqrt{I_3/(MgR)}$"
     ax.set_xlabel(HERTZ if hertz else reduced)
     ax.set_ylabel(r"inclination  $\theta$ (degrees)")
-    ax.set_title(title(contact, bores.pop() if len(bores) == 1 else 0.0))
+    told = title(contact, bores.pop() if len(bores) == 1 else 0.0)
+    beyond = any(body.theta_end > _HALF_PI + 1e-9 for body in bodies)
+    ax.set_title(f"{told}\nup to 90 degrees; the bodies may lean farther" if beyond else told)
     if len(bodies) > 1:
         ax.legend(framealpha=0.9)
     return ax
