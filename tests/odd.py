@@ -351,6 +351,7 @@ def motions():
             {
                 "body": body, "theta": 1.3, "state": None, "kick": 0.0, "contact": "rolling", "restitution": 0.5, "losses": None,
                 "table": sc.Table(0.1), "t": None, "slow": 20.0, "friction": True, "title": "x",
+                "language": "de",
             },
         ),
         **{

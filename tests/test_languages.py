@@ -10,6 +10,7 @@ from page_scenes import live_page
 from playing import PHONE, settled, state
 from test_play import unpacked
 
+import spincyl as sc
 from spincyl.studio.pages.joined import script, text
 from spincyl.studio.pages.languages import LANGUAGES, language, words_of
 from spincyl.studio.pages.play import _SCRIPTS
@@ -112,6 +113,24 @@ def test_a_language_is_chosen_by_hand_or_by_the_address_which_keeps_it(opened):
     odd = opened("#language=xx&ell=2.5&theta=1.3", locale="fr-FR")
     assert odd.evaluate("document.documentElement.lang") == "fr"
     assert page.complaints == again.complaints == odd.complaints == []
+
+
+def test_a_file_has_a_language_which_its_address_or_its_list_can_change(opened):
+    german = sc.play(sc.Body.solid(2.5), 1.3, language="de")
+    page = opened(page=german, locale="fr-FR")
+    assert page.evaluate("document.documentElement.lang") == "de"
+    assert page.locator("#what").inner_text() == language("de")[1]["Stable"]
+    assert "language" not in state(page) and "language" not in page.evaluate("location.hash")
+    page.select_option("#language", "it")
+    settled(page)
+    assert page.locator("#what").inner_text() == language("it")[1]["Stable"]
+    for at, spoken in (("#language=es", "es"), ("#language=xx", "de"), ("#ell=2.5&theta=0.9", "de")):
+        other = opened(at, page=german, locale="fr-FR")
+        assert other.evaluate("document.documentElement.lang") == spoken, at
+        assert other.complaints == []
+    english = opened(page=sc.play(language="en"), locale="fr-FR")
+    assert english.evaluate("document.documentElement.lang") == "en"
+    assert page.complaints == english.complaints == []
 
 
 @pytest.mark.parametrize("code", LANGUAGES)

@@ -81,7 +81,7 @@ BESIDES = {
     "core": {"circles", "while_slipping"},  # of the body and of a law
     "rust": {"times", "resistance"},
     "command": {"--t", "--points"},
-    "page": {"body", "theta", "state", "kick", "t", "slow", "friction", "title"},
+    "page": {"body", "theta", "state", "kick", "t", "slow", "friction", "title", "language"},
 }
 
 

@@ -94,6 +94,8 @@ def test_the_page_begins_with_what_is_told():
     assert (whirr["law"], whirr["loss"], whirr["until"]) == ("dry-contour", 5e-3, 400)
     free = given(sc.play(PIPE, state=sc.State(1.0, 0.1, 0.2, 0.3, slip=(0.4, 0.5)), contact=sc.Coulomb(0.3)))
     assert free["w"] == [0.1, 0.2, 0.3, 0.4, 0.5] and (free["contact"], free["mu"]) == ("coulomb", 0.3)
+    german = sc.play(PIPE, 1.5, kick=0.1, contact="smooth", language="de")
+    assert given(german) == told | {"language": "de"} and german.address.startswith("#language=de&ell=6.0&")
     balls = given(sc.play(sc.Body.balls(), 1.3))
     assert (balls["i3"], balls["end"]) == (0.4, math.pi / 2)
 
@@ -210,6 +212,7 @@ def test_what_is_set_afterwards_is_shown():
         ({"contact": sc.Coulomb(0.3, static=0.5)}, "expected static = mu"),
         ({"contact": "glue"}, "expected 'rolling', 'smooth', sc.Coulomb"),
         ({"losses": sc.loss.DryContour(1e-3) + sc.loss.Drilling(1e-3)}, "expected one loss"),
+        ({"language": "nl"}, "language = 'nl': expected 'en', 'de', 'fr', 'es', 'it', 'pt', 'ja' or 'zh'"),
         ({"theta": 1.0, "state": sc.State(1.0, 0.0, 0.0, 0.0)}, "cannot be combined with theta or kick"),
     ],
 )
@@ -282,6 +285,8 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     assert path.read_text("utf-8") == sc.play(contact=sc.Viscous(0.2)._known()).html
     assert main(["play", "--ell", "2.5", "--slope", "5deg", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(sc.Body.solid(2.5), table=sc.Table("5 deg")).html
+    assert main(["play", "--language", "de", "-o", str(path)]) == 0
+    assert path.read_text("utf-8") == sc.play(language="de").html
     sizes = ["--outer", "50mm", "--inner", "40mm", "--length", "150mm", "--mass", "100g"]
     assert main(["play", *sizes, "--theta", "1.4", "-o", str(path)]) == 0
     assert path.read_text("utf-8") == sc.play(SIZED, 1.4).html
@@ -292,6 +297,8 @@ def test_the_command_writes_the_page_that_is_asked_for(tmp_path, capsys):
     odd = (["--mu", "0.3"], ["--contact", "coulomb"], ["--theta", "300deg"], wet, [*wet, "--mu", "1"])
     for wrong in (*odd, *bounces):
         assert main(["play", *wrong, "-o", str(path)]) == 2
+    with pytest.raises(SystemExit, match="2"):
+        main(["play", "--language", "nl", "-o", str(path)])
     assert main(["play", "-o", str(tmp_path / "play.png")]) == 2
     assert "expected a name that ends in .html" in capsys.readouterr().err
     assert not (tmp_path / "play.png").exists()

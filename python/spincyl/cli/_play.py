@@ -14,6 +14,7 @@ from spincyl._scale import Scale
 from spincyl.cli._commands import body_of, contact_of
 from spincyl.cli._losses import losses_of, option
 from spincyl.cli._output import writable
+from spincyl.studio.pages.languages import LANGUAGES
 from spincyl.studio.pages.words import paper_tube
 
 TEXT = """\
@@ -30,7 +31,7 @@ spincyl play --ell 6 --bore 0.8 --theta 89.5deg -o tube.html
 spincyl play --ell 0.375 --theta 80deg --kick -0.01 --contact smooth -o ice.html
 spincyl play --ell 0.17 --theta 0.3 --loss dry-contour=5e-3 --t 400 -o whirr.html
 spincyl play --ell 0.5 --theta 1.2 --contact coulomb --mu 0.3 --restitution 0.5 -o hops.html
-spincyl play --ell 2.5 --slope 5deg -o slope.html
+spincyl play --ell 2.5 --slope 5deg --language de -o slope.html
 spincyl play --theta 80deg --contact coulomb --mu 0.3 --patch 0.01 -o dry.html
 spincyl play --balls --theta 78deg --open -o balls.html"""
 
@@ -80,6 +81,9 @@ def play_options(sub: ArgumentParser) -> None:
         action="store_true",
         help="smaller page without friction and losses: rolling or a smooth table",
     )
+    sub.add_argument(
+        "--language", choices=("en", *LANGUAGES), help="language of the page (default: that of the browser)"
+    )
     sub.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
@@ -106,6 +110,7 @@ def run(args: Namespace) -> None:
         table=None if args.slope is None else Table(args.slope),
         t=args.t,
         slow=args.slow,
+        language=args.language,
         friction=not args.lean,
     ).save(path)
     print(f"{made.stat().st_size / 1000:.0f} kB in {made}")

@@ -18,7 +18,7 @@ from spincyl._contact import AnyContact, contact_in_words
 from spincyl._ellipsoid import Ellipsoid
 from spincyl._ellipsoid_motion import EllipsoidMotion
 from spincyl._input.files import path_of, writing_whole
-from spincyl._input.numbers import flag, in_range, instance_of, si
+from spincyl._input.numbers import flag, in_range, instance_of, one_of, si
 from spincyl._loss import Loss, command_line_name
 from spincyl._motion import Motion
 from spincyl._roll import roll
@@ -30,7 +30,7 @@ from spincyl.studio.cards import drawing
 from spincyl.studio.pages.compressed import compressed
 from spincyl.studio.pages.fits import check_bounces, check_circles, check_contents, check_table
 from spincyl.studio.pages.joined import filled, frame, line, script, style, text
-from spincyl.studio.pages.languages import numbered, table, words_of
+from spincyl.studio.pages.languages import LANGUAGES, numbered, table, words_of
 from spincyl.studio.pages.packed import packed
 from spincyl.studio.pages.words import (
     body_of,
@@ -119,8 +119,11 @@ class Play:
         True if the page includes friction and losses.
     """
 
-    def __init__(self, told: dict[str, Any], title: str, friction: bool, body: Body) -> None:
+    def __init__(
+        self, told: dict[str, Any], title: str, friction: bool, body: Body, spoken: dict[str, str]
+    ) -> None:
         self.title, self.friction, self._told, self._body = title, friction, told, body
+        self._spoken = spoken
         self._widget: Any = None
 
     @property
@@ -249,7 +252,7 @@ class Play:
             "title": html.escape(self.title),
             "style": style(["play.first.css"]),
             "picture": picture,
-            "given": _json(self._told),
+            "given": _json(self._told | self._spoken),
             "packed": _packed_page(self.friction),
             "loader": script(["page.night.js", "play.lzma.js", "play.join.js", "play.loader.js"]),
         }
@@ -258,7 +261,8 @@ class Play:
     @property
     def address(self) -> str:
         """End of the page's address, such as "#ell=2.5&theta=1.3", which contains all settings."""
-        words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in self._told.items()}
+        told = self._spoken | self._told
+        words = {k: ",".join(map(repr, v)) if isinstance(v, list) else v for k, v in told.items()}
         words.pop("parts", None)  # an address has no room for surfaces
         return "#" + "&".join(f"{name}={word}" for name, word in words.items())
 
@@ -316,6 +320,7 @@ def play(
     slow: float = 20.0,
     friction: bool = True,
     title: str = "spincyl: a page to play with",
+    language: str | None = None,
 ) -> Play:
     """Make an interactive page that computes motions itself: drag a point on a map, and see the exact motion.
 
@@ -355,6 +360,8 @@ def play(
         (on "rubber") or slides without friction (on "ice").
     title : str
         Title of the page. A tab or a new line is shown as a space.
+    language : {"en", "de", "fr", "es", "it", "pt", "ja", "zh"}, optional
+        Language of the page. Its address and its list can choose another. Default: that of the browser.
 
     Returns
     -------
@@ -364,9 +371,9 @@ def play(
     Raises
     ------
     ValueError
-        If `body` is a family, a number is out of range, or there are several losses. If `state` is given
-        together with `theta` or `kick`. If a law of friction or losses are given but `friction` is False. If
-        the title has a control character, half a surrogate pair or a noncharacter, which HTML excludes.
+        If `body` is a family, a number is out of range, the language is unknown, or there are several losses.
+        If `state` is given with `theta` or `kick`. If a law of friction or losses are given but `friction`
+        is False. If the title has a control character, half a surrogate pair or a noncharacter.
     TypeError
         If an argument is of the wrong type; the message names it.
 
@@ -406,7 +413,8 @@ def play(
     check_contents(friction, contact, losses, body)
     check_bounces(friction, contact, restitution)
     check_table(friction, table)
-    return Play(told, line("title", title), friction, body)
+    spoken = {} if language is None else {"language": one_of("language", language, ("en", *LANGUAGES))}
+    return Play(told, line("title", title), friction, body, spoken)
 
 
 def _rattleback_motion(words: dict[str, Any]) -> EllipsoidMotion:

@@ -33,9 +33,10 @@ function speak(wanted) {
   for (const tell of spoken) tell();
 }
 for (const [code, [name]] of Object.entries(TABLE)) $("language").add(new Option(name, code));
-// that of the address, else of the browser
+// that of the address, else of the file, else of the browser; the state of the page has no language
 {
   const asked = /[#&]language=(\w+)\b/.exec(location.hash)?.[1];
   if (asked in TABLE) chosen = asked;
-  speak(chosen || (navigator.languages || []).map(x => x.slice(0, 2)).find(x => x in TABLE) || "en");
+  speak(chosen || given.language || (navigator.languages || []).map(x => x.slice(0, 2)).find(x => x in TABLE) || "en");
+  delete given.language;
 }
