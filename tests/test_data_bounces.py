@@ -76,7 +76,7 @@ def test_the_errors_cover_the_truth_two_times_of_three(jitter, each):
 @pytest.mark.parametrize(("jitter", "each"), [(3e-4, 0.0), (1e-3, 0.0), (1e-4, 0.01)])
 def test_errors_of_known_times_are_as_large_as_the_deviations(many, jitter, each):
     off = []
-    for seed in range(60):
+    for seed in range(40):
         rng = np.random.default_rng(seed)
         e, height = rng.uniform(0.75, 0.92), rng.uniform(0.3, 1.2)
         with warnings.catch_warnings(action="ignore"):
@@ -85,7 +85,7 @@ def test_errors_of_known_times_are_as_large_as_the_deviations(many, jitter, each
             [(found.restitution - e) / found.restitution_err, (found.height - height) / found.height_err]
         )
     rms = np.sqrt(np.mean(np.square(off), axis=0))
-    assert ((rms > 0.7) & (rms < 1.35)).all(), rms
+    assert ((rms > 0.6) & (rms < 1.4)).all(), rms
 
 
 def test_a_missed_click_is_counted_and_echoes_and_knocks_are_left_out():

@@ -26,6 +26,7 @@ _NEIGHBOURS = 5  #: The first three bounces are sought among this many clicks af
 _RATIOS = (0.1, 1.0)  #: Of intervals.
 _SHORTEST = 2e-3  #: Seconds; bounces are not followed below this interval.
 _ODD = 0.01  #: Relative deviation of the first or last interval that is never odd, and scatter that is none.
+_RECORDED = 2e-4  #: Standard error of the time of a click in a recording, in seconds.
 _MISSED = 2.0  #: What a missed bounce weighs; one more that is heard weighs 3 to 5 where the ratio is steady.
 #: Share of clicks that may be left out, or missed, without a warning, and height of a drop in metres.
 _LOST, _HIGHEST = 1 / 3, 100.0
@@ -154,7 +155,8 @@ def fit_bounces(
         A recording, as `read_sound` returns it: ``fit_bounces(*read_sound(path))``. A click is where the
         sound rises threefold within milliseconds.
     error : float, optional
-        Standard error of the time of a click in seconds. Default: estimated, between 0.1 and
+        Standard error of the time of a click in seconds. Default: 0.2 ms in a recording; in a list
+        of times it is estimated, between 0.1 and
         1.5 ms, together with the scatter of the restitution, which it cannot always tell apart.
     released : float, optional
         Time at which the ball was released at rest. The fall itself then gives the height and the restitution
@@ -194,7 +196,7 @@ def fit_bounces(
     times are fitted by generalised least squares as sums of flights. Two sources of scatter, the times of the
     clicks and the restitution of each bounce, are averaged over, weighted by restricted likelihood (Patterson
     and Thompson 1971, Biometrika 58, 545) and by a prior: a constant restitution has the probability 0.95
-    with `error`, and 0.8 without; else it scatters by 0.5 to 10 %. Without `error` the times scatter by 0.1
+    with `error`, and 0.6 without; else it scatters by 0.2 to 10 %. Without `error` the times scatter by 0.1
     to 1.5 ms; give `error` for clicks that are worse, as from a film.
 
     Examples
@@ -202,12 +204,12 @@ def fit_bounces(
     >>> import spincyl as sc
     >>> heard = sc.data.fit_bounces([0.452, 1.231, 1.932, 2.562, 3.130, 3.640, 4.100])
     >>> heard
-    <Bounces: restitution 0.89995 +- 0.00076, dropped from 0.9185 +- 0.0038 m; 7 bounces>
+    <Bounces: restitution 0.89983 +- 0.00027, dropped from 0.9183 +- 0.0015 m; 7 bounces>
     """
     times = clicks(t, sound) if sound is not None else _click_times(t)
     g = number("gravity", si("gravity", gravity, "metre/second**2"))
     refuse_bad_value("gravity", g, lambda x: ~((x > 0) & (x < np.inf)), "expected a positive number")
-    one = math.nan
+    one = _RECORDED if sound is not None else math.nan
     if error is not None:
         one = number("error", si("error", error, "second"))
         refuse_bad_value("error", one, lambda x: ~((x > 0) & (x < 1)), "expected a positive time below 1 s")
@@ -237,7 +239,7 @@ def fit_bounces(
     after, after_err = shape.at(0.0)
     before_err = math.hypot(before_err, shape.each)  # the first impact has a scatter of its own
     height, rebound = (g * math.exp(2 * x) / 8 for x in (before, after))
-    fall = _fall(released, at[0], after, (after_err, line.jitter if error is None else one), g)
+    fall = _fall(released, at[0], after, (after_err, one if math.isfinite(one) else line.jitter), g)
     extra, missed = np.setdiff1d(times, at), []
     for n in np.setdiff1d(np.arange(number_[-1]), number_):
         heard = int(np.searchsorted(number_, n)) - 1
