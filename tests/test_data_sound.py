@@ -84,6 +84,16 @@ def test_a_second_whirr_is_left_out_and_a_warning_says_from_when_to_when():
     assert sc.data.wobble(time[part], sound[part]).turns.max() < 12
 
 
+def test_a_whirr_that_goes_on_above_the_upper_limit_is_told_with_the_limit():
+    _, rings, _ = whirr(15.0, 9.0, 8.991, noise=0.0)  # to 150 turns a second
+    sound = np.r_[np.zeros(int(2.3 * HERTZ)), rings]
+    sound += 0.05 * np.random.default_rng(2).normal(size=sound.size)
+    said = r"goes on right after it.* raise the upper limit of between= \(now 30 per second\)"
+    with pytest.warns(UserWarning, match=said):
+        found = sc.data.wobble(np.arange(sound.size) / HERTZ, sound, between=(2.0, 30.0))
+    assert 15 < found.turns[-1] < 36 and found.t[0] > 2.3
+
+
 def test_a_wobble_that_slows_down_is_followed_too():
     t, sound, true = whirr(20.0, 8.5, 8.0)
     found = sc.data.wobble(t, sound[::-1])

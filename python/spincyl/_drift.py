@@ -193,7 +193,7 @@ class Drift(Hinting):
             found = [float(value) for value in out[0]]
             if np.isnan(found[0]) and name == "theta":
                 low, high = sorted((float(np.asarray(self.start.theta)), self.ends_at_theta))
-                told = f"expected an inclination through which the drift passes, {low:.6g} to {high:.6g}"
+                told = f"expected {low:.6g} to {high:.6g}, the inclinations of this body with these losses"
                 raise ValueError(f"theta = {asked[0]:.10g}: {told}")
             if np.isnan(found[0]) and question == 1:
                 raise ValueError(f"t = {x!r}: expected 0 <= t <= stops_at = {self.stops_at!r}")

@@ -29,6 +29,7 @@ _FEWEST_WINDOWS = 4  # least number of coherent windows in a row
 _SYSTEMATIC_ERROR = 1e-3  # relative systematic error of a window without noise
 # sound that is left out: its least level, as a share of that of the whirr, and its least duration in seconds
 _LOUD, _LASTS = 0.7, 0.2
+_NEAR_LIMIT = 1 / 3  # a whirr that ends above this share of the upper limit may go on beyond the limit
 
 
 @compared_by_value
@@ -123,7 +124,15 @@ def wobble(t: Reals, sound: Reals, *, between: tuple[float, float] = (2.0, 200.0
         told = (
             f"sound: there is sound {parts} as well, which is left out: one whirr was followed, from {found};"
         )
-        warn(f"{told} give the other part alone as t and sound, or other turns per second in between=")
+        advice = "give the other part alone as t and sound, or other turns per second in between="
+        after = missed[-1][0] - (time[-1] + half[-1])
+        if -_LASTS < after < _LASTS and turns[-1] > max(_NEAR_LIMIT * high, turns[0]):
+            rate = f"{turns[-1]:.3g} turns a second"
+            advice = (
+                f"it quickens to {rate}, and the sound goes on right after it: if this is the same whirr,"
+                f" raise the upper limit of between= (now {high:g} per second)"
+            )
+        warn(f"{told} {advice}")
     return Wobble(begin + time, turns, np.hypot(errors, turns * (_SYSTEMATIC_ERROR + quickens**3)))
 
 
