@@ -122,5 +122,6 @@ def _weights(jacobian: Floats, walk: Floats, off: Floats, jitters: Floats, prior
     square = (modes.T @ (across.T @ off)) ** 2
     variance = jitters[:, np.newaxis, np.newaxis] ** 2 + _EACH[:, np.newaxis] ** 2 * np.maximum(size, 0.0)
     log = prior - 0.5 * (np.log(variance) + square / variance).sum(axis=-1)
-    weight: Floats = np.exp(log - log.max())
-    return weight / weight.sum()
+    weight = np.exp(log - log.max())
+    found: Floats = weight / weight.sum()
+    return found
