@@ -113,7 +113,7 @@ def test_no_wobble_is_heard_in_noise_or_in_an_even_tone(seed):
     t = np.arange(4 * HERTZ) / HERTZ
     noise = np.random.default_rng(seed).normal(size=t.size)
     for sound in (noise, np.sin(2 * np.pi * 3000 * t) + 0.1 * noise):
-        with pytest.raises(ValueError, match="no wobble between 2 and 200"):
+        with pytest.raises(ValueError, match="no whirr of 2 to 200 turns"):
             sc.data.wobble(t, sound)
 
 
