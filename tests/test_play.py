@@ -53,7 +53,7 @@ def test_the_page_holds_its_script_and_the_core_that_is_asked_for_in_little_more
     assert core == lzma.decompress(
         files("spincyl.studio.pages").joinpath("cores", CORES[friction]).read_bytes()
     )
-    assert core[40:44] == b"\0asm"
+    assert core[48:52] == b"\0asm"
     # seven bits per byte, and a loader
     small = [compressed(what) for what in (core, (look + shown + text).encode())]
     assert len(page.encode()) < 8 / 7 * sum(map(len, small)) + 10_000

@@ -134,7 +134,7 @@ def test_the_energy_of_a_motion_on_a_slope_includes_the_height_above_its_foot(ho
             continue
     assert m.t.size > 10 and np.abs(whole - whole[0]).max() < 1e-11 + 20 * m.error
     assert m.phi[0] == 0.4 and tuple(m.contact_point[0]) == (1.0, -2.0)
-    assert "by steps" in m.message
+    assert "in steps" in m.message
 
 
 def test_a_measured_body_moves_in_si():

@@ -26,17 +26,17 @@ def logarithms(at: Floats, n: Numbers) -> tuple[Floats, Floats]:
     start, first, e = n[:-1].astype(np.float64), y, 1.0
     for _ in range(20 if (gap > 1).any() else 0):
         first = y - np.log([sum(e**s for s in range(m)) for m in gap])
-        e = math.exp(slope(start, first))
+        e = math.exp(slope_of(start, first))
     return start, first
 
 
-def slope(x: Floats, y: Floats) -> float:
+def slope_of(x: Floats, y: Floats) -> float:
     """Slope of the straight line that fits points best; 0 for a single point."""
     off = x - x.mean()
     return float(off @ y / (off @ off)) if x.size > 1 else 0.0
 
 
-class Line(NamedTuple):
+class FlightLine(NamedTuple):
     """Logarithms of the intervals as a polynomial of the number of the bounce."""
 
     beta: Floats
@@ -51,7 +51,7 @@ class Line(NamedTuple):
         return float(row @ self.beta), math.sqrt(max(float(row @ self.covariance @ row), 0.0))
 
 
-def fitted(at: Floats, n: Numbers, degree: int, error: float) -> Line:
+def fitted(at: Floats, n: Numbers, degree: int, error: float) -> FlightLine:
     """Fit the polynomial to times of clicks, more than unknowns, by generalised least squares.
 
     A time is that of the first impact plus the flights before it, so that it belongs to two intervals; a
@@ -65,7 +65,7 @@ def fitted(at: Floats, n: Numbers, degree: int, error: float) -> Line:
     before = np.tri(last + 1, last, -1)[n - n[0]]
     start, y = logarithms(at, n)
     beta = np.zeros(degree + 1)
-    beta[1] = slope(start, y)
+    beta[1] = slope_of(start, y)
     beta[0] = y.mean() - beta[1] * start.mean()
     begin = float(at[0])
     jitters = np.array([error]) if known else _JITTERS
@@ -102,7 +102,7 @@ def fitted(at: Floats, n: Numbers, degree: int, error: float) -> Line:
     sure = _TREND if known else student(_TREND, free) / student(1.0, free)
     each = math.sqrt(float(weight.sum(axis=0) @ _EACH**2))
     jitter = math.sqrt(float(weight.sum(axis=1) @ jitters**2))
-    return Line(beta + mean[1:], covariance[1:, 1:], each, jitter, sure)
+    return FlightLine(beta + mean[1:], covariance[1:, 1:], each, jitter, sure)
 
 
 def _least_squares(jacobian: Floats, v: Floats, off: Floats) -> tuple[Floats, Floats]:

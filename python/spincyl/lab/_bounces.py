@@ -14,7 +14,7 @@ import numpy as np
 from spincyl._input.equality import compared_by_value
 from spincyl._input.numbers import Floats, Reals, number, reals, refuse_bad_value, si
 from spincyl._scale import Scale
-from spincyl.lab._bouncefit import Line, Numbers, fitted, logarithms, slope
+from spincyl.lab._bouncefit import FlightLine, Numbers, fitted, logarithms, slope_of
 from spincyl.lab._clicks import clicks
 from spincyl.lab._report import section, variables, with_error
 
@@ -266,7 +266,7 @@ def fit_bounces(
     return result
 
 
-def _doubts(found: Bounces, bends: bool, shape: Line) -> list[str]:
+def _doubts(found: Bounces, bends: bool, shape: FlightLine) -> list[str]:
     """Texts of warnings: too high a drop, a ratio of intervals that changes, many wrong or missed clicks."""
     high = found.height > _HIGHEST
     said = [f"t: such bounces follow a drop from {found.height:.3g} m; are these milliseconds?"] * high
@@ -332,7 +332,7 @@ def _doubt(times: Floats, row: list[tuple[int, int]]) -> float:
     """How unlikely a row of bounces is: less for many bounces with a steady ratio, more for missed ones."""
     n = np.array([n for n, _ in row])
     x, y = logarithms(times[[k for _, k in row]], n)
-    off = y - y.mean() - slope(x, y) * (x - x.mean())
+    off = y - y.mean() - slope_of(x, y) * (x - x.mean())
     free = y.size - 2
     scatter = math.sqrt(float(off @ off) / free) if free else 0.0
     return free * math.log(scatter + _ODD) + _MISSED * float(n[-1] - n[0] + 1 - n.size)
@@ -361,7 +361,7 @@ def _followed(times: Floats, row: list[tuple[int, int]], way: int) -> list[tuple
     while skipped <= _SKIPPED:
         near = row[-4:] if way > 0 else row[:4]  # the restitution may change slowly
         middle, y = logarithms(times[[k for _, k in near]], np.array([n for n, _ in near]))
-        ratio = slope(middle, y)
+        ratio = slope_of(middle, y)
         last, index = row[-1] if way > 0 else row[0]
         end, place = (
             (y[-1] - ratio * middle[-1], times[index])

@@ -21,8 +21,7 @@ from spincyl._input.hints import install_command
 from spincyl._input.numbers import Floats, flag, in_range, optional_library, whole
 from spincyl._input.progress import Progress, reporting_progress
 from spincyl.studio.frames import Reel, frames, pictures, vector
-from spincyl.studio.look import AZIMUTH
-from spincyl.studio.pages.recorded import SLOW
+from spincyl.studio.look import AZIMUTH, SLOW
 from spincyl.studio.poses import span
 from spincyl.studio.sound import Silent, pressure, sources, write_wave
 

@@ -12,6 +12,8 @@ AZIMUTH, _ELEVATION = -1.1, 0.55  # direction of the page's first view
 _SPREAD = math.tan(0.3)  # tangent of half the angle of view
 _LEAST = 0.03  # angle between a table and the least steep view of it
 _FLAT = 1e6  # distance of a camera above the table, over half the height that it shows
+#: Factors of slow motion of a page and of a film.
+SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 #: Lines and vectors that can be drawn with the body.
 DRAWN = ("path", "omega", "momentum", "velocity", "force", "axis")
 

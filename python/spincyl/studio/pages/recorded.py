@@ -9,14 +9,12 @@ from spincyl._motion import Motion
 from spincyl._phases import has_friction
 from spincyl._scale import Scale
 from spincyl.studio.aloft import goes_up, strikes
-from spincyl.studio.look import Look
+from spincyl.studio.look import SLOW, Look
 from spincyl.studio.pages.few import base64
 from spincyl.studio.pages.slip import rubbing
 from spincyl.studio.pages.stone import numbers
 from spincyl.studio.poses import knots, packed, repeats, seen, span
 
-#: Factors of slow motion on a page.
-SLOW = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 #: Impacts with less than this share of the largest impulse are not heard.
 _FAINT = 1e-3
 

@@ -15,9 +15,9 @@ from spincyl._motion import Motion
 from spincyl._scale import Scale, scale_of
 from spincyl.studio.aloft import goes_up
 from spincyl.studio.glb import glb
-from spincyl.studio.look import Look, look
+from spincyl.studio.look import SLOW, Look, look
 from spincyl.studio.pages.joined import colours, filled, frame, line, script, style
-from spincyl.studio.pages.recorded import SLOW, edges, shown, slips_or_flies, slow_motion, turns
+from spincyl.studio.pages.recorded import edges, shown, slips_or_flies, slow_motion, turns
 from spincyl.studio.pages.stone import turned
 from spincyl.studio.shape import Letter, marks
 

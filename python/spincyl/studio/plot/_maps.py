@@ -26,6 +26,7 @@ from spincyl.studio.plot._style import (
     SMOOTH,
     STABLE,
     UNSTABLE,
+    curves,
     hatch,
     hatching,
     new_axes,
@@ -273,8 +274,8 @@ def portrait(
         ls=":",
         label=r"$\theta_\infty$: fast limit",
     )
-    _roots(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
-    _roots(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
+    curves(ax, curve, family.folds(), color=PURPLE, lw=1.8, ls="-.", label="folds")
+    curves(ax, curve, family.ridge(), color=GREEN, lw=1.8, ls="--", label="energy ridge")
     lines, _ = ax.get_legend_handles_labels()
     patches = [Patch(facecolor=c, label=n, **hatching(c)) for n, c in dict.fromkeys(shown)]
     ax.legend(handles=patches + lines, loc="lower left", framealpha=0.92)
@@ -326,7 +327,7 @@ def energy(*, bore: float = 0.0, ax: "Axes | None" = None, ell_max: float = 3.0)
     if below.count():
         ax.contourf(ell, np.degrees(theta), below, 5, colors=[STABLE])
     label = "ridge: energy stationary along the branch"
-    _roots(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
+    curves(ax, ell, body.ridge(), color=ORANGE, lw=2.6, ls="--", label=label)
     ax.text(0.04 * ell_max, 5, "less energy than balanced at rest")
     bar = ax.figure.colorbar(filled, ax=ax, ticks=steps)
     bar.ax.set_yticklabels([f"{x:g}" for x in steps])
@@ -398,21 +399,6 @@ def pieces(
         for piece in np.split(np.arange(rates.size), np.flatnonzero(np.diff(stable)) + 1):
             pieces.append((bool(stable[piece[0]]), np.full(piece.size, body.theta_balance), rates[piece]))
     return pieces
-
-
-def _roots(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
-    """Draw up to five inclinations against ell as curves; two that appear or vanish together are joined."""
-    many = np.count_nonzero(~np.isnan(roots), axis=1)
-    runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
-    for run in runs:
-        for k in range(many[run[0]]):
-            ax.plot(ell[run], np.degrees(roots[run, k]), **style)
-            style["label"] = "_"
-    for before, after in pairwise(runs):
-        more, edge = (before, before[-1]) if many[before[0]] > many[after[0]] else (after, after[0])
-        if abs(int(many[before[0]]) - int(many[after[0]])) == 2:
-            k = int(np.argmin(np.diff(roots[edge, : many[more[0]]])))
-            ax.plot(ell[[edge, edge]], np.degrees(roots[edge, k : k + 2]), **style)
 
 
 def _shade(ax: "Axes", body: Body, contact: Contact) -> None:

@@ -4,10 +4,12 @@ import inspect
 from collections.abc import Callable
 from functools import wraps
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from spincyl._contact import Contact
 from spincyl._input.files import writing_whole
@@ -131,3 +133,18 @@ def hatch(ax: "Axes", where: Any, colour: str) -> None:
     if HATCHES[colour] and min(rows, columns) > 1:
         drawn = ax.contourf(*edges, where.astype(float), [0.5, 1.5], colors="none", hatches=[HATCHES[colour]])
         drawn.set(edgecolor=HATCH, linewidth=0.0)
+
+
+def curves(ax: "Axes", ell: npt.NDArray[np.float64], roots: npt.NDArray[np.float64], **style: Any) -> None:
+    """Draw up to five inclinations against ell as curves; two that appear or vanish together are joined."""
+    many = np.count_nonzero(~np.isnan(roots), axis=1)
+    runs = np.split(np.arange(ell.size), np.flatnonzero(np.diff(many)) + 1)
+    for run in runs:
+        for k in range(many[run[0]]):
+            ax.plot(ell[run], np.degrees(roots[run, k]), **style)
+            style["label"] = "_"
+    for before, after in pairwise(runs):
+        more, edge = (before, before[-1]) if many[before[0]] > many[after[0]] else (after, after[0])
+        if abs(int(many[before[0]]) - int(many[after[0]])) == 2:
+            k = int(np.argmin(np.diff(roots[edge, : many[more[0]]])))
+            ax.plot(ell[[edge, edge]], np.degrees(roots[edge, k : k + 2]), **style)
