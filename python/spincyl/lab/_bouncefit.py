@@ -15,7 +15,7 @@ _TREND = 3.0  #: Standard errors beyond which a coefficient is not zero.
 _JITTERS = np.geomspace(1e-4, 1.5e-3, 6)  #: Scatter of the times of clicks in seconds, if it is not known.
 _EACH = np.concatenate([[0.0], np.geomspace(0.002, 0.1, 10)])  #: Relative scatter of the restitution.
 #: Prior probability that the restitution does not scatter, with and without a known error of the clicks.
-_STEADY, _STEADY_UNKNOWN = 0.95, 0.6
+_STEADY, _STEADY_UNKNOWN = 0.95, 0.05
 _ROUNDS = 4  #: Linearisations.
 _RARE = 1e-3  #: Probability below which a pair of scatters is left out.
 
