@@ -173,10 +173,10 @@ def test_drilling_stops_no_thin_disk_and_a_coin_only_while_its_centre_rests():
         ({"seconds": [7.1, 7.1]}, "^seconds: equal times have no scatter"),
         ({"seconds": []}, "^seconds: expected at least one time"),
         ({"seconds": [math.nan]}, "^seconds: expected at least one"),
-        ({"seconds": [7.0, -1.0]}, "^seconds = -1.0: expected more than 0"),
-        ({"seconds": [7.0, 0.0]}, "^seconds = 0.0: expected more than 0"),
-        ({"seconds": [7.0, math.inf]}, "^seconds = inf: expected"),
-        ({"seconds": [1e300, 2e300]}, "^seconds = 1e\\+300: expected"),
+        ({"seconds": [7.0, -1.0]}, "^seconds\\[1\\] = -1.0: expected more than 0"),
+        ({"seconds": [7.0, 0.0]}, "^seconds\\[1\\] = 0.0: expected more than 0"),
+        ({"seconds": [7.0, math.inf]}, "^seconds\\[1\\] = inf: expected"),
+        ({"seconds": [1e300, 2e300]}, "^seconds\\[0\\] = 1e\\+300: expected"),
         ({"seconds": [1e-300, 2e-300]}, "^seconds = 1.5e-300: the body would stop within .* of a turn"),
         ({"seconds": np.ones((2, 2, 2))}, "^from_, seconds: expected .* a list or a table of times"),
         ({"seconds": [[7.0, 7.2], [7.1]]}, "^seconds: expected rows of equal length, .*from_={'20deg'"),
@@ -189,7 +189,10 @@ def test_drilling_stops_no_thin_disk_and_a_coin_only_while_its_centre_rests():
         ({"law": [sc.loss.DryContour] * 2}, "^law: expected .* each law only once"),
         ({"law": []}, "^law: expected at least one law"),
         ({"error": 0.0}, "^error = 0.0: expected a positive time"),
-        ({"error": 9.0}, "^error = 9.0: expected a positive time, less than the mean"),
+        (
+            {"error": 9.0},
+            "^error = 9.0: expected a positive time, less than the median of 7.1 s of the times from 20 degrees",
+        ),
         ({"error": math.nan}, "^error = nan: expected a positive time"),
         ({"from_": 20}, "^from_ = 20.0: expected .* degrees"),
         ({"from_": 0.0}, "^from_ = 0.0: expected a positive angle"),
@@ -297,12 +300,13 @@ def test_an_outlier_is_named_by_its_index_and_value_and_ten_good_times_pass():
     for times, name in (
         ([*good, 2.1 * t], rf"seconds\[10\] = {2.1 * t:.4g} .*: \d+ standard deviations of the other times"),
         ([np.nan, 0.3 * t, *good], rf"seconds\[1\] = {0.3 * t:.4g} .*: "),
-        ([2 * t, *good, 60 * t], rf"seconds\[0\] = .*, seconds\[11\] = {60 * t:.4g} .*: at least"),
+        ([2 * t, *good, 60 * t], rf"seconds\[11\] = {60 * t:.4g} .*: \d+, seconds\[0\] = .*: \d+ standard"),
     ):
         with pytest.warns(UserWarning, match=f"^{name}.* left out"):
             found = sc.data.fit_stop(COIN, sc.loss.DryContour, "20deg", times, **how)
         assert found.best == alone.best and f"left out    = {found.wild[0].where}" in found.report()
-        assert [one.seconds for one in found.wild] == [x for x in times if abs(x - t) > 0.3 * t]
+        wild = [x for x in times if abs(x - t) > 0.3 * t]
+        assert [one.seconds for one in found.wild] == sorted(wild, key=lambda x: -abs(x - t))
 
 
 def test_normal_times_seldom_have_an_outlier():
@@ -419,6 +423,57 @@ def test_one_wild_time_of_twelve_changes_nothing_by_more_than_an_error():
                 fit = sc.data.fit_stop(COIN, law, START, [*good, wild], **how).best
             assert abs(fit.coefficient - plain.coefficient) < plain.coefficient_err, (seed, wild)
             assert fit.coefficient_err < 2 * plain.coefficient_err
+
+
+STOPPED = np.array([0.83, 3.69, 11.2])
+SCATTER = {"of the hand": 0.2 + 0 * STOPPED, "of the release": 0.06 * STOPPED}
+
+
+@pytest.mark.parametrize("error", [None, 0.2])
+@pytest.mark.parametrize("kind", SCATTER)
+def test_hardly_a_class_of_24_honest_times_loses_one_and_a_wild_one_is_found(kind, error):
+    """A tenth of 0.83 s is only four deviations of the hand away, so it is not asked for there."""
+    lost = missed = 0
+    for seed in range(150):
+        rng = np.random.default_rng(seed)
+        times = np.maximum(STOPPED + SCATTER[kind] * rng.normal(size=(8, 3)), 0.05)
+        lost += bool(timed(np.radians([20, 40, 60]), times, error, 0.0, None).wild)
+        row, column = rng.integers(8), rng.integers(1, 3)
+        for wild in (10 * times[row, column], 0.1 * times[row, column], times[row, column] + 30):
+            with_wild = times.copy()
+            with_wild[row, column] = wild
+            found = timed(np.radians([20, 40, 60]), with_wild, error, 0.0, None).wild
+            missed += wild not in [one.seconds for one in found]
+    assert lost <= 4 and missed == 0  # below 3 % of classes
+
+
+@pytest.mark.parametrize("kind", SCATTER)
+def test_the_error_of_the_mean_of_a_class_holds_for_both_kinds_of_scatter(kind):
+    pulls = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        times = np.maximum(STOPPED + SCATTER[kind] * rng.normal(size=(8, 3)), 0.05)
+        data = timed(np.radians([20, 40, 60]), times, None, 0.0, None)
+        by = data.mean_err / STOPPED  # of the coefficient, as `fit_stop` weights the angles
+        off = (data.mean / STOPPED - 1) @ by**-2 / (by**-2).sum()
+        pulls.append(off * math.sqrt((by**-2).sum()))
+    assert 0.75 < np.std(pulls) < 1.3 and abs(np.mean(pulls)) < 0.4  # 1 +- 0.09
+
+
+def test_a_stated_error_is_that_of_each_time_and_a_bad_time_has_its_row_and_name():
+    times = {"60deg": 11.2 + 0.2 * np.random.default_rng(1).normal(size=7)}
+    found = sc.data.fit_stop(COIN, sc.loss.DryContour, times, error=0.2)
+    assert found.stops_at_err == pytest.approx(0.2 / math.sqrt(7))
+    with pytest.raises(ValueError, match=r"^from_\['60deg'\]\[1\] = -0.0 \(Ben\): expected more than 0"):
+        sc.data.fit_stop(COIN, sc.loss.DryContour, {"60deg": [11.0, -0.0]}, names=["Anna", "Ben"])
+
+
+def test_all_laws_that_are_not_told_apart_are_printed_first():
+    times = np.array([[1.0, 3.5], [1.4, 3.9], [0.7, 3.6]])
+    found = sc.data.fit_stop(COIN, sc.loss.DryContour, ["20deg", "40deg"], times, from_err="2deg")
+    assert not found.told_apart and {fit.centre for fit in found.fits} == {"rest", "rolling"}
+    for said in (repr(found), found.report().split("[[Laws]]")[0]):
+        assert "with the centre at rest" in said and "by rolling" in said
 
 
 def test_times_of_several_angles_may_come_in_a_table_in_columns_or_one_by_one():

@@ -159,6 +159,11 @@ class StopFit(NamedTuple):
         raise KeyError(f"centre: {centre!r} was not fitted{f' with {name}' if name else ''}{why}")
 
     @property
+    def _likely(self) -> tuple[FittedStop, ...]:
+        """The best fit and all that are not told apart from it."""
+        return tuple(found for found in self.fits if found.daic <= APART)
+
+    @property
     def _many(self) -> int:
         """Number of first inclinations."""
         return int(np.size(self.theta))
@@ -215,7 +220,7 @@ class StopFit(NamedTuple):
         The table of the laws follows if there are several inclinations or laws.
         """
         told, whole = [], self._many > 1 or "," in self.name
-        for found in self.fits[:1] if whole and self._many > 1 else self.fits:
+        for found in self._likely:
             value, error, unit = found._printed
             law = f"{type(found.law).__name__} " if "," in self.name else ""
             name = f"{law}{found.law._parameter} {CENTRE[found.centre]}" + (unit and f", in{unit}")
@@ -227,10 +232,11 @@ class StopFit(NamedTuple):
         return "\n".join(lines + ["    " + line for line in self._not_fitted()])
 
     def __repr__(self) -> str:
-        shown = self.fits if self._many == 1 and len(self.fits) < 3 else self.fits[:1]
-        apart = "" if self._many == 1 or self.told_apart else ", not told apart from others"
-        told = "; ".join(repr(found)[1:-1] for found in shown)
-        return f"<StopFit: {told}{apart}; {self.seconds.size} times>"
+        likely = self._likely
+        apart = "" if self._many == 1 or self.told_apart else ", not told apart"
+        told = "; ".join(repr(found)[1:-1] for found in likely[:3])
+        more = f"; and {len(likely) - 3} more" if len(likely) > 3 else ""
+        return f"<StopFit: {told}{more}{apart}; {self.seconds.size} times>"
 
     def _repr_html_(self) -> str:
         from spincyl.studio.cards import drawing, framed
@@ -277,7 +283,7 @@ def fit_stop(
     error : float, optional
         Standard error of each time in seconds, such as 0.2 for a watch started by hand. Default: the error is
         estimated from the scatter of the times, which needs at least two different times from an inclination.
-        The scatter is then the same share of the time at all inclinations.
+        The scatter then has a constant part and a part proportional to the time.
     from_err : float or array_like
         Standard error of `from_`, in radians or as a text such as "2deg"; one, or one for each inclination.
         The error of an inclination is assumed to be the same in all trials, like the error of a mark, so that
@@ -395,12 +401,12 @@ def _about_wild(wild: tuple[WildTime, ...]) -> str:
     """A warning that names the times that are left out; empty if there are none."""
     if not wild:
         return ""
-    named = ", ".join(one.told() for one in wild[:3]) + ", ..." * (len(wild) > 3)
-    away = min(one.deviations for one in wild)
-    least, these = ("at least ", "they are") if len(wild) > 1 else ("", "it is")
+    named = ", ".join(f"{one.told()}: {one.deviations:.0f}" for one in wild[:3])
+    more = f", and {len(wild) - 3} more" if len(wild) > 3 else ""
     return (
-        f"{named}: {least}{away:.0f} standard deviations of the other times from their median; {these} left"
-        " out; was the stopwatch stopped late, or is the time in another unit?"
+        f"{named} standard deviations of the other times from their median{more};"
+        f" {'they are' if len(wild) > 1 else 'it is'} left out;"
+        " was the stopwatch stopped late, or is the time in another unit?"
     )
 
 

@@ -18,6 +18,12 @@ _OUTLIER, _OUTLIER_OF_FEW = 4.0, 30.0
 #: Least scatter that decides on an outlier, and on what is clipped, as shares of the median: watches have
 #: tenths of a second.
 _STEADY, _ROUNDED = 0.02, 0.005
+#: Trial values of both parts of the scatter, in units of the median deviation.
+_PARTS = np.append(0.0, np.geomspace(0.1, 20.0, 24))
+#: Share of times that are taken to be anywhere up to the longest time when the parts are compared.
+_ANYWHERE = 0.05
+#: A stated error does not hold if the scatter is more likely by this much, in logarithms of the likelihood.
+_UNLIKELY = 3.0
 #: A larger ratio of the times from one inclination causes a warning.
 _MIXED_RATIO = 3.0
 #: Times that are farther than this from the mean count as if they were at this distance (Huber 1964, Ann.
@@ -95,15 +101,15 @@ def timed(from_: Any, seconds: Any, error: float | None, from_err: Any, names: S
     refuse_bad_value("from_err", trials.theta_err, lambda _: wide, "expected at least 0, less than from_")
     theta_err = np.array([trials.theta_err[group == k].max() for k in range(theta.size)])
     middle = np.array([np.median(trials.seconds[group == k]) for k in range(theta.size)])
-    off = trials.seconds / middle[group] - 1  # relative, since long times scatter by more
+    one = _stated(error, middle, theta)
+    off = trials.seconds - middle[group]
     freedom = off.size - theta.size
-    kept, scale = np.ones(off.size, bool), 0.0
+    kept = np.ones(off.size, bool)
+    scatter, known = _scatter(off, middle, group, one)
+    far = np.abs(off) / np.maximum(scatter, _STEADY * middle)[group]
     if freedom >= _FREEDOM:
-        # each median makes one residual small: leave out the least of each inclination
-        rest = [np.sort(np.abs(off[group == k]))[1:] for k in range(theta.size)]
-        scale = max(1.4826 * float(np.median(np.concatenate(rest))), _ROUNDED)
-        far = np.abs(off) / max(scale, _STEADY)
-        kept = far <= _OUTLIER + _OUTLIER_OF_FEW / freedom
+        kept = far <= _OUTLIER + (0 if known else _OUTLIER_OF_FEW / freedom)
+        kept |= (np.bincount(group, kept) == 0)[group]  # which of two times is wild is not known
     wild = tuple(
         WildTime(
             trials.where[k],
@@ -112,9 +118,14 @@ def timed(from_: Any, seconds: Any, error: float | None, from_err: Any, names: S
             float(trials.seconds[k]),
             float(far[k]),
         )
-        for k in np.flatnonzero(~kept)
+        for k in sorted(np.flatnonzero(~kept).tolist(), key=lambda k: -far[k])
     )
-    mean, mean_err = _robust_means(trials.seconds[kept], group[kept], theta.size, scale, error)
+    if wild:  # the others alone
+        seconds, own = trials.seconds[kept], group[kept]
+        middle = np.array([np.median(seconds[own == k]) for k in range(theta.size)])
+        scatter, known = _scatter(seconds - middle[own], middle, own, one)
+    reach = _CLIP if freedom >= _FREEDOM else math.inf
+    mean, mean_err = _robust_means(trials.seconds[kept], group[kept], scatter, reach, known)
     doubt = "" if wild else _doubt_of_units(trials.seconds, group)
     return Timed(theta, theta_err, trials.seconds, group, mean, mean_err, wild, doubt)
 
@@ -129,36 +140,75 @@ def _doubt_of_units(times: Floats, group: Any) -> str:
     return ""
 
 
+def _stated(error: float | None, middle: Floats, theta: Floats) -> float:
+    """The stated standard error of a time in seconds; NaN if there is none."""
+    if error is None:
+        return math.nan
+    k = int(np.argmin(middle))
+    told = f"the median of {middle[k]:.4g} s of the times from {math.degrees(theta[k]):.4g} degrees"
+    one = number("error", si("error", error, "second"))
+    expected = f"expected a positive time, less than {told}"
+    refuse_bad_value("error", one, lambda x: ~((x > 0) & (x < middle[k])), expected)
+    return one
+
+
+def _scatter(off: Floats, middle: Floats, group: Any, error: float) -> tuple[Floats, bool]:
+    """Standard deviation of a time from each inclination, and whether it is the stated error.
+
+    Its square has a constant part, as of the reaction, and a part that is proportional to the square of the
+    time, as of the release. It is the mean over both parts, weighted by the likelihood of all times. The
+    whole is then scaled to the median deviation.
+    """
+    # each median makes one residual small: leave out the least of each inclination
+    order = np.lexsort((np.abs(off), group))
+    rest = order[np.append(False, np.diff(group[order]) == 0)]
+    least = _ROUNDED * middle
+    if not rest.size:
+        return (least, False) if math.isnan(error) else (np.full(middle.size, error), True)
+    own, away = group[rest], off[rest]
+    size = max(float(np.median(np.abs(away))), float(least.min()))
+    longest = float((middle[own] + away).max()) / size
+
+    def likelihood(variance: Any) -> Any:
+        normal = np.exp(-0.5 * (away / size) ** 2 / variance) / np.sqrt(2 * math.pi * variance)
+        return np.log((1 - _ANYWHERE) * normal + _ANYWHERE / longest).sum(axis=-1)
+
+    constant, share = (x.reshape(-1, 1) for x in np.meshgrid(_PARTS[1:] ** 2, _PARTS**2))
+    variance = np.fmax(constant + share * (middle / middle.max()) ** 2, (error / size) ** 2)
+    likely = likelihood(variance[:, own])
+    if likely.max() - likelihood(np.full(own.size, (error / size) ** 2)) < _UNLIKELY:
+        return np.full(middle.size, error), True
+    weight = np.exp(likely - likely.max())
+    shape = np.sqrt(weight @ variance / weight.sum())
+    found = np.maximum(1.4826 * np.median(np.abs(away) / shape[own]) * shape, least)
+    return np.fmax(found, error), False
+
+
 def _robust_means(
-    times: Floats, group: Any, many: int, scale: float, error: float | None
+    times: Floats, group: Any, scatter: Floats, reach: float, known: bool
 ) -> tuple[Floats, Floats]:
     """Mean and standard error of the times of each group; times far from the mean are clipped."""
+    many = scatter.size
     count = np.bincount(group, minlength=many)
     mean = np.bincount(group, times, many) / count
-    reach = _CLIP * scale if scale else math.inf
     for _ in range(50):
-        off = times / mean[group] - 1
+        off = (times - mean[group]) / scatter[group]
         clipped = np.clip(off, -reach, reach)
-        step = np.bincount(group, clipped, many) / count
-        mean = mean * (1 + step)
-        if np.abs(step).max() < 1e-13:
+        step = scatter * np.bincount(group, clipped, many) / count
+        mean = mean + step
+        if np.abs(step / mean).max() < 1e-13:
             break
+    if known:
+        return mean, scatter / np.sqrt(count)
     free = times.size - many
     share = max(float(np.mean(clipped == off)), 0.5)
-    scatter = math.sqrt(float(clipped @ clipped) / free) / share if free else 0.0
-    least = float(mean.min())
-    one = math.nan if error is None else number("error", si("error", error, "second"))
-    if error is not None:
-        refuse_bad_value(
-            "error", one, lambda x: ~((x > 0) & (x < least)), "expected a positive time, less than the mean"
-        )
-        return mean, np.maximum(one, scatter * mean) / np.sqrt(count)
-    if not scatter > 1e-15:
+    wide = math.sqrt(float(clipped @ clipped) / free) / share if free else 0.0
+    if not (wide * scatter > 1e-15 * mean).any():
         what = "equal times have" if free else "a single time has"
         raise ValueError(
             f"seconds: {what} no scatter; give the standard error of a time in seconds, such as error=0.2"
         )
-    return mean, scatter * student(1.0, free) * mean / np.sqrt(count)
+    return mean, wide * student(1.0, free) * scatter / np.sqrt(count)
 
 
 def _of_table(table: Any, seconds: Any, from_err: Any, names: Sequence[str] | None) -> _Trials:
@@ -237,6 +287,10 @@ def _trials(
 ) -> _Trials:
     """Make trials from arrays of equal length, without missing times."""
     named = _checked_names(names, times.size) if names is not None else [""] * times.size
+    for k in np.flatnonzero((times <= 0) | (times > _LONGEST)).tolist()[:1]:
+        who = f" ({named[k]})" if named[k] else ""
+        told = f"{where[k]} = {float(times[k])!r}{who}"
+        raise ValueError(f"{told}: expected more than 0, at most {_LONGEST:g}")
     seen = np.isfinite(times)
     kept = np.flatnonzero(seen).tolist()
     return _Trials(
@@ -269,11 +323,7 @@ def _seconds(name: str, given: Any) -> Floats:
                 " each inclination go into from_={'20deg': [...], '45deg': [...]}"
             )
         given = [[_gap(x) for x in row] if isinstance(row, list | tuple) else _gap(row) for row in given]
-    times = np.asarray(reals(name, si(name, given, "second")), np.float64)
-    refuse_bad_value(
-        name, times, lambda x: (x <= 0) | (x > _LONGEST), f"expected more than 0, at most {_LONGEST:g}"
-    )
-    return times
+    return np.asarray(reals(name, si(name, given, "second")), np.float64)
 
 
 def _gap(x: Any) -> Any:
