@@ -18,7 +18,7 @@ from spincyl._single import one_body
 from spincyl.lab._lossfit import APART, CENTRE, Refused
 from spincyl.lab._report import WIDE, section, variables
 from spincyl.lab._spindown import centres, known_law, known_laws
-from spincyl.lab._times import Timed, WildTime, timed
+from spincyl.lab._times import Timed, WildTime, about_wild, timed
 from spincyl.lab._typical import far_from_typical
 
 _UNIT = 1e-9  #: Coefficient so small that the law holds at all inclinations of the drift.
@@ -373,7 +373,7 @@ def fit_stop(
     doubts += [(kept.message, kept.category) for kept in {one.category: one for one in own}.values()]
     if turns < _FEWEST_TURNS:
         doubts.append((f"{_FEW.format(turns)}: are the times in seconds?", UserWarning))
-    doubts += [(one, UserWarning) for one in (_about_wild(data.wild), data.mixed) if one]
+    doubts += [(one, UserWarning) for one in (about_wild(data.wild), data.mixed) if one]
     for message, category in doubts:
         warnings.warn(message, category, stacklevel=2)
     shown = (data.theta, data.theta_err, data.seconds, data.mean, data.mean_err)
@@ -395,19 +395,6 @@ def _laws(law: Any) -> tuple[list[Any], bool]:
     if not law or len(set(map(id, law))) < len(law):
         raise ValueError("law: expected at least one law, and each law only once")
     return [known_law("law", one) for one in law], False
-
-
-def _about_wild(wild: tuple[WildTime, ...]) -> str:
-    """A warning that names the times that are left out; empty if there are none."""
-    if not wild:
-        return ""
-    named = ", ".join(f"{one.told()}: {one.deviations:.0f}" for one in wild[:3])
-    more = f", and {len(wild) - 3} more" if len(wild) > 3 else ""
-    return (
-        f"{named} standard deviations of the other times from their median{more};"
-        f" {'they are' if len(wild) > 1 else 'it is'} left out;"
-        " was the stopwatch stopped late, or is the time in another unit?"
-    )
 
 
 def _fitted_drift(body: Body, kind: Any, centre: str, data: Timed) -> FittedStop:

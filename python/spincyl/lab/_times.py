@@ -108,7 +108,7 @@ def timed(from_: Any, seconds: Any, error: float | None, from_err: Any, names: S
     scatter, known = _scatter(off, middle, group, one)
     far = np.abs(off) / np.maximum(scatter, _STEADY * middle)[group]
     if freedom >= _FREEDOM:
-        kept = far <= _OUTLIER + (0 if known else _OUTLIER_OF_FEW / freedom)
+        kept = far <= _OUTLIER + _OUTLIER_OF_FEW / freedom
         kept |= (np.bincount(group, kept) == 0)[group]  # which of two times is wild is not known
     wild = tuple(
         WildTime(
@@ -140,6 +140,19 @@ def _doubt_of_units(times: Floats, group: Any) -> str:
     return ""
 
 
+def about_wild(wild: tuple[WildTime, ...]) -> str:
+    """A warning that names the times that are left out; empty if there are none."""
+    if not wild:
+        return ""
+    named = ", ".join(f"{one.told()}: {one.deviations:.0f}" for one in wild[:3])
+    more = f", and {len(wild) - 3} more" if len(wild) > 3 else ""
+    return (
+        f"{named} standard deviations of the other times from their median{more};"
+        f" {'they are' if len(wild) > 1 else 'it is'} left out;"
+        " was the stopwatch stopped late, or is the time in another unit?"
+    )
+
+
 def _stated(error: float | None, middle: Floats, theta: Floats) -> float:
     """The stated standard error of a time in seconds; NaN if there is none."""
     if error is None:
@@ -153,11 +166,12 @@ def _stated(error: float | None, middle: Floats, theta: Floats) -> float:
 
 
 def _scatter(off: Floats, middle: Floats, group: Any, error: float) -> tuple[Floats, bool]:
-    """Standard deviation of a time from each inclination, and whether it is the stated error.
+    """Standard deviation of a time from each inclination, and whether it is absolute.
 
     Its square has a constant part, as of the reaction, and a part that is proportional to the square of the
-    time, as of the release. It is the mean over both parts, weighted by the likelihood of all times. The
-    whole is then scaled to the median deviation.
+    time, as of the release. It is the mean over both parts, weighted by the likelihood of all times. Without
+    a stated error the whole is then scaled to the median deviation; with one, the error is used, or a larger
+    scatter if the times contradict the error.
     """
     # each median makes one residual small: leave out the least of each inclination
     order = np.lexsort((np.abs(off), group))
@@ -180,8 +194,9 @@ def _scatter(off: Floats, middle: Floats, group: Any, error: float) -> tuple[Flo
         return np.full(middle.size, error), True
     weight = np.exp(likely - likely.max())
     shape = np.sqrt(weight @ variance / weight.sum())
-    found = np.maximum(1.4826 * np.median(np.abs(away) / shape[own]) * shape, least)
-    return np.fmax(found, error), False
+    if not math.isnan(error):  # it may exceed the scatter of short times: no scale is common to all
+        return size * shape, True
+    return np.maximum(1.4826 * np.median(np.abs(away) / shape[own]) * shape, least), False
 
 
 def _robust_means(
