@@ -14,7 +14,6 @@ from spincyl._input.numbers import (
     Result,
     common_shape,
     instance_of,
-    is_quantity,
     numbered,
     radians,
     reals,
@@ -154,11 +153,8 @@ class StoneStarts(Sized, Hinting):
         if (spin is None) == (hertz is None):
             raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
         if hertz is None:
-            if isinstance(spin, str) or is_quantity(spin):
-                raise TypeError(
-                    f"spin = {str(spin)!r}: expected a number in sqrt(g/a); hertz= takes"
-                    ' turns per second, as in hertz="-1Hz"'
-                )
+            if isinstance(spin, str):
+                raise TypeError(f"spin = {spin!r}: expected a number in sqrt(g/a); hertz= takes turns per second")
             return as_doubles(reals("spin", spin))
         if self.scale is None:
             raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")

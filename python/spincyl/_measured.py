@@ -191,8 +191,7 @@ def in_si(m: "Motion", body: Body, seconds: Floats, step: float | None) -> "Moti
     """
     scale = body.scale
     assert scale is not None
-    second = scale._units[1]
-    asked = m._asked
+    second, asked = scale._units[1], m._asked
     event = m.event and m.event._replace(time=m.event.time * second)
     made = ("phases", "impacts", "reversals")  # in natural units, if they have been looked at
     found: dict[str, Any] = {name: x for name, x in m.__dict__.items() if name not in made} | {

@@ -393,8 +393,7 @@ class Motion(Outputs, Showing):
 def rolled(body: Body, state: State, asked: Asked, numbers: tuple[_Six, _Four] | None = None) -> Motion:
     """Compute a motion without warnings; `numbers` are those of body and state, if already known."""
     of, start = numbers or numbers_of_one(body, state, several=True)
-    slip = None if state.slip is None else single_slip(state)
-    aloft = single_aloft(state)
+    slip, aloft = None if state.slip is None else single_slip(state), single_aloft(state)
     found = _core.roll(of, start, asked.times, options_for_core(asked, slip, aloft, body._rows))
     status = ENDINGS[found["status"]]
     event = None
