@@ -154,7 +154,7 @@ class StoneStarts(Sized, Hinting):
             raise TypeError("spin, hertz: give exactly one of them; hertz= needs a measured stone")
         if hertz is None:
             if isinstance(spin, str):
-                raise TypeError(f"spin = {spin!r}: expected a number in sqrt(g/a); hertz= takes turns per second")
+                raise TypeError(f"spin = {spin!r}: expected a number in sqrt(g/a); hertz= takes turns/s")
             return as_doubles(reals("spin", spin))
         if self.scale is None:
             raise ValueError("hertz: needs a measured stone, made with in_metres(); for any other give spin=")
