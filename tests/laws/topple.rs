@@ -49,7 +49,10 @@ proptest! {
 fn a_ball_has_no_face_to_topple_over() {
     let ball = Body::ball(0.0, 0.4, 0.4).unwrap();
     let told = [topples(&ball, 0.3).unwrap_err(), tripped(&ball, 1.0).unwrap_err()].map(|e| e.to_string());
-    assert!(told.iter().all(|text| text.starts_with("a = 0.0: expected a > 0, the radius of the face")), "{told:?}");
+    assert!(
+        told.iter().all(|text| text.starts_with("a = 0.0: expected a > 0, the radius of the face")),
+        "{told:?}"
+    );
     let can = Body::solid(2.0).unwrap();
     assert!(topples(&can, -0.1).unwrap_err().to_string().starts_with("mu = -0.1"));
     assert!(tripped(&can, f64::NAN).unwrap_err().to_string().starts_with("velocity = NaN"));
