@@ -545,7 +545,7 @@ def test_films_that_no_file_can_hold_are_refused_with_what_would_be_right(tmp_pa
 
 
 def test_a_film_that_is_cut_names_the_slow_motion_with_which_all_of_it_fits(tmp_path):
-    m = motion_of("nutating")
+    m = motion_of("nutating").at(np.linspace(0, 5, 101))
     view = sc.view(m, slow=20)
     with pytest.warns(UserWarning, match=r"give seconds= for more, or slow=\d+ for all of it$") as caught:
         view.save(tmp_path / "film.gif", fps=1, size=(64, 64))
