@@ -204,7 +204,7 @@ def fit_bounces(
     >>> import spincyl as sc
     >>> heard = sc.data.fit_bounces([0.452, 1.231, 1.932, 2.562, 3.130, 3.640, 4.100])
     >>> heard
-    <Bounces: restitution 0.89983 +- 0.00027, dropped from 0.9183 +- 0.0015 m; 7 bounces>
+    <Bounces: restitution 0.89990 +- 0.00093, dropped from 0.9184 +- 0.0047 m; 7 bounces>
     """
     times = clicks(t, sound) if sound is not None else _click_times(t)
     g = number("gravity", si("gravity", gravity, "metre/second**2"))
